@@ -1,0 +1,25 @@
+# Every third-party package, in one place. All are Debian 12 packages (see run.sh).
+find_package(Threads REQUIRED)
+find_package(fmt CONFIG REQUIRED)
+find_package(CLI11 CONFIG REQUIRED)
+find_package(tomlplusplus CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(glm CONFIG REQUIRED)
+find_package(OpenEXR CONFIG REQUIRED)
+find_package(PNG REQUIRED)
+find_package(Boost 1.74 COMPONENTS context REQUIRED)
+find_package(zstd CONFIG REQUIRED)
+
+# Debian's OpenSubdiv CMake package names static libraries that Debian does not ship.
+find_path(OPENSUBDIV_INCLUDE opensubdiv/bfr/surface.h REQUIRED)
+find_library(OPENSUBDIV_CPU osdCPU REQUIRED)
+add_library(osd::cpu SHARED IMPORTED)
+set_target_properties(osd::cpu PROPERTIES IMPORTED_LOCATION ${OPENSUBDIV_CPU}
+                                          INTERFACE_INCLUDE_DIRECTORIES ${OPENSUBDIV_INCLUDE})
+if(RAZOR_TESTS)
+  find_package(GTest CONFIG REQUIRED)
+  if(RAZOR_BENCHMARKS)
+    find_package(benchmark CONFIG REQUIRED)
+    find_package(embree 3 CONFIG QUIET)
+  endif()
+endif()

@@ -1,0 +1,92 @@
+// What the user asked to have rendered, as plain host data: cages, materials, lights, camera, settings.
+// World space is right-handed, y up; lengths are in the scene's own unit. Coordinates are double: one
+// double-precision origin is subtracted from each mesh before anything becomes single precision.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace razor {
+
+enum class Scheme : std::uint8_t { catmull_clark, bilinear };
+enum class BoundaryInterpolation : std::uint8_t { none, edge_only, edge_and_corner };
+enum class CreaseMethod : std::uint8_t { normal, chaikin };
+enum class TriangleSubdivision : std::uint8_t { catmull_clark, smooth };
+/// OpenSubdiv's Sdc::Options::FVarLinearInterpolation, in its order.
+enum class FaceVaryingInterpolation : std::uint8_t { none, corners_only, corners_plus1, corners_plus2, boundaries, all };
+
+/// Sharpness of 10 and above is infinitely sharp (OpenSubdiv).
+inline constexpr float infinite_sharpness = 10.0F;
+
+struct Crease {
+    int v0 = 0, v1 = 0;
+    float sharpness = 0;
+};
+struct Corner {
+    int vertex = 0;
+    float sharpness = 0;
+};
+
+struct Material {
+    std::string name;
+    glm::vec3 albedo{0.7F, 0.7F, 0.7F}; // linear, in [0, 1]
+};
+
+/// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face has 3 or more
+/// distinct corners; every index in range; points finite.
+struct Mesh {
+    std::string name;
+    Scheme scheme = Scheme::catmull_clark;
+    std::vector<glm::dvec3> points;
+    std::vector<int> face_sizes;     // corners of each face
+    std::vector<int> face_vertices;  // point indices, concatenated over faces, counter-clockwise seen from outside
+    std::vector<glm::vec2> texcoords;
+    std::vector<int> face_texcoords; // per corner like face_vertices, or empty: no texture coordinates
+    std::vector<Crease> creases;
+    std::vector<Corner> corners;
+    std::vector<int> holes; // face numbers
+    BoundaryInterpolation boundary = BoundaryInterpolation::edge_only;
+    FaceVaryingInterpolation face_varying = FaceVaryingInterpolation::corners_only;
+    CreaseMethod crease_method = CreaseMethod::normal;
+    TriangleSubdivision triangles = TriangleSubdivision::catmull_clark;
+    int material = 0; // index into Scene::materials
+    /// Target edge length in world units. 0: from the camera (settings.edge_pixels). Rounded to a power of two when used.
+    double edge_length = 0;
+};
+
+struct Camera {
+    glm::dvec3 position{0, 1, 5};
+    glm::dvec3 target{0, 0, 0};
+    glm::dvec3 up{0, 1, 0};
+    double fov_degrees = 35; // vertical, full angle, in (0, 180)
+};
+
+/// One-sided rectangle: corner + s edge_u + t edge_v, s,t in [0,1]; emits towards cross(edge_u, edge_v).
+struct RectangleLight {
+    glm::dvec3 corner{0}, edge_u{1, 0, 0}, edge_v{0, 0, 1};
+    glm::vec3 radiance{1}; // W / (m^2 sr), linear RGB
+};
+
+struct Settings {
+    int width = 512, height = 512; // pixels
+    int samples = 4;               // camera samples a pixel
+    int light_samples = 4;         // shadow rays a hit to the rectangle light
+    int sky_samples = 4;           // shadow rays a hit to the sky
+    double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
+};
+
+struct Scene {
+    std::string name;
+    std::vector<Mesh> meshes;
+    std::vector<Material> materials;
+    std::vector<RectangleLight> lights; // at most one for now
+    glm::vec3 sky{0};                   // constant radiance
+    Camera camera;
+    Settings settings;
+};
+
+} // namespace razor
