@@ -27,7 +27,7 @@ endif()
 # Flags and definitions of one target, for any CMake target that includes isa/isa.h.
 function(isa_configure CMAKE_TARGET ISA)
   string(TOUPPER ${ISA} ISA_UPPER)
-  target_compile_options(${CMAKE_TARGET} PRIVATE ${ISA_FLAGS_${ISA}})
+  target_compile_options(${CMAKE_TARGET} PRIVATE -fno-math-errno ${ISA_FLAGS_${ISA}})
   target_compile_definitions(${CMAKE_TARGET} PRIVATE ISA_TARGET=${ISA} ISA_TARGET_${ISA_UPPER}=1)
   target_link_libraries(${CMAKE_TARGET} PRIVATE isa razor_warnings)
 endfunction()

@@ -1,0 +1,287 @@
+// Native vectors of the vocabulary: vfloat, vint, vmask of isa::width lanes, as arrays of one target's registers.
+// Lane-wise unless stated. IEEE 754 for NaN and infinities; a NaN result is quiet and its payload unspecified.
+#pragma once
+
+#include "isa/native/scalar.h"
+#include "isa/target.h"
+#include ISA_REGISTERS
+
+#include <bit>
+#include <cstdint>
+
+namespace ISA_NATIVE {
+
+static_assert(width % reg::lanes == 0);
+inline constexpr int registers = width / reg::lanes;
+
+struct vfloat {
+    reg::F r[registers];
+    vfloat() = default; // undefined lanes
+    vfloat(float constant) {
+        for (auto& x : r)
+            x = reg::broadcast(constant);
+    }
+    vfloat(sfloat a) : vfloat(a.v) {} // broadcast
+    vfloat(std::int32_t) = delete;
+    vfloat(double) = delete;
+};
+struct vint {
+    reg::I r[registers];
+    vint() = default; // undefined lanes
+    vint(std::int32_t constant) {
+        for (auto& x : r)
+            x = reg::broadcast(constant);
+    }
+    vint(sint a) : vint(a.v) {} // broadcast
+    vint(float) = delete;
+    vint(double) = delete;
+};
+struct vmask {
+    reg::M r[registers];
+    vmask() = default; // undefined lanes
+    vmask(bool constant) {
+        for (auto& x : r)
+            x = reg::from_bits(constant ? 0xffffffffU : 0U);
+    }
+    vmask(sbool a) : vmask(a.v) {} // broadcast
+    template <class T> vmask(T) = delete;
+};
+
+namespace detail {
+template <class R, class A, class Op> inline R map(Op op, const A& a) {
+    R r;
+    for (int i = 0; i < registers; ++i)
+        r.r[i] = op(a.r[i]);
+    return r;
+}
+template <class R, class A, class B, class Op> inline R map(Op op, const A& a, const B& b) {
+    R r;
+    for (int i = 0; i < registers; ++i)
+        r.r[i] = op(a.r[i], b.r[i]);
+    return r;
+}
+template <class R, class A, class B, class C, class Op> inline R map(Op op, const A& a, const B& b, const C& c) {
+    R r;
+    for (int i = 0; i < registers; ++i)
+        r.r[i] = op(a.r[i], b.r[i], c.r[i]);
+    return r;
+}
+} // namespace detail
+#define ISA_OP(expression) [](auto... x) { return reg::expression(x...); }
+
+// --- vfloat arithmetic: correctly rounded
+inline vfloat operator+(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(add), a, b); }
+inline vfloat operator-(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(sub), a, b); }
+inline vfloat operator*(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(mul), a, b); }
+inline vfloat operator/(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(div), a, b); }
+/// a*b + c. One rounding; two on sse4.
+inline vfloat fma(const vfloat& a, const vfloat& b, const vfloat& c) {
+    return detail::map<vfloat>(ISA_OP(fma), a, b, c);
+}
+/// a*b - c. One rounding; two on sse4.
+inline vfloat fms(const vfloat& a, const vfloat& b, const vfloat& c) {
+    return detail::map<vfloat>(ISA_OP(fms), a, b, c);
+}
+/// c - a*b. One rounding; two on sse4.
+inline vfloat fnma(const vfloat& a, const vfloat& b, const vfloat& c) {
+    return detail::map<vfloat>(ISA_OP(fnma), a, b, c);
+}
+/// a*b - p: the exact rounding error of p = a*b on every target, sse4 too (barring overflow, and underflow of the error).
+inline vfloat product_error(const vfloat& a, const vfloat& b, const vfloat& p) {
+    return detail::map<vfloat>(ISA_OP(product_error), a, b, p);
+}
+/// a < b ? a : b (b where either is NaN or both are zeros).
+inline vfloat min(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(min), a, b); }
+/// a > b ? a : b (b where either is NaN or both are zeros).
+inline vfloat max(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(max), a, b); }
+/// Correctly rounded; NaN below zero, -0 at -0.
+inline vfloat sqrt(const vfloat& a) { return detail::map<vfloat>(ISA_OP(sqrt), a); }
+/// Exact; NaN and infinities unchanged.
+inline vfloat floor(const vfloat& a) { return detail::map<vfloat>(ISA_OP(floor), a); }
+/// To the nearest integer, ties to even; exact; NaN and infinities unchanged.
+inline vfloat round_even(const vfloat& a) { return detail::map<vfloat>(ISA_OP(round_even), a); }
+/// 1/a and 1/sqrt(a) by true division and square root: one and two roundings.
+inline vfloat reciprocal(const vfloat& a) { return vfloat(1.0F) / a; }
+inline vfloat reciprocal_sqrt(const vfloat& a) { return vfloat(1.0F) / sqrt(a); }
+
+// --- vfloat comparison: false where either is NaN, except !=
+inline vmask operator<(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
+inline vmask operator<=(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(le), a, b); }
+inline vmask operator>(const vfloat& a, const vfloat& b) { return b < a; }
+inline vmask operator>=(const vfloat& a, const vfloat& b) { return b <= a; }
+inline vmask operator==(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
+
+// --- vint arithmetic: 32 bits, wraps
+inline vint operator+(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(add), a, b); }
+inline vint operator-(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(sub), a, b); }
+inline vint operator*(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(mul), a, b); }
+inline vint operator&(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_and), a, b); }
+inline vint operator|(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_or), a, b); }
+inline vint operator^(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_xor), a, b); }
+/// Shifts: counts modulo 32; >> is arithmetic.
+inline vint operator<<(const vint& a, const vint& n) { return detail::map<vint>(ISA_OP(shift_left), a, n); }
+inline vint operator>>(const vint& a, const vint& n) { return detail::map<vint>(ISA_OP(shift_right), a, n); }
+inline vint shift_right_logical(const vint& a, const vint& n) {
+    return detail::map<vint>(ISA_OP(shift_right_logical), a, n);
+}
+/// Shifts of all lanes by one constant from 0 to 31.
+inline vint operator<<(const vint& a, int n) {
+    return detail::map<vint>([n](reg::I x) { return reg::shift_left(x, n); }, a);
+}
+inline vint operator>>(const vint& a, int n) {
+    return detail::map<vint>([n](reg::I x) { return reg::shift_right(x, n); }, a);
+}
+inline vint shift_right_logical(const vint& a, int n) {
+    return detail::map<vint>([n](reg::I x) { return reg::shift_right_logical(x, n); }, a);
+}
+inline vint min(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(min), a, b); }
+inline vint max(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(max), a, b); }
+
+// --- vint comparison
+inline vmask operator<(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
+inline vmask operator>(const vint& a, const vint& b) { return b < a; }
+inline vmask operator==(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
+
+// --- masks. && and || do not exist: use & and |.
+inline vmask operator&(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_and), a, b); }
+inline vmask operator|(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_or), a, b); }
+inline vmask operator^(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_xor), a, b); }
+inline vmask operator!(const vmask& a) { return detail::map<vmask>(ISA_OP(mask_not), a); }
+inline vmask operator<=(const vint& a, const vint& b) { return !(b < a); }
+inline vmask operator>=(const vint& a, const vint& b) { return !(a < b); }
+inline vmask operator!=(const vint& a, const vint& b) { return !(a == b); }
+inline vmask operator!=(const vfloat& a, const vfloat& b) { return !(a == b); }
+vmask operator&&(const vmask&, const vmask&) = delete;
+vmask operator||(const vmask&, const vmask&) = delete;
+
+namespace detail {
+inline std::uint64_t bits(const vmask& m) { // bit i = lane i
+    std::uint64_t b = 0;
+    for (int i = 0; i < registers; ++i)
+        b |= static_cast<std::uint64_t>(reg::bits(m.r[i])) << (i * reg::lanes);
+    return b;
+}
+inline vmask from_bits(std::uint64_t b) {
+    vmask m;
+    for (int i = 0; i < registers; ++i)
+        m.r[i] = reg::from_bits(static_cast<std::uint32_t>(b >> (i * reg::lanes)));
+    return m;
+}
+inline constexpr std::uint64_t all_lanes = width == 64 ? ~0ULL : (1ULL << (width % 64)) - 1;
+} // namespace detail
+
+inline sbool any(const vmask& m) { return detail::bits(m) != 0; }
+inline sbool all(const vmask& m) { return detail::bits(m) == detail::all_lanes; }
+inline sbool none(const vmask& m) { return detail::bits(m) == 0; }
+/// Number of set lanes.
+inline sint count(const vmask& m) { return std::popcount(detail::bits(m)); }
+/// Lowest set lane; the width if there is none.
+inline sint first(const vmask& m) {
+    std::uint64_t b = detail::bits(m);
+    return b == 0 ? width : std::countr_zero(b);
+}
+/// Clears the lowest set lane, if there is one.
+inline vmask clear_first(const vmask& m) {
+    std::uint64_t b = detail::bits(m);
+    return detail::from_bits(b & (b - 1));
+}
+/// Lanes 0 ... n-1 (none for n <= 0, all for n >= width).
+inline vmask first_lanes(sint n) {
+    return detail::from_bits(n.v <= 0 ? 0 : n.v >= width ? detail::all_lanes : (1ULL << n.v) - 1);
+}
+
+/// m ? a : b.
+inline vfloat select(const vmask& m, const vfloat& a, const vfloat& b) {
+    return detail::map<vfloat>(ISA_OP(select), m, a, b);
+}
+inline vint select(const vmask& m, const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(select), m, a, b); }
+
+// --- conversion
+/// Towards zero; NaN and what does not fit give INT_MIN.
+inline vint to_int(const vfloat& a) { return detail::map<vint>(ISA_OP(to_int), a); }
+/// To nearest, ties to even.
+inline vfloat to_float(const vint& a) { return detail::map<vfloat>(ISA_OP(to_float), a); }
+/// The same 32 bits.
+inline vint as_int(const vfloat& a) { return detail::map<vint>(ISA_OP(as_int), a); }
+inline vfloat as_float(const vint& a) { return detail::map<vfloat>(ISA_OP(as_float), a); }
+/// Flips, or clears, the sign bit, of NaN too.
+inline vfloat operator-(const vfloat& a) { return as_float(as_int(a) ^ vint(std::int32_t(0x80000000U))); }
+inline vfloat abs(const vfloat& a) { return as_float(as_int(a) & vint(0x7fffffff)); }
+
+// --- across lanes
+/// 0, 1, 2, ... width-1.
+inline vint lane_index() {
+    vint r;
+    for (int i = 0; i < registers; ++i)
+        r.r[i] = reg::add(reg::iota(), reg::broadcast(std::int32_t{i * reg::lanes}));
+    return r;
+}
+namespace detail {
+template <class V, class Op> inline auto folded(V a, Op op) {
+    for (int n = registers / 2; n >= 1; n /= 2)
+        for (int i = 0; i < n; ++i)
+            a.r[i] = op(a.r[i], a.r[i + n]);
+    return a.r[0];
+}
+} // namespace detail
+/// Reductions fold lane i with lane i + n/2 for n = width, width/2, ... 2: one order on every target.
+inline sfloat reduce_add(const vfloat& a) { return reg::reduce_add(detail::folded(a, ISA_OP(add))); }
+/// By min and max above, in the same order (so a NaN in some lane may or may not reach the result).
+inline sfloat reduce_min(const vfloat& a) { return reg::reduce_min(detail::folded(a, ISA_OP(min))); }
+inline sfloat reduce_max(const vfloat& a) { return reg::reduce_max(detail::folded(a, ISA_OP(max))); }
+inline sint reduce_add(const vint& a) { return reg::reduce_add(detail::folded(a, ISA_OP(add))); }
+inline sint reduce_min(const vint& a) { return reg::reduce_min(detail::folded(a, ISA_OP(min))); }
+inline sint reduce_max(const vint& a) { return reg::reduce_max(detail::folded(a, ISA_OP(max))); }
+
+namespace detail {
+template <class T> struct lanes_of {
+    alignas(64) T v[width];
+};
+inline lanes_of<float> spread(const vfloat& a) {
+    lanes_of<float> s;
+    for (int i = 0; i < registers; ++i)
+        reg::store(s.v + i * reg::lanes, a.r[i]);
+    return s;
+}
+inline lanes_of<std::int32_t> spread(const vint& a) {
+    lanes_of<std::int32_t> s;
+    for (int i = 0; i < registers; ++i)
+        reg::store(s.v + i * reg::lanes, a.r[i]);
+    return s;
+}
+template <class V, class T> inline V collect(const lanes_of<T>& s) {
+    V a;
+    for (int i = 0; i < registers; ++i)
+        a.r[i] = reg::load(s.v + i * reg::lanes);
+    return a;
+}
+template <class V> inline V permuted(const V& a, const vint& index) {
+    auto from = spread(a);
+    V r;
+    vmask every(true);
+    for (int i = 0; i < registers; ++i)
+        r.r[i] = reg::gather(from.v, reg::bit_and(index.r[i], reg::broadcast(std::int32_t{width - 1})), every.r[i]);
+    return r;
+}
+template <class V> inline V compressed(const V& a, const vmask& m) {
+    auto from = spread(a);
+    decltype(from) to{};
+    int n = 0;
+    for (std::uint64_t b = bits(m); b != 0; b &= b - 1)
+        to.v[n++] = from.v[std::countr_zero(b)];
+    return collect<V>(to);
+}
+} // namespace detail
+/// Lane i of the result is lane index[i] (modulo the width) of a.
+inline vfloat permute(const vfloat& a, const vint& index) { return detail::permuted(a, index); }
+inline vint permute(const vint& a, const vint& index) { return detail::permuted(a, index); }
+/// The lanes of a that m names, in order, from lane 0 on; the rest are 0.
+inline vfloat compress(const vfloat& a, const vmask& m) { return detail::compressed(a, m); }
+inline vint compress(const vint& a, const vmask& m) { return detail::compressed(a, m); }
+/// One lane (modulo the width).
+inline sfloat extract(const vfloat& a, sint lane) { return detail::spread(a).v[lane.v & (width - 1)]; }
+inline sint extract(const vint& a, sint lane) { return detail::spread(a).v[lane.v & (width - 1)]; }
+
+#undef ISA_OP
+
+} // namespace ISA_NATIVE
