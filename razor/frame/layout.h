@@ -11,6 +11,8 @@
 // (design: shared points have one owner), so that neighbours agree bit for bit.
 #pragma once
 
+#include "isa/memory_types.h"
+
 #include <cstdint>
 
 namespace razor {
@@ -102,22 +104,152 @@ inline constexpr int page_kinds = 4;
 inline constexpr int curve_row = 16; // floats a row of a curve page
 
 struct ClassRecord {
-    std::int64_t base_line; // of the class's pages, relative to the first page line of the frame
+    isa::ref<Line> pages; // the class's address range
     std::int32_t control_count;
     std::int32_t corner_count;
-    std::int32_t strips;                 // strip_first(max_exponent + 1) of the mesh
-    std::int32_t first[page_kinds];      // lines from the base
-    std::int32_t stride[page_kinds];     // lines a page
-    std::int32_t padding;
+    std::int32_t strips;             // strip_first(max_exponent + 1) of the mesh
+    std::int32_t first[page_kinds];  // lines from `pages`
+    std::int32_t stride[page_kinds]; // lines a page
+};
+
+struct PageHeader {
+    isa::shared<std::int32_t> present; // 0 until the weights are there
 };
 
 // --- scene ------------------------------------------------------------------------------------------------------------
 struct MeshRecord {
-    float origin[3]; // of the mesh, relative to the scene's origin, rounded to float
+    float origin[3];   // of the mesh, relative to the scene's origin
     float edge_length; // target edge length, a power of two
     std::int32_t max_exponent;
     std::int32_t first_patch, patch_count;
     float albedo[3];
 };
+
+// --- grids: what tessellating a patch yields --------------------------------------------------------------------------
+/// Followed by words: vertices x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i); then, where the
+/// header gives an offset, cell boxes, ancestors, normals. A cell is 2 x 2 quads.
+struct alignas(line_bytes) BlockHeader {
+    float box_low[3], box_high[3]; // of the vertices, mesh coordinates
+    std::int32_t patch;
+    std::int32_t number; // of the block in its patch, row by row
+    std::int32_t mesh;
+    std::int32_t quads_u, quads_v; // 1, 2, 4 or 8
+    std::int32_t triangles;        // a quad: 2, or 1 for a flat triangle
+    std::int32_t stride;
+    std::int32_t hangs;            // any of hang[] is not 0
+    std::int32_t hang[4];          // log2 of the sub-edges of this side that lie on one flat ancestor edge
+    std::int32_t cells_at;         // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
+    std::int32_t ancestors_at;     // [side][end][xyz], for sides whose ancestor is longer than the block; 0: none
+    std::int32_t normals_at;       // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
+    isa::shared<std::int32_t> normals; // a BuildState
+    std::int32_t padding[10];
+};
+static_assert(sizeof(BlockHeader) == 128);
+inline constexpr int block_header_words = 32;
+inline constexpr int cell_boxes = 16;
+
+/// Of whatever is built on demand by one worker and used by all that share it.
+enum BuildState : std::int32_t { absent = 0, busy = 1, ready = 2 };
+
+struct OpenPatch {
+    isa::shared<std::int32_t> state; // a BuildState
+    std::int32_t first_line;         // of its first block, from Frame::grids
+    std::int32_t blocks;
+    std::int32_t block_lines; // from one block to the next
+};
+
+// --- kd-tree ----------------------------------------------------------------------------------------------------------
+enum NodeState : std::int32_t { node_unsplit = 0, node_busy = 1, node_inner = 2, node_leaf = 3 };
+struct KdNode {
+    isa::shared<std::int32_t> state; // a NodeState
+    float split;
+    std::int32_t axis; // inner: 0, 1, 2
+    std::int32_t link; // inner: index of the lower child, the upper follows; else: first line of its item list
+};
+static_assert(sizeof(KdNode) == 16);
+
+/// An item is a patch (number >= 0) or a block (~first line). The list's arrays follow: item[stride], then the boxes
+/// low x[stride], y, z, high x[stride], y, z in scene coordinates.
+struct ItemList {
+    std::int32_t count;
+    std::int32_t stride;
+    std::int32_t depth;
+    std::int32_t padding;
+    float cell_low[3], cell_high[3];
+    std::int32_t padding2[6];
+};
+static_assert(sizeof(ItemList) == line_bytes);
+inline constexpr int item_list_words = 16;
+
+struct alignas(line_bytes) TreeRecord {
+    isa::shared<std::int32_t> root_state; // a BuildState
+    std::int32_t root;
+    float low[3], high[3]; // of everything, scene coordinates
+    isa::ref<OpenPatch> patches;
+};
+
+/// What one worker allocates from: lines or nodes, counted from the base of the family.
+struct alignas(line_bytes) WorkerRecord {
+    std::int32_t grid_next, grid_end;
+    std::int32_t node_next, node_end;
+    std::int32_t list_next, list_end;
+    std::int32_t tree;
+    std::int32_t padding;
+    isa::ref<float> stack;   // traversal stack and builders' scratch
+    isa::ref<float> packets; // the rays in flight
+};
+
+// --- the frame --------------------------------------------------------------------------------------------------------
+struct alignas(line_bytes) QueueRecord {
+    isa::shared<std::int32_t> next_tile;
+    std::int32_t padding[15];
+    isa::shared<std::int32_t> next_refit;
+    std::int32_t padding2[15];
+    isa::shared<std::int32_t> refitted; // chunks done
+    std::int32_t padding3[15];
+};
+
+/// Planes of the film, one float a pixel each, in this order.
+enum FilmPlane : std::int32_t { film_beauty = 0, film_normal = 3, film_depth = 6, film_albedo = 7, film_planes = 10 };
+
+struct FrameHeader {
+    std::int32_t width, height, samples;
+    std::int32_t tiles_x, tiles;
+    std::int32_t light_samples, sky_samples;
+    std::int32_t patch_count, refit_chunks;
+    float camera[3];                         // scene coordinates
+    float film_corner[3], film_x[3], film_y[3]; // direction of the film's top left corner, and a pixel's steps
+    float light_corner[3], light_u[3], light_v[3], light_normal[3], light_radiance[3]; // radiance x area / samples
+    float sky[3];
+    float reach; // no two points of scene and camera are further apart
+    std::int32_t bounds_stride;
+    isa::ref<MeshRecord> meshes;
+    isa::ref<PatchRecord> patches;
+    isa::ref<FaceRecord> faces;
+    isa::ref<VertexRecord> vertices;
+    isa::ref<CurveRecord> curves;
+    isa::ref<std::int32_t> face_curves;
+    isa::ref<std::int32_t> controls;
+    isa::ref<float> points; // x, y, z of each control point, mesh coordinates
+    isa::ref<ClassRecord> classes;
+    isa::ref<float> bounds; // of each patch: low x[bounds_stride], y, z, high x, y, z, scene coordinates
+    isa::ref<TreeRecord> trees;
+    isa::ref<WorkerRecord> workers;
+    isa::ref<KdNode> nodes;
+    isa::ref<Line> lists;
+    isa::ref<Line> grids;
+    isa::ref<QueueRecord> queues;
+    isa::ref<float> film;
+};
+
+inline constexpr int tile_side = 16;     // pixels
+inline constexpr int refit_patches = 64; // a chunk: patches refitted by one grab of the queue (a multiple of every width)
+
+// --- scratch of a worker, in floats -----------------------------------------------------------------------------------
+inline constexpr int kd_depth_limit = 60;
+inline constexpr int mailbox_slots = 16;
+
+/// Why a kernel gave up (isa::trap).
+enum TrapCode : int { trap_grids_full = 1, trap_nodes_full = 2, trap_lists_full = 3 };
 
 } // namespace razor

@@ -1,0 +1,41 @@
+// What a worker counts: instrumentation of the host, not part of the machine.
+#pragma once
+
+#include <cstdint>
+
+namespace razor {
+
+struct Counters {
+    std::int64_t camera_rays = 0, shadow_rays = 0;
+    std::int64_t camera_packets = 0, shadow_packets = 0; // rays / (packets x width) is their utilisation
+    std::int64_t node_visits = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
+    std::int64_t nodes_split = 0, leaves = 0, nodes_made = 0; // nodes made and never split were not needed
+    std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;
+    std::int64_t normal_blocks = 0; // blocks whose normals were asked for
+    std::int64_t pages_requested = 0;
+
+    Counters& operator+=(const Counters& o);
+};
+
+/// Name and value of each counter, in order.
+template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
+    visit("camera_rays", c.camera_rays);
+    visit("shadow_rays", c.shadow_rays);
+    visit("camera_packets", c.camera_packets);
+    visit("shadow_packets", c.shadow_packets);
+    visit("node_visits", c.node_visits);
+    visit("block_tests", c.block_tests);
+    visit("cell_tests", c.cell_tests);
+    visit("quad_tests", c.quad_tests);
+    visit("nodes_split", c.nodes_split);
+    visit("leaves", c.leaves);
+    visit("nodes_made", c.nodes_made);
+    visit("patches_opened", c.patches_opened);
+    visit("blocks_made", c.blocks_made);
+    visit("vertices_made", c.vertices_made);
+    visit("triangles_made", c.triangles_made);
+    visit("normal_blocks", c.normal_blocks);
+    visit("pages_requested", c.pages_requested);
+}
+
+} // namespace razor

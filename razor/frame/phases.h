@@ -1,0 +1,20 @@
+// The phases of a frame, as reports name them.
+#pragma once
+
+namespace razor {
+
+enum Phase : int {
+    phase_animate,    // moving what is animated, refitting bounds
+    phase_build,      // kd-tree nodes and item lists
+    phase_tessellate, // patches to blocks
+    phase_shade,      // normals, materials, camera rays, shadow rays' contributions
+    phase_traverse,   // kd-tree descent
+    phase_intersect,  // blocks
+    phase_light,      // light samples
+    phase_resolve,    // the film
+    phase_count
+};
+inline constexpr const char* phase_names[phase_count] = {"animate",  "build",     "tessellate", "shade",
+                                                         "traverse", "intersect", "light",      "resolve"};
+
+} // namespace razor
