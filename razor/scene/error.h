@@ -8,7 +8,7 @@ namespace razor {
 
 /// what() is one line: file (and line or key), cause, mend. Programs print "razor: <what>" and exit with 2.
 class UserError : public std::runtime_error {
-  public:
+public:
     using std::runtime_error::runtime_error;
 };
 

@@ -17,7 +17,14 @@ enum class BoundaryInterpolation : std::uint8_t { none, edge_only, edge_and_corn
 enum class CreaseMethod : std::uint8_t { normal, chaikin };
 enum class TriangleSubdivision : std::uint8_t { catmull_clark, smooth };
 /// OpenSubdiv's Sdc::Options::FVarLinearInterpolation, in its order.
-enum class FaceVaryingInterpolation : std::uint8_t { none, corners_only, corners_plus1, corners_plus2, boundaries, all };
+enum class FaceVaryingInterpolation : std::uint8_t {
+    none,
+    corners_only,
+    corners_plus1,
+    corners_plus2,
+    boundaries,
+    all
+};
 
 /// Sharpness of 10 and above is infinitely sharp (OpenSubdiv).
 inline constexpr float infinite_sharpness = 10.0F;
@@ -36,14 +43,15 @@ struct Material {
     glm::vec3 albedo{0.7F, 0.7F, 0.7F}; // linear, in [0, 1]
 };
 
-/// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face has 3 or more
-/// distinct corners; every index in range; points finite.
+/// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face
+/// has 3 or more distinct corners; every index in range; points finite.
 struct Mesh {
     std::string name;
     Scheme scheme = Scheme::catmull_clark;
     std::vector<glm::dvec3> points;
-    std::vector<int> face_sizes;     // corners of each face
-    std::vector<int> face_vertices;  // point indices, concatenated over faces, counter-clockwise seen from outside
+    std::vector<int> face_sizes; // corners of each face
+    std::vector<int>
+        face_vertices; // point indices, concatenated over faces, counter-clockwise seen from outside
     std::vector<glm::vec2> texcoords;
     std::vector<int> face_texcoords; // per corner like face_vertices, or empty: no texture coordinates
     std::vector<Crease> creases;
@@ -54,7 +62,8 @@ struct Mesh {
     CreaseMethod crease_method = CreaseMethod::normal;
     TriangleSubdivision triangles = TriangleSubdivision::catmull_clark;
     int material = 0; // index into Scene::materials
-    /// Target edge length in world units. 0: from the camera (settings.edge_pixels). Rounded to a power of two when used.
+    /// Target edge length in world units. 0: from the camera (settings.edge_pixels). Rounded to a power of
+    /// two when used.
     double edge_length = 0;
 };
 

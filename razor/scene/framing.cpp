@@ -1,0 +1,188 @@
+#include "razor/scene/framing.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/obj_reader.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace razor {
+namespace {
+
+constexpr double azimuth_degrees = 32;   // of the camera, from +z towards +x
+constexpr double elevation_degrees = 17; // of the camera above the horizon
+constexpr double fov_degrees = 30;
+constexpr double margin = 1.06; // free room around the model
+
+struct Extent {
+    glm::dvec3 centre{0};
+    double radius = 1; // half the bounding box's diagonal; positive even for a single point
+    double lowest = 0;
+};
+
+/// The points of a mesh that faces use, where the scene has them.
+std::vector<glm::dvec3> used_points(const MeshDescription& mesh) {
+    std::vector<bool> used(mesh.cage->points.size());
+    for (const int corner : mesh.cage->face_vertices) {
+        used[static_cast<std::size_t>(corner)] = true;
+    }
+    const std::vector<glm::dvec3> placed = placed_points(mesh);
+    std::vector<glm::dvec3> points;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        if (used[i]) {
+            points.push_back(placed[i]);
+        }
+    }
+    return points;
+}
+
+std::vector<glm::dvec3> used_points(const SceneDescription& scene) {
+    std::vector<glm::dvec3> points;
+    for (const MeshDescription& mesh : scene.meshes) {
+        const std::vector<glm::dvec3> of_mesh = used_points(mesh);
+        points.insert(points.end(), of_mesh.begin(), of_mesh.end());
+    }
+    return points;
+}
+
+Extent extent_of(const std::vector<glm::dvec3>& points) {
+    if (points.empty()) {
+        return {};
+    }
+    glm::dvec3 least = points.front();
+    glm::dvec3 most = points.front();
+    for (const glm::dvec3& p : points) {
+        least = glm::min(least, p);
+        most = glm::max(most, p);
+    }
+    // Halves first: the difference of two large numbers may overflow.
+    const glm::dvec3 half = 0.5 * most - 0.5 * least;
+    Extent extent{0.5 * least + 0.5 * most, std::hypot(half.x, half.y, half.z), least.y};
+    const double reach =
+        std::max({std::abs(extent.centre.x), std::abs(extent.centre.y), std::abs(extent.centre.z)});
+    if (extent.radius <= 1e-12 * reach || extent.radius == 0) { // a point, as far as numbers can tell
+        extent.radius = reach > 0 ? 1e-6 * reach : 1;
+    }
+    return extent;
+}
+
+glm::dvec3 camera_direction() {
+    const double azimuth = glm::radians(azimuth_degrees);
+    const double elevation = glm::radians(elevation_degrees);
+    return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+            std::cos(elevation) * std::cos(azimuth)};
+}
+
+Camera camera_for(const std::vector<glm::dvec3>& points, const Settings& settings) {
+    const Extent extent = extent_of(points);
+    const glm::dvec3 towards = camera_direction();
+    const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), towards));
+    const glm::dvec3 up = glm::cross(towards, right);
+    const double half_height = std::tan(glm::radians(0.5 * fov_degrees)) / margin;
+    const double half_width = half_height * settings.width / settings.height;
+    double distance = 0.2 * extent.radius;
+    for (const glm::dvec3& p : points) {
+        const glm::dvec3 from_centre = p - extent.centre;
+        const double ahead = glm::dot(from_centre, towards);
+        distance = std::max({distance, ahead + std::abs(glm::dot(from_centre, right)) / half_width,
+                             ahead + std::abs(glm::dot(from_centre, up)) / half_height});
+    }
+    Camera camera;
+    camera.target = extent.centre;
+    camera.position = extent.centre + distance * towards;
+    camera.fov_degrees = fov_degrees;
+    return camera;
+}
+
+/// A rectangle three radii away at the upper left of the camera, facing the centre.
+RectangleLight light_for(const Extent& extent) {
+    const glm::dvec3 towards = camera_direction();
+    const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), towards));
+    const glm::dvec3 from = glm::normalize(glm::dvec3(0, 1.15, 0) - 0.75 * right + 0.55 * towards);
+    const double side = 2 * extent.radius;
+    const glm::dvec3 across = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), from));
+    RectangleLight light;
+    light.edge_u = side * across;
+    light.edge_v = side * glm::cross(across, from); // u x v points from the light to the centre
+    light.corner = extent.centre + 3.0 * extent.radius * from - 0.5 * light.edge_u - 0.5 * light.edge_v;
+    light.radiance = glm::vec3(5.6F, 5.3F, 4.9F);
+    return light;
+}
+
+constexpr glm::vec3 sky_radiance{0.36F, 0.40F, 0.46F};
+
+/// 2^-k that brings `radius` to about 1, or 1 where it is of ordinary size already.
+double scale_for(double radius) {
+    if (radius >= 1e-3 && radius <= 1e6) {
+        return 1;
+    }
+    return std::ldexp(1.0, -std::clamp(std::ilogb(radius), -99, 99));
+}
+
+MeshDescription floor_under(const Extent& extent) {
+    MeshDescription floor;
+    floor.name = "floor";
+    floor.shape = "plane";
+    const double side = 300 * extent.radius;
+    floor.parameters = {{"width", side}, {"depth", side}, {"columns", 1}, {"rows", 1}};
+    floor.scheme = Scheme::bilinear;
+    floor.material = "floor";
+    // Slightly below: a flat model must not lie in the floor.
+    floor.translate = {extent.centre.x, extent.lowest - 2e-3 * extent.radius, extent.centre.z};
+    load_cage(floor);
+    return floor;
+}
+
+} // namespace
+
+SceneDescription frame_model(const std::filesystem::path& path, const FramingOptions& options) {
+    SceneDescription scene;
+    scene.settings = options.settings;
+    MeshDescription model;
+    model.file = std::filesystem::absolute(path).lexically_normal().string();
+    model.cage = std::make_shared<const Mesh>(read_obj(path));
+    model.name = model.cage->name;
+    model.scheme = options.scheme;
+    model.material = "model";
+    scene.name = model.name;
+    scene.materials = {{"model", {0.72F, 0.66F, 0.60F}}};
+    if (options.up == Up::z) {
+        model.rotate.x = -90;
+    }
+    for (const glm::dvec3& p : model.cage->points) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(p[axis]) > 1e30) {
+                throw UserError(fmt::format("{}: a coordinate of {} is beyond 1e30; scale the model down",
+                                            printable(path.string(), 1000), p[axis]));
+            }
+        }
+    }
+    model.scale = glm::dvec3(scale_for(extent_of(used_points(model)).radius));
+    const Extent extent = extent_of(used_points(model));
+    scene.meshes.push_back(std::move(model));
+    place_camera(scene);
+    place_light_and_sky(scene);
+    if (options.floor) {
+        scene.materials.push_back({"floor", {0.50F, 0.49F, 0.48F}});
+        scene.meshes.push_back(floor_under(extent));
+    }
+    return scene;
+}
+
+void place_camera(SceneDescription& scene) {
+    scene.camera = camera_for(used_points(scene), scene.settings);
+}
+
+void place_light_and_sky(SceneDescription& scene) {
+    scene.lights = {light_for(extent_of(used_points(scene)))};
+    scene.sky = sky_radiance;
+}
+
+} // namespace razor

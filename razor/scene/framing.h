@@ -1,0 +1,33 @@
+// Camera, light and ground for models that come without.
+#pragma once
+
+#include "razor/scene/description.h"
+
+#include <filesystem>
+
+namespace razor {
+
+/// Which axis of a model file points up.
+enum class Up : std::uint8_t { y, z };
+
+struct FramingOptions {
+    Up up = Up::y;
+    bool floor = true; // a wide flat rectangle under the model
+    Scheme scheme = Scheme::catmull_clark;
+    Settings settings; // the picture's shape decides how far the camera stands away
+};
+
+/// A scene of one OBJ model: turned y up, seen from slightly above and from the right, lit by a rectangle at
+/// the upper left and a constant sky, on a floor. Models smaller than 1/1000 or larger than a million units
+/// are scaled by a power of two to about one unit, so that squares stay in single precision; lengths such as
+/// depth are then in scaled units. Throws UserError where the file cannot be read or its coordinates exceed
+/// 1e30.
+SceneDescription frame_model(const std::filesystem::path& path, const FramingOptions& options);
+
+/// Places the camera so that all faces of all meshes are in the picture.
+void place_camera(SceneDescription& scene);
+
+/// Replaces the lights and the sky by ones that suit the meshes' extent and the camera's direction.
+void place_light_and_sky(SceneDescription& scene);
+
+} // namespace razor

@@ -1,0 +1,211 @@
+#include "razor/scene/scene_file.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/framing.h"
+#include "razor/scene/nearest.h"
+#include "razor/scene/ranges.h"
+#include "razor/scene/shapes/shapes.h"
+#include "razor/scene/text_file.h"
+#include "razor/scene/toml_table.h"
+#include "razor/scene/words.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace razor {
+namespace {
+
+constexpr Range coordinates{-1e30, 1e30};
+constexpr Range radiances{0, 1e9};
+
+void check_names(const std::vector<std::string>& names, std::string_view name, const TomlTable& table) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+        table.fail("name", fmt::format("the name '{}' is used twice; choose another", printable(name)));
+    }
+}
+
+Settings read_settings(TomlTable table) {
+    Settings settings;
+    const auto [width, height] = table.whole_pair("size", {settings.width, settings.height}, size_range);
+    settings.width = width;
+    settings.height = height;
+    settings.samples = table.whole("samples", settings.samples, samples_range);
+    settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
+    settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
+    settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
+    table.finish();
+    return settings;
+}
+
+Camera read_camera(TomlTable table) {
+    Camera camera;
+    camera.position = table.vector("position", camera.position, coordinates);
+    camera.target = table.vector("target", camera.target, coordinates);
+    camera.up = table.vector("up", camera.up, coordinates);
+    camera.fov_degrees = table.number("fov", camera.fov_degrees, {1e-3, 179});
+    table.finish();
+    if (camera.position == camera.target) {
+        table.fail("position", "camera.position equals camera.target; move one of them");
+    }
+    const glm::dvec3 view = glm::normalize(camera.target - camera.position);
+    if (camera.up == glm::dvec3(0) || glm::length(glm::cross(view, glm::normalize(camera.up))) < 1e-9) {
+        table.fail("up", "camera.up is zero or along the line of sight; turn it");
+    }
+    return camera;
+}
+
+RectangleLight read_light(TomlTable table) {
+    RectangleLight light;
+    light.corner = table.vector("corner", light.corner, coordinates);
+    light.edge_u = table.vector("edge_u", light.edge_u, coordinates);
+    light.edge_v = table.vector("edge_v", light.edge_v, coordinates);
+    light.radiance = glm::vec3(table.vector_or_number("radiance", glm::dvec3(light.radiance), radiances));
+    table.finish();
+    if (light.edge_u == glm::dvec3(0) || light.edge_v == glm::dvec3(0) ||
+        glm::length(glm::cross(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) < 1e-9) {
+        table.fail("edge_u", "light.edge_u and light.edge_v span no rectangle; make both long and turn one");
+    }
+    if (std::abs(glm::dot(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) > 1e-6) {
+        table.fail("edge_v", "light.edge_u and light.edge_v are not at right angles; turn one");
+    }
+    return light;
+}
+
+Material read_material(TomlTable table) {
+    Material material;
+    material.name = table.text("name", "");
+    material.albedo = glm::vec3(table.vector_or_number("albedo", glm::dvec3(material.albedo), {0, 1}));
+    table.finish();
+    if (material.name.empty()) {
+        table.fail("name", "a material without a name; write name = \"...\"");
+    }
+    return material;
+}
+
+void read_shape(TomlTable& table, MeshDescription& mesh) {
+    std::vector<std::string_view> names;
+    for (const ShapeKind& kind : shape_kinds()) {
+        names.push_back(kind.name);
+    }
+    const ShapeKind& kind = shape_kinds()[table.choice("shape", 0, names)];
+    mesh.shape = std::string(kind.name);
+    TomlTable parameters = table.table("parameters");
+    for (const ShapeParameter& parameter : kind.parameters) {
+        const Range range{parameter.least, parameter.most};
+        mesh.parameters.emplace_back(
+            parameter.name, parameter.whole
+                                ? parameters.whole(parameter.name, static_cast<int>(parameter.preset), range)
+                                : parameters.number(parameter.name, parameter.preset, range));
+    }
+    parameters.finish();
+}
+
+MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
+                          const std::filesystem::path& folder) {
+    MeshDescription mesh;
+    mesh.name = table.text("name", "");
+    const std::string file = table.text("file", "");
+    if (table.has("file") == table.has("shape")) {
+        table.fail("shape", "a mesh needs either file = \"model.obj\" or shape = \"...\"; write one of them");
+    }
+    if (table.has("shape")) {
+        read_shape(table, mesh);
+    } else {
+        table.may_have("shape");
+        mesh.file = std::filesystem::absolute(folder / file).lexically_normal().string();
+    }
+    std::array<std::string_view, scheme_words.size()> schemes;
+    std::transform(scheme_words.begin(), scheme_words.end(), schemes.begin(),
+                   [](const auto& word) { return word.first; });
+    mesh.scheme = scheme_words[table.choice("scheme", 0, schemes)].second;
+    mesh.scale = table.vector_or_number("scale", mesh.scale, {1e-30, 1e30});
+    mesh.rotate = table.vector("rotate", mesh.rotate, {-1e6, 1e6});
+    mesh.translate = table.vector("translate", mesh.translate, coordinates);
+    mesh.edge_length = table.number("edge_length", mesh.edge_length, {0, 1e30});
+
+    std::vector<std::string_view> names;
+    for (const Material& material : materials) {
+        names.push_back(material.name);
+    }
+    mesh.material = std::string(names[table.choice("material", 0, names)]);
+    table.finish();
+    try {
+        if (table.has("file") && file.empty()) {
+            throw UserError("the file name is empty; give an OBJ file");
+        }
+        load_cage(mesh);
+    } catch (const UserError& error) {
+        table.fail(table.has("file") ? "file" : "shape", error.what());
+    }
+    if (mesh.name.empty()) {
+        mesh.name = mesh.file.empty() ? mesh.shape : mesh.cage->name;
+    }
+    return mesh;
+}
+
+SceneDescription read_scene(TomlTable root, std::string_view file_name, const std::filesystem::path& folder) {
+    SceneDescription scene;
+    scene.name = root.text("name", std::filesystem::path(file_name).stem().string());
+    scene.settings = read_settings(root.table("settings"));
+    TomlTable camera = root.table("camera");
+    TomlTable sky = root.table("sky");
+    scene.sky = glm::vec3(sky.vector_or_number("radiance", glm::dvec3(scene.sky), radiances));
+    sky.finish();
+    for (TomlTable& light : root.tables("light")) {
+        if (!scene.lights.empty()) {
+            light.fail("", "a second light; one rectangle is possible for now, remove the others");
+        }
+        scene.lights.push_back(read_light(std::move(light)));
+    }
+    std::vector<std::string> names;
+    for (TomlTable& table : root.tables("material")) {
+        scene.materials.push_back(read_material(table));
+        check_names(names, scene.materials.back().name, table);
+        names.push_back(scene.materials.back().name);
+    }
+    if (scene.materials.empty()) {
+        scene.materials.push_back({.name = "default", .albedo = Material{}.albedo});
+    }
+    for (TomlTable& mesh : root.tables("mesh")) {
+        scene.meshes.push_back(read_mesh(std::move(mesh), scene.materials, folder));
+    }
+    root.finish();
+    if (scene.meshes.empty()) {
+        root.fail("mesh", "no meshes; write at least one [[mesh]]");
+    }
+    if (camera.stated()) {
+        scene.camera = read_camera(std::move(camera));
+    } else {
+        place_camera(scene);
+    }
+    if (scene.lights.empty() && !sky.stated()) {
+        place_light_and_sky(scene);
+    }
+    return scene;
+}
+
+} // namespace
+
+SceneDescription read_scene_file(const std::filesystem::path& path) {
+    return parse_scene_file(read_text_file(path, "a scene file"), path.string(), path.parent_path());
+}
+
+SceneDescription parse_scene_file(std::string_view text, std::string_view file_name,
+                                  const std::filesystem::path& folder) {
+    try {
+        const toml::table table = toml::parse(text, std::string_view(file_name));
+        return read_scene(TomlTable(&table, "", file_name), file_name, folder);
+    } catch (const toml::parse_error& error) {
+        fail_at(file_name, error.source(),
+                fmt::format("not valid TOML: {}", printable(error.description(), 300)));
+    }
+}
+
+Scene load_scene(const std::filesystem::path& path) {
+    return build_scene(path.extension() == ".toml" ? read_scene_file(path) : frame_model(path, {}));
+}
+
+} // namespace razor

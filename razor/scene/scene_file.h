@@ -1,0 +1,25 @@
+// Scene files in TOML. All keys and their defaults: configs/scenes/default.toml, or --print-config.
+//
+// Where a file states no camera, one is placed to see all meshes; where it states neither light nor sky, both
+// are chosen (razor/scene/framing.h).
+#pragma once
+
+#include "razor/scene/description.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace razor {
+
+/// Reads a scene file. Throws UserError: `file:line:column: cause; mend`.
+SceneDescription read_scene_file(const std::filesystem::path& path);
+
+/// The same from text. `file_name` is used in messages; relative mesh files start from `folder`.
+SceneDescription parse_scene_file(std::string_view text, std::string_view file_name,
+                                  const std::filesystem::path& folder);
+
+/// What `path` holds by its extension: .toml is a scene file, .obj a bare model, framed and lit by itself (y
+/// up).
+Scene load_scene(const std::filesystem::path& path);
+
+} // namespace razor

@@ -1,0 +1,225 @@
+#include "razor/scene/toml_table.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/nearest.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace razor {
+namespace {
+
+std::string_view type_name(const toml::node& node) {
+    switch (node.type()) {
+    case toml::node_type::table:
+        return "a table";
+    case toml::node_type::array:
+        return "an array";
+    case toml::node_type::string:
+        return "text";
+    case toml::node_type::integer:
+        return "a whole number";
+    case toml::node_type::floating_point:
+        return "a number";
+    case toml::node_type::boolean:
+        return "true or false";
+    default:
+        return "a date or time";
+    }
+}
+
+std::string described(const toml::node& node) {
+    const toml::array* const array = node.as_array();
+    return array == nullptr ? std::string(type_name(node)) : fmt::format("an array of {}", array->size());
+}
+
+} // namespace
+
+void fail_at(std::string_view file_name, const toml::source_region& where, std::string_view message) {
+    throw UserError(fmt::format("{}:{}:{}: {}", printable(file_name, 1000), where.begin.line,
+                                where.begin.column, message));
+}
+
+TomlTable::TomlTable(const toml::table* table, std::string_view name, std::string_view file_name)
+    : table_(table), name_(name), file_name_(file_name) {}
+
+bool TomlTable::has(std::string_view key) const {
+    return table_ != nullptr && table_->contains(key);
+}
+
+const toml::node* TomlTable::find(std::string_view key) {
+    asked_.emplace_back(key);
+    return table_ == nullptr ? nullptr : table_->get(key);
+}
+
+std::string TomlTable::full(std::string_view key) const {
+    return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
+}
+
+double TomlTable::checked(const toml::node& node, std::string_view what, Range range) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value) {
+        fail_at(file_name_, node.source(),
+                fmt::format("{} is {}; write a number from {} to {}", what, type_name(node), range.least,
+                            range.most));
+    }
+    if (!(*value >= range.least && *value <= range.most)) {
+        fail_at(file_name_, node.source(),
+                fmt::format("{} = {} is out of range; write a number from {} to {}", what, *value,
+                            range.least, range.most));
+    }
+    return *value;
+}
+
+double TomlTable::number(std::string_view key, double preset, Range range) {
+    const toml::node* const node = find(key);
+    return node == nullptr ? preset : checked(*node, full(key), range);
+}
+
+int TomlTable::checked_whole(const toml::node& node, std::string_view what, Range range) const {
+    if (!node.is_integer()) {
+        fail_at(file_name_, node.source(),
+                fmt::format("{} is {}; write a whole number from {} to {}", what, type_name(node),
+                            range.least, range.most));
+    }
+    return static_cast<int>(checked(node, what, range));
+}
+
+int TomlTable::whole(std::string_view key, int preset, Range range) {
+    const toml::node* const node = find(key);
+    return node == nullptr ? preset : checked_whole(*node, full(key), range);
+}
+
+std::pair<int, int> TomlTable::whole_pair(std::string_view key, std::pair<int, int> preset, Range range) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return preset;
+    }
+    const toml::array* const array = node->as_array();
+    if (array == nullptr || array->size() != 2) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write two whole numbers [a, b]", full(key), described(*node)));
+    }
+    return {checked_whole((*array)[0], full(key), range), checked_whole((*array)[1], full(key), range)};
+}
+
+std::string TomlTable::text(std::string_view key, std::string_view preset) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return std::string(preset);
+    }
+    if (!node->is_string()) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write text in quotes", full(key), type_name(*node)));
+    }
+    return node->as_string()->get();
+}
+
+glm::dvec3 TomlTable::vector(std::string_view key, const glm::dvec3& preset, Range range) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return preset;
+    }
+    const toml::array* const array = node->as_array();
+    if (array == nullptr || array->size() != 3) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write three numbers [a, b, c]", full(key), described(*node)));
+    }
+    glm::dvec3 result;
+    for (int i = 0; i < 3; ++i) {
+        result[i] = checked((*array)[static_cast<std::size_t>(i)], full(key), range);
+    }
+    return result;
+}
+
+glm::dvec3 TomlTable::vector_or_number(std::string_view key, const glm::dvec3& preset, Range range) {
+    if (table_ != nullptr && table_->contains(key) && table_->get(key)->is_number()) {
+        return glm::dvec3(number(key, 0, range));
+    }
+    return vector(key, preset, range);
+}
+
+std::size_t TomlTable::choice(std::string_view key, std::size_t preset,
+                              std::span<const std::string_view> words) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return preset;
+    }
+    const std::string list = fmt::format("{}", fmt::join(words, ", "));
+    if (!node->is_string()) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write one of: {}", full(key), type_name(*node), list));
+    }
+    const std::string& word = node->as_string()->get();
+    const auto found = std::find(words.begin(), words.end(), word);
+    if (found == words.end()) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} '{}' is unknown; did you mean '{}'? Known: {}", full(key), printable(word),
+                            nearest(word, words), list));
+    }
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+TomlTable TomlTable::table(std::string_view key) {
+    const toml::node* const node = find(key);
+    if (node != nullptr && !node->is_table()) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write a table [{}]", full(key), type_name(*node), full(key)));
+    }
+    return {node == nullptr ? nullptr : node->as_table(), full(key), file_name_};
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+    std::vector<TomlTable> result;
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return result;
+    }
+    const toml::array* const array = node->as_array();
+    if (array == nullptr) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write [[{}]]", full(key), type_name(*node), full(key)));
+    }
+    for (const toml::node& entry : *array) {
+        if (!entry.is_table()) {
+            fail_at(file_name_, entry.source(),
+                    fmt::format("{} holds {}; write [[{}]]", full(key), type_name(entry), full(key)));
+        }
+        result.emplace_back(entry.as_table(), full(key), file_name_);
+    }
+    return result;
+}
+
+void TomlTable::finish() const {
+    if (table_ == nullptr) {
+        return;
+    }
+    const std::vector<std::string_view> known(asked_.begin(), asked_.end());
+    const toml::key* first = nullptr; // in the order of the file, not of the alphabet
+    for (auto&& [key, value] : *table_) {
+        if (std::find(known.begin(), known.end(), key.str()) == known.end() &&
+            (first == nullptr || key.source().begin < first->source().begin)) {
+            first = &key;
+        }
+    }
+    if (first != nullptr) {
+        fail_at(file_name_, first->source(),
+                fmt::format("unknown key '{}'; did you mean '{}'? Known: {}",
+                            printable(full(first->str()), 80), nearest(first->str(), known),
+                            fmt::join(known, ", ")));
+    }
+}
+
+void TomlTable::fail(std::string_view key, std::string_view message) const {
+    if (has(key)) {
+        fail_at(file_name_, table_->get(key)->source(), message);
+    }
+    if (table_ != nullptr) {
+        fail_at(file_name_, table_->source(), message);
+    }
+    throw UserError(fmt::format("{}: {}", printable(file_name_, 1000), message));
+}
+
+} // namespace razor
