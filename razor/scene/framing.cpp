@@ -112,7 +112,7 @@ RectangleLight light_for(const Extent& extent) {
     light.edge_u = side * across;
     light.edge_v = side * glm::cross(across, from); // u x v points from the light to the centre
     light.corner = extent.centre + 3.0 * extent.radius * from - 0.5 * light.edge_u - 0.5 * light.edge_v;
-    light.radiance = glm::vec3(5.6F, 5.3F, 4.9F);
+    light.radiance = glm::vec3(8.0F, 7.5F, 6.8F);
     return light;
 }
 

@@ -1,0 +1,119 @@
+#include "razor/image/exr.h"
+
+#include "razor/image/output_file.h"
+#include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace razor {
+namespace {
+
+/// Lets OpenEXR write through an OutputFile, so that a full disk is noticed.
+class OutputStream : public Imf::OStream {
+public:
+    OutputStream(OutputFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
+    void write(const char bytes[], int count) override {
+        file_.write(bytes, static_cast<std::size_t>(count));
+    }
+    std::uint64_t tellp() override { return file_.position(); }
+    void seekp(std::uint64_t position) override { file_.seek(position); }
+
+private:
+    OutputFile& file_;
+};
+
+constexpr std::size_t pixel_bytes = sizeof(float);
+
+/// A view of a plane; OpenEXR wants a non-const pointer for reading and writing alike.
+Imf::Slice slice_of(const float* values, int x, int y, std::size_t width) {
+    const std::size_t row_bytes = pixel_bytes * width;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
+    return Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(values), {x, y}, static_cast<std::int64_t>(width),
+                            1, pixel_bytes, row_bytes);
+}
+
+} // namespace
+
+void write_exr(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes) {
+    OutputFile file(path);
+    try {
+        Imf::Header header(film.width, film.height);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        Imf::FrameBuffer pixels;
+        for (const Plane& plane : film.planes) {
+            header.channels().insert(plane.name, Imf::Channel(Imf::FLOAT));
+            pixels.insert(plane.name,
+                          slice_of(plane.values.data(), 0, 0, static_cast<std::size_t>(film.width)));
+        }
+        for (const auto& [name, value] : attributes) {
+            header.insert(name, Imf::StringAttribute(value));
+        }
+        {
+            OutputStream stream(file, path.string());
+            Imf::OutputFile exr(stream, header, 0);
+            exr.setFrameBuffer(pixels);
+            exr.writePixels(film.height);
+        }
+        file.commit();
+    } catch (const UserError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw UserError(fmt::format("{}: cannot be written ({}); choose another place",
+                                    printable(path.string(), 1000), printable(error.what(), 300)));
+    }
+}
+
+Film read_exr(const std::filesystem::path& path, ImageAttributes* attributes) {
+    const std::string name = printable(path.string(), 1000);
+    if (!std::filesystem::is_regular_file(path)) {
+        throw UserError(fmt::format("{}: no such file; give an OpenEXR picture", name));
+    }
+    try {
+        Imf::InputFile exr(path.c_str(), 0);
+        const Imf::Header& header = exr.header();
+        const auto window = header.dataWindow();
+        const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+        const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+        if (width > 65536 || height > 65536) {
+            throw UserError(
+                fmt::format("{}: {} x {} pixels are too many; give a smaller picture", name, width, height));
+        }
+        Film film(static_cast<int>(width), static_cast<int>(height));
+        Imf::FrameBuffer pixels;
+        for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+            if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
+                throw UserError(fmt::format("{}: channel {} is subsampled, which is not read; convert it",
+                                            name, printable(channel.name())));
+            }
+            const Plane& plane = film.add(channel.name());
+            pixels.insert(plane.name, slice_of(plane.values.data(), window.min.x, window.min.y,
+                                               static_cast<std::size_t>(width)));
+        }
+        exr.setFrameBuffer(pixels);
+        exr.readPixels(window.min.y, window.max.y);
+        for (auto at = header.begin(); attributes != nullptr && at != header.end(); ++at) {
+            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute())) {
+                attributes->emplace_back(at.name(), text->value());
+            }
+        }
+        return film;
+    } catch (const UserError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw UserError(fmt::format("{}: not a readable OpenEXR picture ({}); give another", name,
+                                    printable(error.what(), 300)));
+    }
+}
+
+} // namespace razor

@@ -1,0 +1,18 @@
+// OpenEXR pictures: one file, all planes as 32-bit float channels, ZIP-compressed, text attributes in the
+// header.
+#pragma once
+
+#include "razor/image/image.h"
+
+#include <filesystem>
+
+namespace razor {
+
+/// Writes all planes; the file is whole or not there. Throws UserError where it cannot be written.
+void write_exr(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes = {});
+
+/// Reads all channels as floats, in the file's (alphabetical) order; `attributes`, if given, receives the
+/// text attributes. Throws UserError where the file is none or damaged.
+Film read_exr(const std::filesystem::path& path, ImageAttributes* attributes = nullptr);
+
+} // namespace razor

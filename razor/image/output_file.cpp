@@ -1,0 +1,105 @@
+#include "razor/image/output_file.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <system_error>
+#include <unistd.h>
+
+namespace razor {
+namespace {
+
+std::string reason() {
+    return std::generic_category().message(errno);
+}
+
+} // namespace
+
+OutputFile::OutputFile(const std::filesystem::path& path) {
+    std::error_code error;
+    // A link stays a link: what it names is replaced.
+    path_ = std::filesystem::is_symlink(path, error) ? std::filesystem::weakly_canonical(path, error) : path;
+    temporary_ = path_;
+    temporary_.replace_filename(fmt::format(".{}.{}.tmp", path_.filename().string(), ::getpid()));
+    file_ = std::fopen(temporary_.c_str(), "wbx");
+    if (file_ == nullptr && errno == EEXIST) { // left by a killed process of the same number
+        std::filesystem::remove(temporary_, error);
+        file_ = std::fopen(temporary_.c_str(), "wbx");
+    }
+    if (file_ == nullptr) {
+        fail("cannot be written");
+    }
+}
+
+OutputFile::~OutputFile() {
+    if (file_ != nullptr) {
+        std::fclose(file_);
+        std::error_code error;
+        std::filesystem::remove(temporary_, error);
+    }
+}
+
+void OutputFile::write(const void* bytes, std::size_t count) {
+    if (std::fwrite(bytes, 1, count, file_) != count) {
+        fail("cannot be written");
+    }
+}
+
+void OutputFile::seek(std::uint64_t position) {
+    if (std::fseek(file_, static_cast<long>(position), SEEK_SET) != 0) {
+        fail("cannot be written");
+    }
+}
+
+std::uint64_t OutputFile::position() {
+    return static_cast<std::uint64_t>(std::ftell(file_));
+}
+
+void OutputFile::commit() {
+    if (std::fflush(file_) != 0) {
+        fail("cannot be written");
+    }
+    const int closed = std::fclose(file_);
+    file_ = nullptr;
+    if (closed != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+        const std::string cause = reason();
+        std::error_code error;
+        std::filesystem::remove(temporary_, error);
+        throw UserError(fmt::format("{}: cannot be written ({}); choose another place",
+                                    printable(path_.string(), 1000), cause));
+    }
+}
+
+void OutputFile::fail(std::string_view action) const {
+    throw UserError(
+        fmt::format("{}: {} ({}); choose another place", printable(path_.string(), 1000), action, reason()));
+}
+
+void check_writable(const std::filesystem::path& path) {
+    const std::string name = printable(path.string(), 1000);
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::directory || !path.has_filename()) {
+        throw UserError(fmt::format("{}: is a directory; name a file in it", name));
+    }
+    if (std::filesystem::exists(status) && status.type() != std::filesystem::file_type::regular) {
+        throw UserError(fmt::format("{}: is not a regular file; choose another name", name));
+    }
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder, error)) {
+        throw UserError(
+            fmt::format("{}: no folder {}; make it first", name, printable(folder.string(), 1000)));
+    }
+    const OutputFile attempt(path); // removed again
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text) {
+    OutputFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+}
+
+} // namespace razor

@@ -1,0 +1,40 @@
+// Output files that are whole or not there: written under a temporary name in the same folder, then renamed.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace razor {
+
+class OutputFile {
+public:
+    /// Opens a temporary file beside `path`. Throws UserError where that is impossible.
+    explicit OutputFile(const std::filesystem::path& path);
+    /// Removes the temporary file unless it was committed.
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    void write(const void* bytes, std::size_t count);
+    void seek(std::uint64_t position);
+    std::uint64_t position();
+    /// Closes the file and gives it its name. Throws UserError, for example where the disk is full.
+    void commit();
+
+private:
+    [[noreturn]] void fail(std::string_view action) const;
+
+    std::filesystem::path path_, temporary_;
+    std::FILE* file_ = nullptr;
+};
+
+/// Throws UserError if a file could not be written to `path` later: wrong kind of file, no such folder, no
+/// permission.
+void check_writable(const std::filesystem::path& path);
+
+/// Writes a text file, whole or not at all.
+void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+} // namespace razor
