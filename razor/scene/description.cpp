@@ -130,8 +130,8 @@ std::string to_toml(const SceneDescription& description) {
     const Settings& settings = description.settings;
     fmt::format_to(
         out, "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples = {}\n",
-        toml_text(description.name), settings.width, settings.height, settings.samples, settings.light_samples,
-        settings.sky_samples);
+        toml_text(description.name), settings.width, settings.height, settings.samples,
+        settings.light_samples, settings.sky_samples);
     fmt::format_to(out, "edge_pixels = {}\n", number(settings.edge_pixels));
     const Camera& camera = description.camera;
     fmt::format_to(out, "\n[camera]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n",

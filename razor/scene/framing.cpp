@@ -67,8 +67,8 @@ Extent extent_of(const std::vector<glm::dvec3>& points) {
     Extent extent{0.5 * least + 0.5 * most, std::hypot(half.x, half.y, half.z), least.y};
     const double reach =
         std::max({std::abs(extent.centre.x), std::abs(extent.centre.y), std::abs(extent.centre.z)});
-    if (extent.radius <= 1e-12 * reach || extent.radius == 0) { // a point, as far as numbers can tell
-        extent.radius = reach > 0 ? 1e-6 * reach : 1;
+    if (extent.radius <= 1e-12 * reach || extent.radius < 1e-25) { // a point, as far as numbers can tell
+        extent.radius = reach > 1e-19 ? 1e-6 * reach : 1;
     }
     return extent;
 }

@@ -204,8 +204,22 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
     }
 }
 
+SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (extension == ".toml") {
+        return read_scene_file(path);
+    }
+    if (extension == ".obj") {
+        return frame_model(path, framing);
+    }
+    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in .toml or .obj",
+                                printable(path.string(), 1000)));
+}
+
 Scene load_scene(const std::filesystem::path& path) {
-    return build_scene(path.extension() == ".toml" ? read_scene_file(path) : frame_model(path, {}));
+    return build_scene(describe(path, {}));
 }
 
 } // namespace razor

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "razor/scene/description.h"
+#include "razor/scene/framing.h"
 
 #include <filesystem>
 #include <string_view>

@@ -48,7 +48,7 @@ Mesh make(std::span<const double> values) {
         const int next = 4 * ((i + 1) % segments);
         for (int side = 0; side < 4; ++side) {
             const int other = (side + 1) % 4;
-            cage.face({here + side, here + other, next + other, next + side});
+            cage.face({here + side, next + side, next + other, here + other});
             cage.crease(here + side, next + side, values[4]);
         }
     }

@@ -1,0 +1,180 @@
+// Pictures through their files and back; files that are whole or not there.
+#include "razor/image/exr.h"
+#include "razor/image/output.h"
+#include "razor/image/output_file.h"
+#include "razor/image/png.h"
+#include "razor/scene/error.h"
+#include "tests/scene/temporary_folder.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <bit>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <sys/resource.h>
+
+namespace razor {
+namespace {
+
+Film noise(int width, int height) {
+    Film film = make_film(width, height);
+    std::uint32_t state = 1;
+    for (Plane& plane : film.planes) {
+        for (float& value : plane.values) {
+            state = state * 1664525U + 1013904223U;
+            value = static_cast<float>(state >> 8) * 0x1p-23F;
+        }
+    }
+    return film;
+}
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const UserError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Exr, KeepsEveryBit) {
+    const TemporaryFolder folder;
+    Film film = noise(37, 21);
+    auto& red = film.find("R")->values;
+    red[0] = std::numeric_limits<float>::infinity();
+    red[1] = -0.0F;
+    red[2] = std::numeric_limits<float>::denorm_min();
+    red[3] = std::bit_cast<float>(0x7fc12345U);
+    write_exr(folder / "a.exr", film, {{"razor.config", "x = 1\n\"quoted\""}, {"razor.version", "razor 0"}});
+    ImageAttributes attributes;
+    const Film again = read_exr(folder / "a.exr", &attributes);
+    EXPECT_EQ(again.width, 37);
+    EXPECT_EQ(again.height, 21);
+    ASSERT_EQ(again.planes.size(), film.planes.size());
+    for (const Plane& plane : film.planes) {
+        const Plane* const read = again.find(plane.name);
+        ASSERT_NE(read, nullptr) << plane.name;
+        EXPECT_EQ(std::memcmp(read->values.data(), plane.values.data(), 4 * plane.values.size()), 0)
+            << plane.name;
+    }
+    const auto has = [&](const std::string& name, const std::string& value) {
+        return std::find(attributes.begin(), attributes.end(), std::pair(name, value)) != attributes.end();
+    };
+    EXPECT_TRUE(has("razor.config", "x = 1\n\"quoted\""));
+    EXPECT_TRUE(has("razor.version", "razor 0"));
+    EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(Exr, RefusesWhatIsNone) {
+    const TemporaryFolder folder;
+    write_exr(folder / "a.exr", noise(40, 40));
+    std::ifstream file(folder / "a.exr", std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(file)), {});
+    for (const std::size_t size :
+         {std::size_t{0}, std::size_t{3}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
+        const auto cut = folder.file("cut.exr", whole.substr(0, size));
+        const std::string message = message_of([&] { read_exr(cut); });
+        EXPECT_NE(message.find("not a readable OpenEXR picture"), std::string::npos) << size << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+    EXPECT_THROW(read_exr(folder / "none.exr"), UserError);
+    EXPECT_THROW(read_exr(folder.path()), UserError);
+}
+
+TEST(Png, EncodesSrgb) {
+    EXPECT_EQ(to_srgb8(0.0F), 0);
+    EXPECT_EQ(to_srgb8(-1.0F), 0);
+    EXPECT_EQ(to_srgb8(std::nanf("")), 0);
+    EXPECT_EQ(to_srgb8(1.0F), 255);
+    EXPECT_EQ(to_srgb8(std::numeric_limits<float>::infinity()), 255);
+    EXPECT_EQ(to_srgb8(0.5F), 188);
+    EXPECT_EQ(to_srgb8(0.2158605F), 128); // 128 / 255 decoded
+    EXPECT_EQ(to_srgb8(0.001F), 3);       // on the straight piece: 12.92 * 0.255
+    // Decoding each of the 256 values by the standard's inverse and encoding again changes none.
+    for (int value = 0; value < 256; ++value) {
+        const double s = value / 255.0;
+        const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+        EXPECT_EQ(to_srgb8(static_cast<float>(linear)), value);
+    }
+}
+
+TEST(Png, RoundTrip) {
+    const TemporaryFolder folder;
+    const Film film = noise(19, 7);
+    write_png(folder / "a.png", film, {{"razor.config", std::string(5000, 'x') + "\xc3\xa9"}}, 0.5F);
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    ASSERT_NE(png_image_begin_read_from_file(&image, (folder / "a.png").c_str()), 0);
+    EXPECT_EQ(image.width, 19U);
+    EXPECT_EQ(image.height, 7U);
+    image.format = PNG_FORMAT_RGB;
+    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+    ASSERT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        EXPECT_EQ(pixels[3 * i], to_srgb8(0.5F * film.find("R")->values[i]));
+        EXPECT_EQ(pixels[3 * i + 1], to_srgb8(0.5F * film.find("G")->values[i]));
+        EXPECT_EQ(pixels[3 * i + 2], to_srgb8(0.5F * film.find("B")->values[i]));
+    }
+    EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(Output, IsRefusedBeforeRendering) {
+    const TemporaryFolder folder;
+    const auto refused = [&](const std::filesystem::path& path, std::string_view cause) {
+        const std::string message = message_of([&] { check_output(path); });
+        EXPECT_NE(message.find(cause), std::string::npos) << path << message;
+    };
+    refused(folder / "a.jpg", "end the name in .exr or .png");
+    refused(folder / "a", "end the name in .exr or .png");
+    refused("", "end the name in .exr or .png");
+    refused(folder / "none" / "a.exr", "no folder");
+    std::filesystem::create_directory(folder / "d.exr");
+    refused(folder / "d.exr", "is a directory");
+    folder.file("f", "x");
+    refused(folder / "f" / "a.exr", "no folder");
+    check_output(folder / "a.EXR");
+    check_output(folder.file("b.png", "kept"));
+    EXPECT_EQ(folder.count(), 3U) << "checking leaves nothing behind";
+    EXPECT_EQ(std::filesystem::file_size(folder / "b.png"), 4U);
+    if (::geteuid() != 0) {
+        std::filesystem::permissions(folder.path(),
+                                     std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+        refused(folder / "c.exr", "cannot be written");
+        std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+    }
+}
+
+TEST(Output, FailureLeavesTheOldFile) {
+    const TemporaryFolder folder;
+    const Film film = noise(200, 200);
+    for (const char* name : {"a.exr", "a.png"}) {
+        folder.file(name, "old");
+        rlimit before{};
+        ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+        const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit small{10000, before.rlim_max};
+        ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+        const std::string message = message_of([&] { write_image(folder / name, film, {}); });
+        ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+        std::signal(SIGXFSZ, handler);
+        EXPECT_NE(message.find("cannot be written"), std::string::npos) << message;
+        EXPECT_EQ(std::filesystem::file_size(folder / name), 3U);
+    }
+    EXPECT_EQ(folder.count(), 2U) << "the temporary file is removed";
+}
+
+TEST(Output, WritesThroughLinks) {
+    const TemporaryFolder folder;
+    folder.file("real.txt", "old");
+    std::filesystem::create_symlink("real.txt", folder / "link.txt");
+    write_text_file(folder / "link.txt", "newer");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(std::filesystem::file_size(folder / "real.txt"), 5U);
+}
+
+} // namespace
+} // namespace razor

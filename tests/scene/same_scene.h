@@ -1,0 +1,69 @@
+// Exact equality of scenes, with messages.
+#pragma once
+
+#include "razor/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+namespace razor {
+
+inline void expect_same(const Mesh& a, const Mesh& b) {
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.scheme, b.scheme);
+    EXPECT_EQ(a.points, b.points) << a.name;
+    EXPECT_EQ(a.face_sizes, b.face_sizes);
+    EXPECT_EQ(a.face_vertices, b.face_vertices);
+    EXPECT_EQ(a.texcoords, b.texcoords);
+    EXPECT_EQ(a.face_texcoords, b.face_texcoords);
+    EXPECT_EQ(a.holes, b.holes);
+    EXPECT_EQ(a.boundary, b.boundary);
+    EXPECT_EQ(a.face_varying, b.face_varying);
+    EXPECT_EQ(a.crease_method, b.crease_method);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.material, b.material);
+    EXPECT_EQ(a.edge_length, b.edge_length);
+    ASSERT_EQ(a.creases.size(), b.creases.size());
+    for (std::size_t i = 0; i < a.creases.size(); ++i) {
+        EXPECT_EQ(a.creases[i].v0, b.creases[i].v0);
+        EXPECT_EQ(a.creases[i].v1, b.creases[i].v1);
+        EXPECT_EQ(a.creases[i].sharpness, b.creases[i].sharpness);
+    }
+    ASSERT_EQ(a.corners.size(), b.corners.size());
+    for (std::size_t i = 0; i < a.corners.size(); ++i) {
+        EXPECT_EQ(a.corners[i].vertex, b.corners[i].vertex);
+        EXPECT_EQ(a.corners[i].sharpness, b.corners[i].sharpness);
+    }
+}
+
+inline void expect_same(const Scene& a, const Scene& b) {
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.settings.width, b.settings.width);
+    EXPECT_EQ(a.settings.height, b.settings.height);
+    EXPECT_EQ(a.settings.samples, b.settings.samples);
+    EXPECT_EQ(a.settings.light_samples, b.settings.light_samples);
+    EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
+    EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);
+    EXPECT_EQ(a.camera.position, b.camera.position);
+    EXPECT_EQ(a.camera.target, b.camera.target);
+    EXPECT_EQ(a.camera.up, b.camera.up);
+    EXPECT_EQ(a.camera.fov_degrees, b.camera.fov_degrees);
+    EXPECT_EQ(a.sky, b.sky);
+    ASSERT_EQ(a.lights.size(), b.lights.size());
+    for (std::size_t i = 0; i < a.lights.size(); ++i) {
+        EXPECT_EQ(a.lights[i].corner, b.lights[i].corner);
+        EXPECT_EQ(a.lights[i].edge_u, b.lights[i].edge_u);
+        EXPECT_EQ(a.lights[i].edge_v, b.lights[i].edge_v);
+        EXPECT_EQ(a.lights[i].radiance, b.lights[i].radiance);
+    }
+    ASSERT_EQ(a.materials.size(), b.materials.size());
+    for (std::size_t i = 0; i < a.materials.size(); ++i) {
+        EXPECT_EQ(a.materials[i].name, b.materials[i].name);
+        EXPECT_EQ(a.materials[i].albedo, b.materials[i].albedo);
+    }
+    ASSERT_EQ(a.meshes.size(), b.meshes.size());
+    for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+        expect_same(a.meshes[i], b.meshes[i]);
+    }
+}
+
+} // namespace razor
