@@ -219,8 +219,9 @@ struct FrameHeader {
     std::int32_t patch_count, refit_chunks;
     float camera[3];                         // scene coordinates
     float film_corner[3], film_x[3], film_y[3]; // direction of the film's top left corner, and a pixel's steps
-    float light_corner[3], light_u[3], light_v[3], light_normal[3], light_radiance[3]; // radiance x area / samples
-    float sky[3];
+    float light_corner[3], light_u[3], light_v[3], light_normal[3], light_radiance[3]; // radiance x area / (pi x samples)
+    float sky[3];        // radiance / samples
+    float background[3]; // what a camera ray that hits nothing sees
     float reach; // no two points of scene and camera are further apart
     std::int32_t bounds_stride;
     isa::ref<MeshRecord> meshes;

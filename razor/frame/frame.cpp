@@ -1,0 +1,419 @@
+#include "razor/frame/frame.h"
+
+#include "razor/frame/page_store.h"
+#include "razor/frame/scene_geometry.h"
+#include "razor/kernels/scratch.h"
+#include "razor/scene/error.h"
+#include "razor/surface/topology.h"
+
+#include <fmt/core.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace razor {
+
+namespace {
+
+constexpr std::uint64_t gibibyte = std::uint64_t{1} << 30;
+// Gathers index grids by signed 32-bit words; nodes and lists are numbered by signed 32 bits.
+constexpr std::uint64_t all_grids = 8 * gibibyte;
+constexpr std::uint64_t all_nodes = 16 * gibibyte;
+constexpr std::uint64_t all_lists = 64 * gibibyte;
+
+std::uint64_t share_of(std::uint64_t all, int workers) {
+    std::uint64_t granule = isa::address_space::granule;
+    return all / static_cast<std::uint64_t>(workers) / granule * granule;
+}
+
+void put(float (&to)[3], const glm::dvec3& v) {
+    for (int i = 0; i < 3; ++i)
+        to[i] = static_cast<float>(v[i]);
+}
+
+/// Right, up and forward of the camera; any up will do where the scene's is no help.
+struct View {
+    glm::dvec3 right, up, forward;
+};
+View camera_view(const Camera& camera) {
+    View v{};
+    v.forward = camera.target - camera.position;
+    double length = glm::length(v.forward);
+    v.forward = length > 0 ? v.forward / length : glm::dvec3(0, 0, -1);
+    glm::dvec3 up = camera.up;
+    v.right = glm::cross(v.forward, up);
+    if (!(glm::length(v.right) > 1e-9 * glm::length(up))) {
+        up = std::abs(v.forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+        v.right = glm::cross(v.forward, up);
+    }
+    v.right = glm::normalize(v.right);
+    v.up = glm::cross(v.right, v.forward);
+    return v;
+}
+
+constexpr const char* film_names[film_planes] = {"R",        "G",       "B",        "normal.X", "normal.Y",
+                                                 "normal.Z", "depth.Z", "albedo.R", "albedo.G", "albedo.B"};
+
+} // namespace
+
+struct Frame::Impl {
+    Impl(const Scene& scene, const FrameOptions& options);
+
+    std::vector<Mesh> meshes;
+    std::vector<Topology> topologies;
+    FrameOptions options;
+    SceneGeometry geometry;
+    std::unique_ptr<PageStore> pages;
+    std::unique_ptr<isa::address_space> memory;
+    FrameHeader* header = nullptr;
+    std::vector<Counters> counters; // one a worker
+    int trees = 1;
+    int nodes_each = 0, grid_lines_each = 0, list_lines_each = 0; // arena sizes of a worker
+    Plan plan = plan_flat;
+    std::int64_t undrawn = 0;
+
+    template <class T> T* region(const char* structure, int owner, std::size_t count) {
+        return reinterpret_cast<T*>(memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T)));
+    }
+    void place_scene(const Scene& scene);
+    void place_topology();
+    void place_workers();
+    void place_view(const Scene& scene);
+    void reset();
+};
+
+Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.meshes), options(o) {
+    if (meshes.empty())
+        throw UserError(fmt::format("{}: the scene has no mesh; add one", scene.name));
+    for (const Mesh& mesh : meshes) {
+        validate_mesh(mesh);
+        topologies.push_back(analyse_topology(mesh));
+        undrawn += topologies.back().undrawn_faces;
+    }
+    trees = options.share <= 0 ? 1 : (options.workers + options.share - 1) / options.share;
+    geometry = locate_scene(scene);
+    pages = std::make_unique<PageStore>(meshes, topologies);
+    counters.resize(static_cast<std::size_t>(options.workers));
+    std::uint64_t scene_bytes = 0;
+    for (const Topology& t : topologies)
+        scene_bytes += t.patches.size() * (sizeof(PatchRecord) + 64 + sizeof(OpenPatch) * static_cast<std::size_t>(trees)) +
+                       t.controls.size() * 4 + (t.faces.size() + t.points.size() + t.curves.size()) * 64;
+    auto pixels = static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
+    memory = std::make_unique<isa::address_space>(pages->span_bytes() + all_grids + all_nodes + all_lists +
+                                                  2 * scene_bytes + pixels * 64 + 4 * gibibyte +
+                                                  static_cast<std::uint64_t>(options.workers + trees) * 64 *
+                                                      isa::address_space::granule);
+    place_scene(scene);
+    place_topology();
+    place_workers();
+    place_view(scene);
+    reset();
+}
+
+void Frame::Impl::place_scene(const Scene& scene) {
+    header = region<FrameHeader>("scene graph", -1, 1);
+    new (header) FrameHeader{};
+    auto* records = region<MeshRecord>("scene graph", -1, meshes.size());
+    header->meshes.set(records);
+    std::size_t patches = 0, points = 0;
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        MeshRecord& r = records[m];
+        for (int k = 0; k < 3; ++k)
+            r.origin[k] = geometry.mesh_origins[m][k];
+        r.edge_length = static_cast<float>(geometry.edge_lengths[m]);
+        r.max_exponent = topologies[m].max_exponent;
+        r.first_patch = static_cast<std::int32_t>(patches);
+        r.patch_count = static_cast<std::int32_t>(topologies[m].patches.size());
+        glm::vec3 albedo(0.7F);
+        auto material = static_cast<std::size_t>(meshes[m].material);
+        if (material < scene.materials.size())
+            albedo = scene.materials[material].albedo;
+        for (int k = 0; k < 3; ++k)
+            r.albedo[k] = albedo[k];
+        patches += topologies[m].patches.size();
+        points += meshes[m].points.size();
+        for (const PatchRecord& p : topologies[m].patches)
+            if (p.kind == PatchKind::catmull_clark || p.kind == PatchKind::bilinear)
+                plan = plan_hanging;
+    }
+    if (patches == 0)
+        throw UserError(fmt::format("{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
+                                    scene.name));
+    if (patches > (std::size_t{1} << 30))
+        throw UserError(fmt::format("{}: {} patches are too many; at most 2^30", scene.name, patches));
+    header->patch_count = static_cast<std::int32_t>(patches);
+    header->refit_chunks = static_cast<std::int32_t>((patches + refit_patches - 1) / refit_patches);
+    header->bounds_stride = header->refit_chunks * refit_patches;
+    header->bounds.set(region<float>("scene graph", -1, static_cast<std::size_t>(header->bounds_stride) * 6));
+    auto* xyz = region<float>("control points", -1, points * 3);
+    header->points.set(xyz);
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        glm::dvec3 origin = geometry.origin + glm::dvec3(geometry.mesh_origins[m]);
+        for (const glm::dvec3& p : meshes[m].points)
+            for (int k = 0; k < 3; ++k)
+                *xyz++ = static_cast<float>(p[k] - origin[k]);
+    }
+}
+
+void Frame::Impl::place_topology() {
+    std::size_t patches = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
+    for (const Topology& t : topologies) {
+        patches += t.patches.size();
+        faces += t.faces.size();
+        controls += t.controls.size();
+        face_curves += t.face_curves.size();
+        points += t.points.size();
+        curves += t.curves.size();
+    }
+    auto* patch = region<PatchRecord>("scene graph", -1, patches);
+    auto* face = region<FaceRecord>("topology", -1, faces);
+    auto* control = region<std::int32_t>("topology", -1, controls);
+    auto* face_curve = region<std::int32_t>("topology", -1, face_curves);
+    auto* point = region<VertexRecord>("topology", -1, points);
+    auto* curve = region<CurveRecord>("topology", -1, curves);
+    auto* classes = region<ClassRecord>("topology", -1, pages->class_count());
+    header->patches.set(patch);
+    header->faces.set(face);
+    header->controls.set(control);
+    header->face_curves.set(face_curve);
+    header->vertices.set(point);
+    header->curves.set(curve);
+    header->classes.set(classes);
+    // Each mesh numbers from 0: move its numbers behind those of the meshes before.
+    int base_face = 0, base_control = 0, base_face_curve = 0, base_point = 0, base_curve = 0, base_class = 0;
+    for (std::size_t m = 0; m < topologies.size(); ++m) {
+        const Topology& t = topologies[m];
+        for (PatchRecord p : t.patches) {
+            p.mesh = static_cast<int>(m);
+            p.face += base_face;
+            bool part = (p.side_flags[0] & side_half) != 0;
+            for (int& c : p.side_curve)
+                c += c >= 0 ? base_curve : 0;
+            p.corner[0] += base_point;
+            p.corner[1] += part ? base_curve : base_point;
+            p.corner[2] += part ? base_face : base_point;
+            p.corner[3] += part ? base_curve : base_point;
+            *patch++ = p;
+        }
+        for (FaceRecord f : t.faces) {
+            f.face_class += f.face_class >= 0 ? base_class : 0;
+            f.control_first += base_control;
+            f.curve_first += base_face_curve;
+            *face++ = f;
+        }
+        for (int c : t.controls)
+            *control++ = c + base_point;
+        for (int c : t.face_curves)
+            *face_curve++ = c + base_curve;
+        for (VertexRecord v : t.points) {
+            v.owner_face += v.owner_face >= 0 ? base_face : 0;
+            *point++ = v;
+        }
+        for (CurveRecord c : t.curves) {
+            bool spoke = (c.flags & curve_spoke) != 0;
+            c.owner_face += c.owner_face >= 0 ? base_face : 0;
+            c.end0 += spoke ? base_curve : base_point;
+            c.end1 += spoke ? base_face : base_point;
+            *curve++ = c;
+        }
+        base_face += static_cast<int>(t.faces.size());
+        base_control += static_cast<int>(t.controls.size());
+        base_face_curve += static_cast<int>(t.face_curves.size());
+        base_point += static_cast<int>(t.points.size());
+        base_curve += static_cast<int>(t.curves.size());
+        base_class += static_cast<int>(t.classes.size());
+    }
+    pages->lay_out(region<Line>("topology pages", -1, pages->span_bytes() / line_bytes), classes);
+}
+
+void Frame::Impl::place_workers() {
+    auto n = static_cast<std::size_t>(options.workers);
+    header->queues.set(region<QueueRecord>("queues", -1, 1));
+    header->trees.set(region<TreeRecord>("kd nodes", -1, static_cast<std::size_t>(trees)));
+    header->workers.set(region<WorkerRecord>("stack", -1, n));
+    for (int t = 0; t < trees; ++t)
+        header->trees.get()[t].patches.set(
+            region<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count)));
+    // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
+    std::uint64_t grid_bytes = share_of(all_grids, options.workers);
+    std::uint64_t node_bytes = share_of(all_nodes, options.workers);
+    std::uint64_t list_bytes = share_of(all_lists, options.workers);
+    grid_lines_each = static_cast<int>(grid_bytes / line_bytes);
+    nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
+    list_lines_each = static_cast<int>(list_bytes / line_bytes);
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes));
+        if (w == 0)
+            header->grids.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<KdNode*>(memory->add("kd nodes", w, node_bytes));
+        if (w == 0)
+            header->nodes.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<Line*>(memory->add("item lists", w, list_bytes));
+        if (w == 0)
+            header->lists.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        WorkerRecord& r = header->workers.get()[w];
+        r.stack.set(region<float>("stack", w, stack_floats));
+        r.packets.set(region<float>("packets", w, packet_floats));
+        r.tree = options.share <= 0 ? 0 : w / options.share;
+    }
+}
+
+void Frame::Impl::place_view(const Scene& scene) {
+    const Settings& s = scene.settings;
+    FrameHeader& h = *header;
+    h.width = s.width;
+    h.height = s.height;
+    h.samples = s.samples;
+    h.tiles_x = (s.width + tile_side - 1) / tile_side;
+    h.tiles = h.tiles_x * ((s.height + tile_side - 1) / tile_side);
+    View v = camera_view(scene.camera);
+    double tangent = std::tan(scene.camera.fov_degrees * (3.14159265358979323846 / 360));
+    double pixel = 2 * tangent / s.height;
+    put(h.camera, scene.camera.position - geometry.origin);
+    put(h.film_corner, v.forward - v.right * (pixel * s.width / 2) + v.up * tangent);
+    put(h.film_x, v.right * pixel);
+    put(h.film_y, -v.up * pixel);
+    put(h.background, glm::dvec3(scene.sky));
+    if (!scene.lights.empty()) {
+        const RectangleLight& light = scene.lights.front();
+        glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
+        double area = glm::length(normal);
+        if (area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0) {
+            h.light_samples = s.light_samples;
+            put(h.light_corner, light.corner - geometry.origin);
+            put(h.light_u, light.edge_u);
+            put(h.light_v, light.edge_v);
+            put(h.light_normal, normal / area);
+            put(h.light_radiance, glm::dvec3(light.radiance) *
+                                      (area / (3.14159265358979323846 * std::max(s.light_samples, 1))));
+        }
+    }
+    if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0) {
+        h.sky_samples = s.sky_samples;
+        put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
+    }
+    h.reach = static_cast<float>(geometry.reach);
+    auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
+    h.film.set(region<float>("frame buffer", -1, pixels * film_planes));
+}
+
+void Frame::Impl::reset() {
+    std::memset(header->queues.get(), 0, sizeof(QueueRecord));
+    for (int t = 0; t < trees; ++t) {
+        TreeRecord& tree = header->trees.get()[t];
+        tree.root_state.word = absent;
+        OpenPatch* open = tree.patches.get();
+        std::fill(open, open + header->patch_count, OpenPatch{});
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        WorkerRecord& r = header->workers.get()[w];
+        r.grid_next = w * grid_lines_each;
+        r.grid_end = r.grid_next + grid_lines_each;
+        r.node_next = w * nodes_each;
+        r.node_end = r.node_next + nodes_each;
+        r.list_next = w * list_lines_each;
+        r.list_end = r.list_next + list_lines_each;
+        counters[static_cast<std::size_t>(w)] = {};
+    }
+}
+
+Frame::Frame(const Scene& scene, const FrameOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+Frame::~Frame() = default;
+
+void Frame::reset() { impl_->reset(); }
+
+namespace {
+
+[[noreturn]] void explain(const isa::trapped& trap) {
+    const char* what = trap.code == trap_grids_full   ? "tessellated grids"
+                       : trap.code == trap_nodes_full ? "kd-tree nodes"
+                                                      : "kd-tree item lists";
+    throw UserError(fmt::format("frame memory for {} is full; use a larger target edge (--edge-pixels), or share kd-trees "
+                                "between more workers",
+                                what));
+}
+
+} // namespace
+
+void Frame::render(const KernelTable& kernels, int worker) {
+    WorkerArguments a{impl_->header, worker, impl_->pages.get(), &impl_->counters[static_cast<std::size_t>(worker)]};
+    try {
+        kernels.render[impl_->plan](a);
+    } catch (const isa::trapped& trap) {
+        explain(trap);
+    }
+}
+
+void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
+    WorkerArguments a{impl_->header, 0, impl_->pages.get(), &impl_->counters[0]};
+    try {
+        kernels.trace[impl_->plan](a, arguments);
+    } catch (const isa::trapped& trap) {
+        explain(trap);
+    }
+}
+
+void Frame::set_reach(double distance) {
+    impl_->header->reach = static_cast<float>(impl_->geometry.reach + distance);
+}
+
+isa::address_space& Frame::memory() { return *impl_->memory; }
+FrameHeader& Frame::header() { return *impl_->header; }
+Plan Frame::plan() const { return impl_->plan; }
+int Frame::workers() const { return impl_->options.workers; }
+glm::dvec3 Frame::origin() const { return impl_->geometry.origin; }
+
+std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) {
+    return impl_->memory->add(structure, -1, bytes);
+}
+
+double Frame::progress() const {
+    auto& word = impl_->header->queues.get()->next_tile.word;
+    int taken = std::atomic_ref(word).load(std::memory_order_relaxed);
+    return std::min(1.0, static_cast<double>(taken) / impl_->header->tiles);
+}
+
+FrameStatistics Frame::statistics() const {
+    FrameStatistics s;
+    for (const Counters& c : impl_->counters)
+        s.counters += c;
+    s.trees = impl_->trees;
+    s.patches = static_cast<std::int64_t>(impl_->header->patch_count) * impl_->trees;
+    s.undrawn_faces = impl_->undrawn;
+    s.unsplit_nodes = s.counters.nodes_made - s.counters.nodes_split - s.counters.leaves;
+    for (int w = 0; w < impl_->options.workers; ++w) {
+        const WorkerRecord& r = impl_->header->workers.get()[w];
+        s.grid_bytes += static_cast<std::int64_t>(r.grid_next - w * impl_->grid_lines_each) * line_bytes;
+        s.node_bytes += static_cast<std::int64_t>(r.node_next - w * impl_->nodes_each) *
+                        static_cast<std::int64_t>(sizeof(KdNode));
+        s.list_bytes += static_cast<std::int64_t>(r.list_next - w * impl_->list_lines_each) * line_bytes;
+    }
+    s.page_bytes = impl_->pages->made_bytes();
+    s.page_seconds = impl_->pages->seconds();
+    s.plan = impl_->plan == plan_flat ? "flat patches only: no hanging vertices" : "grids with hanging vertices";
+    return s;
+}
+
+Film Frame::film() const {
+    const FrameHeader& h = *impl_->header;
+    Film film(h.width, h.height);
+    std::size_t pixels = film.pixel_count();
+    const float* values = h.film.get();
+    for (const char* name : film_names) {
+        film.add(name).values.assign(values, values + pixels);
+        values += pixels;
+    }
+    return film;
+}
+
+} // namespace razor

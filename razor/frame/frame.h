@@ -1,0 +1,77 @@
+// One frame's memory: the persistent part filled from a scene, room for what the kernels build, and what they leave.
+#pragma once
+
+#include "isa/address_space.h"
+#include "isa/services.h"
+#include "razor/frame/counters.h"
+#include "razor/frame/layout.h"
+#include "razor/image/image.h"
+#include "razor/kernels/table.h"
+#include "razor/scene/scene.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace razor {
+
+struct FrameOptions {
+    int workers = 1;
+    int share = 0; // workers that share one kd-tree and its grids; 0: all of them
+};
+
+/// What was built, and what laziness left unbuilt.
+struct FrameStatistics {
+    Counters counters; // summed over workers
+    std::int64_t trees = 0;
+    std::int64_t patches = 0;        // of the scene, times the trees
+    std::int64_t undrawn_faces = 0;  // holes and the like
+    std::int64_t unsplit_nodes = 0;  // nodes that no ray entered
+    std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // built this frame
+    std::int64_t page_bytes = 0;     // topology pages made so far; they outlive the frame
+    double page_seconds = 0;         // host time spent on them
+    std::string plan;                // which kernels the scene needs
+};
+
+class Frame {
+  public:
+    /// Analyses the scene's topology and lays out frame memory. Throws UserError for cages that cannot be rendered.
+    Frame(const Scene& scene, const FrameOptions& options);
+    ~Frame();
+    Frame(const Frame&) = delete;
+    Frame& operator=(const Frame&) = delete;
+
+    /// Empties everything a frame builds, so that it can be rendered again. Topology pages stay.
+    void reset();
+    /// Runs one worker's share; every worker of options.workers must run, each in its own thread or fibre.
+    /// Throws UserError if an arena is exhausted.
+    void render(const KernelTable& kernels, int worker);
+    /// Traces rays given in frame memory (worker 0 alone; call reset() before a render).
+    void trace(const KernelTable& kernels, const TraceArguments& arguments);
+    /// Room in frame memory for tests and benchmarks that trace rays of their own. Call before anything is rendered.
+    template <class T> T* extra(const std::string& structure, std::size_t count) {
+        return reinterpret_cast<T*>(memory_bytes(structure, count * sizeof(T)));
+    }
+    /// Rays may start or end this far from the scene's centre (world units).
+    void set_reach(double distance);
+
+    isa::address_space& memory();
+    FrameHeader& header();
+    /// Counters and plan are those of the render so far.
+    FrameStatistics statistics() const;
+    Plan plan() const;
+    int workers() const;
+    /// Fraction of the tiles taken from the queue.
+    double progress() const;
+    /// The film as it stands.
+    Film film() const;
+    /// Scene coordinates are world coordinates minus this.
+    glm::dvec3 origin() const;
+
+  private:
+    std::byte* memory_bytes(const std::string& structure, std::size_t bytes);
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace razor

@@ -1,0 +1,84 @@
+// What a kernel carries with it: the handles it loaded once from the frame header, in registers, and its worker's own.
+#pragma once
+
+#include "isa/isa.h"
+#include "razor/frame/counters.h"
+#include "razor/frame/layout.h"
+#include "razor/frame/phases.h"
+
+namespace razor::ISA_TARGET {
+
+using namespace isa::ISA_TARGET;
+
+using shared_int = isa::shared<std::int32_t>;
+
+struct Context {
+    pointer<FrameHeader> frame;
+    pointer<WorkerRecord> self;
+    pointer<TreeRecord> tree;
+    pointer<OpenPatch> open;
+    pointer<KdNode> nodes;
+    pointer<Line> lists, grids;
+    pointer<PatchRecord> patches;
+    pointer<MeshRecord> meshes;
+    pointer<float> stack;   // traversal stack, then builders' scratch (scratch.h)
+    pointer<float> packets; // rays in flight (scratch.h)
+    isa::page_service* pages = nullptr;
+    Counters* counters = nullptr;
+};
+
+inline Context make_context(pointer<FrameHeader> frame, sint worker, isa::page_service* pages, Counters* counters) {
+    Context c;
+    c.frame = frame;
+    c.pages = pages;
+    c.counters = counters;
+    pointer<WorkerRecord> workers = load(field(frame, &FrameHeader::workers));
+    c.self = workers + worker;
+    pointer<TreeRecord> trees = load(field(frame, &FrameHeader::trees));
+    sint tree = load(field(c.self, &WorkerRecord::tree));
+    c.tree = trees + tree;
+    c.open = load(field(c.tree, &TreeRecord::patches));
+    c.nodes = load(field(frame, &FrameHeader::nodes));
+    c.lists = load(field(frame, &FrameHeader::lists));
+    c.grids = load(field(frame, &FrameHeader::grids));
+    c.patches = load(field(frame, &FrameHeader::patches));
+    c.meshes = load(field(frame, &FrameHeader::meshes));
+    c.stack = load(field(c.self, &WorkerRecord::stack));
+    c.packets = load(field(c.self, &WorkerRecord::packets));
+    return c;
+}
+
+/// Takes `amount` units from one of the worker's arenas. Natively and in the machine an arena never grows.
+inline sint allocate(const Context& c, std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*end, sint amount,
+                     TrapCode full) {
+    sint begin = load(field(c.self, next));
+    sint limit = load(field(c.self, end));
+    if (branch(amount > limit - begin))
+        trap(full);
+    store(field(c.self, next), begin + amount);
+    return begin;
+}
+
+/// Resets a build state if its builder is thrown out, so that others that wait try for themselves.
+class BusyGuard {
+  public:
+    BusyGuard(pointer<shared_int> word, int idle) : word_(word), idle_(idle) {}
+    BusyGuard(const BusyGuard&) = delete;
+    BusyGuard& operator=(const BusyGuard&) = delete;
+    ~BusyGuard() {
+        if (!published_)
+            store_release(word_, idle_);
+    }
+    /// Everything written before is visible to whoever reads `state`.
+    void publish(sint state) {
+        store_release(word_, state);
+        published_ = true;
+    }
+
+  private:
+    pointer<shared_int> word_;
+    int idle_;
+    bool published_ = false;
+};
+
+} // namespace razor::ISA_TARGET

@@ -1,0 +1,342 @@
+// A packet of rays against a block. Watertight (Woop, Benthin & Wald, JCGT 2013): every vertex is sheared into the ray's
+// frame, edge functions of shared edges are the same bits with opposite signs, and an edge function that rounds to zero is
+// decided by its exact error terms. A sub-edge with hanging vertices uses, on both sides of the edge, the edge function of
+// its flat ancestor. Lanes are rays; vertices are broadcast. Which cells to try is found with one lane a cell.
+#pragma once
+
+#include "razor/kernels/kd_build.h"
+
+namespace razor::ISA_TARGET {
+
+/// What inner loops are compiled for. The plan picks an instantiation; absent features leave no branch there.
+struct Features {
+    bool hanging = true; // some patch has sides coarser than its grid
+};
+
+struct Rays {
+    vvec origin, direction; // scene coordinates; unit directions
+    vfloat t_min, t_max;
+    vmask active;
+};
+
+struct Hits {
+    vfloat t;
+    vfloat u, v;           // barycentric weights of the triangle's second and third vertex
+    vint patch;            // -1: none
+    vint triangle;         // block number * 128 + quad (row * 8 + column) * 2 + which
+    vint block;            // first line of the block in the grids
+};
+
+/// A group of rays of one packet whose directions agree in signs and in largest component, with all that is uniform.
+struct Group {
+    vmask alive;
+    sint kx, ky, kz;           // permutation: z is the largest component
+    vfloat ox, oy, oz;         // origin, permuted
+    vfloat shear_x, shear_y;   // d_x / d_z, d_y / d_z
+    vfloat scale_z;            // 1 / d_z
+    vfloat t_min;
+    sint sign[3];              // 1: the direction's component is negative (unpermuted axes)
+    sfloat flip[3];            // 1 or -1
+    sfloat near[3], far[3];    // bounds of flip * origin, with slack: a plane is entered no earlier, left no later
+    sfloat least[3], most[3];  // bounds of |1 / direction|
+    sfloat first_t;            // least t_min
+};
+
+struct Projected {
+    vfloat x, y, z;
+};
+
+/// p x q - their order's edge function; exact in sign unless it is zero.
+inline vfloat edge_function(const Projected& p, const Projected& q) {
+    vfloat a = p.x * q.y;
+    vfloat b = p.y * q.x;
+    return a - b;
+}
+/// The same, exact in sign always: where the rounded products are equal, their errors decide.
+inline vfloat exact_edge_function(const Projected& p, const Projected& q) {
+    vfloat a = p.x * q.y;
+    vfloat b = p.y * q.x;
+    vfloat d = a - b;
+    vfloat a_error = product_error(p.x, q.y, a);
+    vfloat b_error = product_error(p.y, q.x, b);
+    vfloat tie = a_error - b_error;
+    return select(d == vfloat(0.0F), tie, d);
+}
+
+/// The block as the group sees it: permuted component arrays, origin moved to mesh coordinates.
+struct View {
+    pointer<float> x, y, z;
+    pointer<float> words;
+    vfloat ox, oy, oz;
+    sint line, patch, number, triangles;
+    sint quads_u, quads_v;
+    sint ancestors_at, hang[4];
+};
+
+inline Projected project(const Group& g, const View& v, const vfloat& x, const vfloat& y, const vfloat& z) {
+    vfloat px = x - v.ox;
+    vfloat py = y - v.oy;
+    Projected p;
+    p.z = z - v.oz;
+    p.x = fnma(g.shear_x, p.z, px);
+    p.y = fnma(g.shear_y, p.z, py);
+    return p;
+}
+inline Projected project_vertex(const Group& g, const View& v, sint i) {
+    vfloat x = load_broadcast(v.x + i);
+    vfloat y = load_broadcast(v.y + i);
+    vfloat z = load_broadcast(v.z + i);
+    return project(g, v, x, y, z);
+}
+
+/// An edge: its two ends, and the power of two by which its edge function is longer than the sub-edge's.
+struct Edge {
+    Projected p, q;
+    vfloat value;
+    sfloat scale = 1.0F;
+};
+inline Edge make_edge(const Projected& p, const Projected& q) {
+    Edge e;
+    e.p = p;
+    e.q = q;
+    e.value = edge_function(p, q);
+    return e;
+}
+
+/// The flat ancestor of the sub-edge from vertex number `i` to i+1 along side s.
+inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
+    sint hang = v.hang[s];
+    sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
+    sint width = v.quads_u + 1;
+    Projected ends[2];
+    if (branch((sint(1) << hang) > quads)) {
+        pointer<float> end = v.words + v.ancestors_at + 6 * s;
+        for (int k = 0; k < 2; ++k) {
+            vfloat x = load_broadcast(end + g.kx);
+            vfloat y = load_broadcast(end + g.ky);
+            vfloat z = load_broadcast(end + g.kz);
+            ends[k] = project(g, v, x, y, z);
+            end = end + 3;
+        }
+    } else {
+        sint first = (i >> hang) << hang;
+        for (int k = 0; k < 2; ++k) {
+            sint along = k == 0 ? first : first + (sint(1) << hang);
+            sint vertex = along; // side 0
+            if (s == 1)
+                vertex = along * width + v.quads_u;
+            if (s == 2)
+                vertex = width * v.quads_v + along;
+            if (s == 3)
+                vertex = along * width;
+            ends[k] = project_vertex(g, v, vertex);
+        }
+    }
+    Edge e = make_edge(ends[0], ends[1]);
+    e.scale = as_float((sint(127) - hang) << 23);
+    e.value = e.value * vfloat(e.scale);
+    return e;
+}
+
+inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat V, vfloat W, const Projected& a,
+                   const Projected& b, const Projected& c, sint triangle, vint patch, Hits& hits) {
+    vfloat det = U + V + W;
+    inside = inside & (det != vfloat(0.0F));
+    vfloat inverse = reciprocal(det);
+    vfloat depth = fma(U, a.z, fma(V, b.z, W * c.z));
+    vfloat t = depth * g.scale_z * inverse;
+    vmask first = t < hits.t;
+    vmask equal = t == hits.t;
+    if (branch(any(inside & equal))) {
+        vmask lower = patch < hits.patch;
+        vmask same = patch == hits.patch;
+        same = same & (vint(triangle) < hits.triangle);
+        lower = lower | same;
+        lower = lower | (hits.patch < vint(0));
+        first = first | (equal & lower);
+    }
+    vmask hit = inside & first;
+    hit = hit & (t >= g.t_min);
+    if (branch(any(hit))) {
+        hits.t = select(hit, t, hits.t);
+        hits.u = select(hit, V * inverse, hits.u);
+        hits.v = select(hit, W * inverse, hits.v);
+        hits.patch = select(hit, patch, hits.patch);
+        hits.triangle = select(hit, vint(triangle), hits.triangle);
+        hits.block = select(hit, vint(v.line), hits.block);
+    }
+}
+
+/// Lanes for which the three edge functions agree in sign; zero agrees with both.
+inline vmask agree(const vfloat& u, const vfloat& v, const vfloat& w) {
+    vfloat zero(0.0F);
+    vfloat least = min(u, min(v, w));
+    vfloat most = max(u, max(v, w));
+    vmask same = least >= zero;
+    return same | (most <= zero);
+}
+
+/// Triangle (a, b, c) with edges ab, bc and ca, for the lanes that may be inside: decides exactly, then takes the hit.
+template <Features F>
+inline void hit_triangle(const Group& g, const View& v, vmask inside, const Edge& ab, const Edge& bc, const Edge& ca,
+                         const Projected& a, const Projected& b, const Projected& c, sint triangle, Hits& hits) {
+    vfloat U = exact_edge_function(bc.p, bc.q);
+    vfloat V = exact_edge_function(ca.p, ca.q);
+    vfloat W = exact_edge_function(ab.p, ab.q);
+    if constexpr (F.hanging) {
+        U = U * vfloat(bc.scale);
+        V = V * vfloat(ca.scale);
+        W = W * vfloat(ab.scale);
+    }
+    inside = inside & agree(U, V, W);
+    accept(g, v, inside, U, V, W, a, b, c, triangle, vint(v.patch), hits);
+}
+inline Edge reversed(const Edge& e) {
+    Edge r = e;
+    r.p = e.q;
+    r.q = e.p;
+    return r;
+}
+
+/// Both triangles of one quad: (00, 10, 11) and (00, 11, 01).
+template <Features F> inline void intersect_quad(const Group& g, const View& v, sint i, sint j, Hits& hits) {
+    sint width = v.quads_u + 1;
+    sint low = j * width + i;
+    sint high = low + width;
+    Projected p00 = project_vertex(g, v, low);
+    Projected p10 = project_vertex(g, v, low + 1);
+    Projected p11 = project_vertex(g, v, high + 1);
+    Projected p01 = project_vertex(g, v, high);
+    Edge bottom = make_edge(p00, p10);
+    Edge right = make_edge(p10, p11);
+    Edge top = make_edge(p01, p11);
+    Edge left = make_edge(p00, p01);
+    Edge diagonal = make_edge(p00, p11);
+    if constexpr (F.hanging) {
+        sint last_u = v.quads_u - 1;
+        sint last_v = v.quads_v - 1;
+        sbool border[4] = {j == 0, i == last_u, j == last_v, i == 0};
+        Edge* edges[4] = {&bottom, &right, &top, &left};
+        for (int s = 0; s < 4; ++s) {
+            if (branch(border[s] & (v.hang[s] > 0)))
+                *edges[s] = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
+        }
+    }
+    // Signs: the first triangle needs (bottom, right, -diagonal) to agree, the second (diagonal, -top, -left).
+    vfloat minus = -diagonal.value;
+    vmask inside0 = agree(bottom.value, right.value, minus);
+    vmask inside1 = agree(minus, top.value, left.value);
+    inside0 = inside0 & g.alive;
+    inside1 = inside1 & g.alive;
+    if (branch(any(inside0 | inside1))) {
+        sint quad = ((j << block_log2) + i) * 2;
+        sint triangle = (v.number << 7) + quad;
+        if (branch(any(inside0)))
+            hit_triangle<F>(g, v, inside0, bottom, right, reversed(diagonal), p00, p10, p11, triangle, hits);
+        sbool second = v.triangles > 1;
+        if (branch(second & any(inside1)))
+            hit_triangle<F>(g, v, inside1, diagonal, reversed(top), reversed(left), p00, p11, p01, triangle + 1, hits);
+    }
+}
+
+/// Cells whose box some ray of the group may meet before its present hit: conservative, by interval arithmetic.
+inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint cells_at, sint from, sint cells,
+                       sfloat last_t) {
+    sfloat shift[3] = {origin.x, origin.y, origin.z};
+    vfloat enter = vfloat(g.first_t);
+    vfloat leave = vfloat(last_t);
+    vmask m = first_lanes(cells - from);
+    pointer<float> low = v.words + cells_at + from;
+    for (int k = 0; k < 3; ++k) {
+        // With the axis flipped to a positive direction: entering plane minus the furthest origin, and so on.
+        sint near_at = g.sign[k] * (3 * cell_boxes);
+        sint far_at = sint(3 * cell_boxes) - near_at;
+        vfloat near_plane = load_vector(low + k * cell_boxes + near_at, m);
+        vfloat far_plane = load_vector(low + k * cell_boxes + far_at, m);
+        sfloat moved = g.flip[k] * shift[k];
+        vfloat flip = vfloat(g.flip[k]);
+        sfloat near_origin = g.near[k] - moved;
+        sfloat far_origin = g.far[k] - moved;
+        vfloat near_distance = near_plane * flip;
+        near_distance = near_distance - vfloat(near_origin);
+        vfloat far_distance = far_plane * flip;
+        far_distance = far_distance - vfloat(far_origin);
+        vfloat least = vfloat(g.least[k]);
+        vfloat most = vfloat(g.most[k]);
+        vmask ahead = near_distance >= vfloat(0.0F);
+        vfloat near_rate = select(ahead, least, most);
+        vmask before = far_distance >= vfloat(0.0F);
+        vfloat far_rate = select(before, most, least);
+        enter = max(near_distance * near_rate, enter);
+        leave = min(far_distance * far_rate, leave);
+    }
+    return m & (enter <= leave);
+}
+
+template <Features F>
+inline void intersect_cell(const Context& c, const Group& g, const View& v, sint column, sint row, Hits& hits) {
+    sint end_u = min(column + 2, v.quads_u);
+    sint end_v = min(row + 2, v.quads_v);
+    for (sint j = row; branch(j < end_v); ++j) {
+        for (sint i = column; branch(i < end_u); ++i) {
+            tally(c.counters->quad_tests, 1);
+            intersect_quad<F>(g, v, i, j, hits);
+        }
+    }
+}
+
+template <Features F> inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
+    phase_scope phase(phase_intersect);
+    tally(c.counters->block_tests, 1);
+    pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
+    View v;
+    v.line = line;
+    v.words = as<float>(header);
+    v.patch = load(field(header, &BlockHeader::patch));
+    v.number = load(field(header, &BlockHeader::number));
+    v.triangles = load(field(header, &BlockHeader::triangles));
+    v.quads_u = load(field(header, &BlockHeader::quads_u));
+    v.quads_v = load(field(header, &BlockHeader::quads_v));
+    sint mesh = load(field(header, &BlockHeader::mesh));
+    sint stride = load(field(header, &BlockHeader::stride));
+    sint cells_at = load(field(header, &BlockHeader::cells_at));
+    if constexpr (F.hanging) {
+        v.ancestors_at = load(field(header, &BlockHeader::ancestors_at));
+        for (int s = 0; s < 4; ++s)
+            v.hang[s] = load(field(header, &BlockHeader::hang) + s);
+    }
+    pointer<float> vertices = v.words + block_header_words;
+    v.x = vertices + stride * g.kx;
+    v.y = vertices + stride * g.ky;
+    v.z = vertices + stride * g.kz;
+    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
+    vfloat mx = load_broadcast(origin_at + g.kx);
+    vfloat my = load_broadcast(origin_at + g.ky);
+    vfloat mz = load_broadcast(origin_at + g.kz);
+    v.ox = g.ox - mx;
+    v.oy = g.oy - my;
+    v.oz = g.oz - mz;
+    if (branch(cells_at == 0)) {
+        intersect_cell<F>(c, g, v, 0, 0, hits);
+        return;
+    }
+    svec origin = load_svec(origin_at);
+    sint cells_u = (v.quads_u + 1) >> 1;
+    sint shift = select(cells_u > 2, sint(2), cells_u - 1);
+    sint cells = ((v.quads_v + 1) >> 1) << shift;
+    vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
+    sfloat last_t = reduce_max(furthest);
+    for (sint from = 0; branch(from < cells); from += isa::width) {
+        vmask met = cells_met(g, v, origin, cells_at, from, cells, last_t);
+        for (; branch(any(met)); met = clear_first(met)) {
+            sint cell = from + first(met);
+            sint row = cell >> shift;
+            sint column = cell - (row << shift);
+            tally(c.counters->cell_tests, 1);
+            sint column_begin = column * 2;
+            intersect_cell<F>(c, g, v, column_begin, row * 2, hits);
+        }
+    }
+}
+
+} // namespace razor::ISA_TARGET

@@ -1,0 +1,266 @@
+// The kd-tree, split on demand by the surface-area heuristic: a node is split when the first ray enters it. Planes are
+// sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). Patches stay closed in the lists until
+// their box is large against the node's cell (after Hunt et al. 2007).
+#pragma once
+
+#include "razor/kernels/kd_list.h"
+
+namespace razor::ISA_TARGET {
+
+inline constexpr int plane_samples = 8;
+inline constexpr float traversal_cost = 1.0F; // a packet's visit to a node ...
+inline constexpr float item_cost = 16.0F;     // ... and its test of a block
+inline constexpr float empty_bonus = 0.85F;
+inline constexpr int few_items = 8;         // so few are opened whatever their size
+inline constexpr float large_item = 0.5F;   // of the cell's largest side
+
+struct Plane {
+    sfloat cost, at;
+    sint axis;
+    sint below, above; // items on either side
+};
+
+/// Counts the items on both sides of 8 planes between `from` and `to` (exclusive) and keeps the cheapest.
+inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& best) {
+    sfloat lows[3] = {l.low.x, l.low.y, l.low.z};
+    sfloat highs[3] = {l.high.x, l.high.y, l.high.z};
+    sfloat low = lows[axis];
+    sfloat high = highs[axis];
+    sfloat e1 = highs[(axis + 1) % 3] - lows[(axis + 1) % 3];
+    sfloat e2 = highs[(axis + 2) % 3] - lows[(axis + 2) % 3];
+    sfloat step = (to - from) * (1.0F / (plane_samples + 1));
+    vfloat at[plane_samples];
+    sfloat place[plane_samples];
+    sint below[plane_samples], above[plane_samples];
+    for (int k = 0; k < plane_samples; ++k) {
+        place[k] = fma(step, sfloat(static_cast<float>(k + 1)), from);
+        at[k] = vfloat(place[k]);
+        below[k] = 0;
+        above[k] = 0;
+    }
+    pointer<float> item_low = l.boxes + l.stride * axis;
+    pointer<float> item_high = l.boxes + l.stride * (axis + 3);
+    for (sint i = 0; branch(i < l.count); i += isa::width) {
+        vmask m = first_lanes(l.count - i);
+        vfloat a = load_vector(item_low + i, m);
+        vfloat b = load_vector(item_high + i, m);
+        for (int k = 0; k < plane_samples; ++k) {
+            below[k] += count(m & is_below(a, b, at[k]));
+            above[k] += count(m & is_above(b, at[k]));
+        }
+    }
+    sfloat side = e1 * e2;
+    sfloat rim = e1 + e2;
+    sfloat area = fma(high - low, rim, side);
+    sfloat per_area = sfloat(item_cost) / area;
+    for (int k = 0; k < plane_samples; ++k) {
+        sfloat area_below = fma(place[k] - low, rim, side);
+        sfloat area_above = fma(high - place[k], rim, side);
+        sfloat weighted = area_below * to_float(below[k]);
+        weighted = fma(area_above, to_float(above[k]), weighted);
+        sfloat cost = fma(weighted, per_area, sfloat(traversal_cost));
+        sbool empty = below[k] == 0;
+        empty = empty | (above[k] == 0);
+        cost = select(empty, cost * empty_bonus, cost);
+        sbool better = cost < best.cost;
+        better = better & (place[k] > low);
+        better = better & (place[k] < high);
+        if (branch(better)) {
+            best.cost = cost;
+            best.at = place[k];
+            best.axis = axis;
+            best.below = below[k];
+            best.above = above[k];
+        }
+    }
+}
+
+/// The cheapest plane found; cost stays infinite if none separates anything.
+inline Plane choose_plane(const List& l) {
+    Plane best;
+    best.cost = 3.0e38F;
+    best.axis = -1;
+    sfloat lows[3] = {l.low.x, l.low.y, l.low.z};
+    sfloat highs[3] = {l.high.x, l.high.y, l.high.z};
+    for (int axis = 0; axis < 3; ++axis)
+        try_planes(l, axis, lows[axis], highs[axis], best);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (branch(best.axis == axis)) {
+            sfloat reach = (highs[axis] - lows[axis]) * (1.0F / (plane_samples + 1));
+            sfloat from = best.at - reach;
+            try_planes(l, axis, from, best.at + reach, best);
+            break;
+        }
+    }
+    return best;
+}
+
+/// Writes the items on either side of the plane into the lists of two new nodes; returns the lower one's number.
+inline sint split_list(const Context& c, const List& l, const Plane& plane) {
+    sint children = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 2, trap_nodes_full);
+    tally(c.counters->nodes_made, 2);
+    svec cut_high = l.high;
+    svec cut_low = l.low;
+    cut_high.x = select(plane.axis == 0, plane.at, l.high.x);
+    cut_high.y = select(plane.axis == 1, plane.at, l.high.y);
+    cut_high.z = select(plane.axis == 2, plane.at, l.high.z);
+    cut_low.x = select(plane.axis == 0, plane.at, l.low.x);
+    cut_low.y = select(plane.axis == 1, plane.at, l.low.y);
+    cut_low.z = select(plane.axis == 2, plane.at, l.low.z);
+    List child[2];
+    child[0] = make_list(c, plane.below, l.depth + 1, l.low, cut_high);
+    child[1] = make_list(c, plane.above, l.depth + 1, cut_low, l.high);
+    sint at[2] = {0, 0};
+    pointer<float> low = l.boxes + l.stride * plane.axis;
+    pointer<float> high = low + l.stride * 3;
+    vfloat where = vfloat(plane.at);
+    for (sint i = 0; branch(i < l.count); i += isa::width) {
+        vmask m = first_lanes(l.count - i);
+        Items v = load_items(l, i, m);
+        vfloat a = load_vector(low + i, m);
+        vfloat b = load_vector(high + i, m);
+        at[0] = append(child[0], at[0], v, m & is_below(a, b, where));
+        at[1] = append(child[1], at[1], v, m & is_above(b, where));
+    }
+    for (int k = 0; k < 2; ++k) {
+        pointer<KdNode> node = c.nodes + (children + k);
+        close_list(child[k]);
+        store(field(node, &KdNode::link), child[k].line);
+        sint state = select(child[k].count == 0, sint(node_leaf), sint(node_unsplit));
+        store_release(field(node, &KdNode::state), state);
+    }
+    return children;
+}
+
+/// Splits a node or makes it a leaf; returns its new state, not yet published.
+inline sint build_node(const Context& c, pointer<KdNode> node) {
+    phase_scope phase(phase_build);
+    sint line = load(field(node, &KdNode::link));
+    List l = read_list(c, line);
+    sfloat cell = largest(l.high - l.low);
+    vfloat limit = vfloat(cell * large_item);
+    sbool few = l.count <= few_items;
+    vmask open_all = vmask(few);
+    auto large = [&](const Items& v) {
+        vvec extent{v.box[3] - v.box[0], v.box[4] - v.box[1], v.box[5] - v.box[2]};
+        vfloat size = largest(extent);
+        vmask wanted = open_all | (size > limit);
+        return wanted & (v.item >= vint(0));
+    };
+    auto closed = [&](const Items& v) { return v.item >= vint(0); };
+    sint to_open = 0, patches = 0;
+    for (sint i = 0; branch(i < l.count); i += isa::width) {
+        vmask m = first_lanes(l.count - i);
+        Items v = load_items(l, i, m);
+        to_open += count(m & large(v));
+        patches += count(m & closed(v));
+    }
+    if (branch(to_open > 0)) {
+        l = open_items(c, l, large);
+        patches = patches - to_open;
+    }
+    for (;;) {
+        Plane plane;
+        plane.cost = 3.0e38F;
+        if (branch(l.depth < kd_depth_limit))
+            plane = choose_plane(l);
+        if (branch(plane.cost < to_float(l.count) * item_cost)) {
+            sint children = split_list(c, l, plane);
+            store(field(node, &KdNode::split), plane.at);
+            store(field(node, &KdNode::axis), plane.axis);
+            store(field(node, &KdNode::link), children);
+            tally(c.counters->nodes_split, 1);
+            return node_inner;
+        }
+        if (branch(patches == 0)) {
+            close_list(l);
+            store(field(node, &KdNode::link), l.line);
+            tally(c.counters->leaves, 1);
+            return node_leaf;
+        }
+        l = open_items(c, l, closed);
+        patches = 0;
+    }
+}
+
+/// Returns the state of a node that is no longer unsplit, splitting it if nobody else does.
+inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
+    pointer<shared_int> state = field(node, &KdNode::state);
+    while (branch(seen < node_inner)) {
+        if (branch(seen == node_unsplit)) {
+            seen = compare_exchange(state, node_unsplit, node_busy);
+            if (branch(seen == node_unsplit)) {
+                BusyGuard guard(state, node_unsplit);
+                seen = build_node(c, node);
+                guard.publish(seen);
+            }
+        } else {
+            seen = wait_while(state, node_busy);
+        }
+    }
+    return seen;
+}
+
+/// The root's list: every patch, closed.
+inline void build_root(const Context& c) {
+    phase_scope phase(phase_build);
+    sint patches = load(field(c.frame, &FrameHeader::patch_count));
+    sint from_stride = load(field(c.frame, &FrameHeader::bounds_stride));
+    pointer<float> bounds = load(field(c.frame, &FrameHeader::bounds));
+    sint root = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 2, trap_nodes_full);
+    svec none{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
+    List l = make_list(c, patches, 0, none, none);
+    vfloat big(3.0e38F);
+    vfloat small(-3.0e38F);
+    vfloat best[6] = {big, big, big, small, small, small};
+    for (sint i = 0; branch(i < patches); i += isa::width) {
+        vmask m = first_lanes(patches - i);
+        vint item = lane_index() + vint(i);
+        store_vector(l.items + i, item, m);
+        pointer<float> in = bounds + i;
+        pointer<float> out = l.boxes + i;
+        for (int k = 0; k < 6; ++k) {
+            vfloat b = load_vector(in, m);
+            store_vector(out, b, m);
+            vfloat extreme = k < 3 ? min(b, best[k]) : max(b, best[k]);
+            best[k] = select(m, extreme, best[k]);
+            in = in + from_stride;
+            out = out + l.stride;
+        }
+    }
+    sfloat box[6];
+    for (int k = 0; k < 6; ++k) {
+        box[k] = k < 3 ? reduce_min(best[k]) : reduce_max(best[k]);
+        pointer<float> to = k < 3 ? field(c.tree, &TreeRecord::low) + k : field(c.tree, &TreeRecord::high) + (k - 3);
+        store(to, box[k]);
+    }
+    l.low = {box[0], box[1], box[2]};
+    l.high = {box[3], box[4], box[5]};
+    close_list(l);
+    pointer<KdNode> node = c.nodes + root;
+    store(field(node, &KdNode::link), l.line);
+    store_release(field(node, &KdNode::state), node_unsplit);
+    store(field(c.tree, &TreeRecord::root), root);
+    tally(c.counters->nodes_made, 1);
+}
+
+/// Returns once the worker's tree has a root, making it if nobody else does.
+inline void ensure_root(const Context& c) {
+    pointer<shared_int> state = field(c.tree, &TreeRecord::root_state);
+    sint seen = load_acquire(state);
+    while (branch(seen != ready)) {
+        if (branch(seen == absent)) {
+            seen = compare_exchange(state, absent, busy);
+            if (branch(seen == absent)) {
+                BusyGuard guard(state, absent);
+                build_root(c);
+                guard.publish(ready);
+                return;
+            }
+        } else {
+            seen = wait_while(state, busy);
+        }
+    }
+}
+
+} // namespace razor::ISA_TARGET

@@ -1,0 +1,117 @@
+// Shading normals of a block's vertices, made when the first camera ray is shaded there: limit normals from derivative
+// pages, or those of the bilinear patch. Flat patches have none: their triangles' normals serve.
+#pragma once
+
+#include "razor/kernels/tessellate.h"
+
+namespace razor::ISA_TARGET {
+
+/// Sums derivative rows for a vector of vertices from `from` on.
+inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first, sint controls,
+                              sint from, const vmask& m, vvec& du, vvec& dv) {
+    vfloat zero(0.0F);
+    du = {zero, zero, zero};
+    dv = {zero, zero, zero};
+    pointer<float> row = weights + from;
+    for (sint i = 0; branch(i < controls); ++i) {
+        sint point = load(g.controls + (controls_first + i));
+        vvec p = load_broadcast_vec(g.points + point * 3);
+        vfloat wu = load_vector(row, m);
+        du = madd(wu, p, du);
+        vfloat wv = load_vector(row + row_stride, m);
+        dv = madd(wv, p, dv);
+        row = row + row_stride * 2;
+    }
+}
+
+inline void store_normals(pointer<float> out, sint stride, const vvec& du, const vvec& dv, const vmask& m) {
+    vfloat zero(0.0F);
+    vvec n = normalise(cross(du, dv), {zero, zero, zero});
+    store_vector(out, n.x, m);
+    store_vector(out + stride, n.y, m);
+    store_vector(out + stride * 2, n.z, m);
+}
+
+inline void make_normals(const Context& c, sint line, pointer<BlockHeader> header, sint normals_at) {
+    phase_scope phase(phase_shade);
+    sint patch = load(field(header, &BlockHeader::patch));
+    sint mesh = load(field(header, &BlockHeader::mesh));
+    sint number = load(field(header, &BlockHeader::number));
+    Cage g = load_cage(c, mesh);
+    Dicing d = plan_dicing(c, g, patch);
+    sint columns_log2 = max(d.nu - block_log2, 0);
+    Block b;
+    b.row = number >> columns_log2;
+    b.column = number - (b.row << columns_log2);
+    b.quads_u = load(field(header, &BlockHeader::quads_u));
+    b.stride = load(field(header, &BlockHeader::stride));
+    pointer<float> out = as<float>(c.grids + line) + normals_at;
+    if (branch(d.kind == static_cast<int>(PatchKind::catmull_clark))) {
+        sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
+        sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
+        sint controls = load(field(g.faces + d.face, &FaceRecord::control_count));
+        sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, b.column, b.row);
+        pointer<float> weights = page_weights(c, g, face_class, PageKind::derivative, index);
+        sint row_stride = page_stride(b.stride);
+        for (sint from = 0; branch(from < b.stride); from += isa::width) {
+            vmask m = first_lanes(b.stride - from);
+            vvec du, dv;
+            weigh_derivatives(g, weights, row_stride, first, controls, from, m, du, dv);
+            store_normals(out + from, b.stride, du, dv, m);
+        }
+        return;
+    }
+    vvec corner[4];
+    for (int k = 0; k < 4; ++k)
+        corner[k] = broadcast(straight_corner(c, g, d, k));
+    sfloat step_u = as_float((sint(127) - d.nu) << 23);
+    sfloat step_v = as_float((sint(127) - d.nv) << 23);
+    sint column0 = b.column * block_quads;
+    sint row0 = b.row * block_quads;
+    vvec bottom = corner[1] - corner[0];
+    vvec top = corner[2] - corner[3];
+    vvec left = corner[3] - corner[0];
+    vvec right = corner[2] - corner[1];
+    vvec top_more = top - bottom;
+    vvec right_more = right - left;
+    for (sint from = 0; branch(from < b.stride); from += isa::width) {
+        vmask m = first_lanes(b.stride - from);
+        vint vertex = lane_index() + vint(from);
+        vint column, row;
+        vertex_place(b.quads_u, vertex, column, row);
+        column = column + vint(column0);
+        row = row + vint(row0);
+        vfloat u = to_float(column) * vfloat(step_u);
+        vfloat v = to_float(row) * vfloat(step_v);
+        vvec du = madd(v, top_more, bottom);
+        vvec dv = madd(u, right_more, left);
+        store_normals(out + from, b.stride, du, dv, m);
+    }
+}
+
+/// Returns once the block's normals are there. 0: it has none.
+inline sint ensure_normals(const Context& c, sint line) {
+    pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
+    sint normals_at = load(field(header, &BlockHeader::normals_at));
+    if (branch(normals_at == 0))
+        return normals_at;
+    pointer<shared_int> state = field(header, &BlockHeader::normals);
+    sint seen = load_acquire(state);
+    while (branch(seen != ready)) {
+        if (branch(seen == absent)) {
+            seen = compare_exchange(state, absent, busy);
+            if (branch(seen == absent)) {
+                BusyGuard guard(state, absent);
+                make_normals(c, line, header, normals_at);
+                tally(c.counters->normal_blocks, 1);
+                guard.publish(ready);
+                return normals_at;
+            }
+        } else {
+            seen = wait_while(state, busy);
+        }
+    }
+    return normals_at;
+}
+
+} // namespace razor::ISA_TARGET

@@ -1,0 +1,243 @@
+// Points of limit surfaces and of straight-edged patches: curve exponents, curve points, corners, centres. All are pure
+// functions of their owner, recomputed by whoever needs them, so that neighbours agree bit for bit.
+#pragma once
+
+#include "razor/kernels/scratch.h"
+#include "razor/kernels/vec.h"
+
+namespace razor::ISA_TARGET {
+
+/// The cage of one mesh, as handles in registers.
+struct Cage {
+    pointer<FaceRecord> faces;
+    pointer<VertexRecord> vertices;
+    pointer<CurveRecord> curves;
+    pointer<std::int32_t> face_curves, controls;
+    pointer<float> points;
+    pointer<ClassRecord> classes;
+    sfloat per_edge_length; // 1 / target edge length
+    sint max_exponent;
+};
+
+inline Cage load_cage(const Context& c, sint mesh) {
+    Cage g;
+    g.faces = load(field(c.frame, &FrameHeader::faces));
+    g.vertices = load(field(c.frame, &FrameHeader::vertices));
+    g.curves = load(field(c.frame, &FrameHeader::curves));
+    g.face_curves = load(field(c.frame, &FrameHeader::face_curves));
+    g.controls = load(field(c.frame, &FrameHeader::controls));
+    g.points = load(field(c.frame, &FrameHeader::points));
+    g.classes = load(field(c.frame, &FrameHeader::classes));
+    pointer<MeshRecord> record = c.meshes + mesh;
+    sfloat edge = load(field(record, &MeshRecord::edge_length));
+    g.per_edge_length = sfloat(1.0F) / edge;
+    g.max_exponent = load(field(record, &MeshRecord::max_exponent));
+    return g;
+}
+
+inline svec cage_point(const Cage& g, sint point) { return load_svec(g.points + point * 3); }
+
+/// Exponent N of a cage edge: 2^N segments of about the target length, N = round(log2(length / target)), by the cage points
+/// alone; in [0, max_exponent].
+inline sint edge_exponent(const Cage& g, pointer<CurveRecord> curve) {
+    sint end0 = load(field(curve, &CurveRecord::end0));
+    sint end1 = load(field(curve, &CurveRecord::end1));
+    svec a = cage_point(g, end0);
+    svec b = cage_point(g, end1);
+    svec d = (b - a) * g.per_edge_length;
+    sfloat square = fma(d.x, d.x, fma(d.y, d.y, d.z * d.z));
+    sfloat doubled = square + square; // floor(log2(2 r^2)) / 2 rounds log2(r) to nearest
+    sint exponent = ((as_int(doubled) >> 23) - 127) >> 1;
+    return min(max(exponent, 0), g.max_exponent);
+}
+
+/// All spokes of an n-gon share one exponent: the largest half edge's.
+inline sint spoke_exponent(const Cage& g, pointer<FaceRecord> face) {
+    sint corners = load(field(face, &FaceRecord::corner_count));
+    sint first = load(field(face, &FaceRecord::curve_first));
+    sint largest = 1;
+    for (sint i = 0; branch(i < corners); ++i) {
+        sint curve = load(g.face_curves + (first + i));
+        largest = max(largest, edge_exponent(g, g.curves + curve));
+    }
+    return largest - 1;
+}
+
+inline sint curve_exponent(const Cage& g, pointer<CurveRecord> curve) {
+    sint flags = load(field(curve, &CurveRecord::flags));
+    if (branch((flags & curve_spoke) != 0)) {
+        sint face = load(field(curve, &CurveRecord::owner_face));
+        return spoke_exponent(g, g.faces + face);
+    }
+    return edge_exponent(g, curve);
+}
+
+/// The weights of a page, made by the host if nobody asked for it before.
+inline pointer<float> page_weights(const Context& c, const Cage& g, sint face_class, PageKind kind, sint index) {
+    int k = static_cast<int>(kind);
+    pointer<ClassRecord> record = g.classes + face_class;
+    pointer<Line> pages = load(field(record, &ClassRecord::pages));
+    sint first = load(field(record, &ClassRecord::first) + k);
+    sint stride = load(field(record, &ClassRecord::stride) + k);
+    pointer<Line> page = pages + (first + index * stride);
+    sint present = load_acquire(field(as<PageHeader>(page), &PageHeader::present));
+    if (branch(present == 0)) {
+        tally(c.counters->pages_requested, 1);
+        request_page(*c.pages, face_class, k, index);
+    }
+    return as<float>(page + 1);
+}
+
+/// Limit position at a face's corner (or its centre: corner = corner_count). One lane a control point.
+inline svec limit_point(const Context& c, const Cage& g, pointer<FaceRecord> face, sint corner) {
+    sint face_class = load(field(face, &FaceRecord::face_class));
+    sint first = load(field(face, &FaceRecord::control_first));
+    sint n = load(field(face, &FaceRecord::control_count));
+    pointer<float> row = page_weights(c, g, face_class, PageKind::vertex, corner);
+    vvec sum{vfloat(0.0F), vfloat(0.0F), vfloat(0.0F)};
+    for (sint i = 0; branch(i < n); i += isa::width) {
+        vmask m = first_lanes(n - i);
+        vfloat w = load_vector(row + i, m);
+        vint point = load_vector(g.controls + (first + i), m);
+        vint at = point * vint(3);
+        vfloat x = gather(g.points, at, m);
+        vfloat y = gather(g.points + 1, at, m);
+        vfloat z = gather(g.points + 2, at, m);
+        sum.x = fma(w, x, sum.x);
+        sum.y = fma(w, y, sum.y);
+        sum.z = fma(w, z, sum.z);
+    }
+    svec p;
+    p.x = reduce_add(sum.x);
+    p.y = reduce_add(sum.y);
+    p.z = reduce_add(sum.z);
+    return p;
+}
+
+/// Where a cage point lies on the surface.
+template <bool Straight> inline svec vertex_position(const Context& c, const Cage& g, sint point) {
+    if constexpr (Straight)
+        return cage_point(g, point);
+    sint owner = load(field(g.vertices + point, &VertexRecord::owner_face));
+    sint corner = load(field(g.vertices + point, &VertexRecord::owner_corner));
+    return limit_point(c, g, g.faces + owner, corner);
+}
+
+template <bool Straight> inline svec face_centre(const Context& c, const Cage& g, pointer<FaceRecord> face) {
+    sint n = load(field(face, &FaceRecord::corner_count));
+    if constexpr (!Straight)
+        return limit_point(c, g, face, n);
+    sint first = load(field(face, &FaceRecord::control_first));
+    svec sum{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
+    for (sint i = 0; branch(i < n); ++i) {
+        sint point = load(g.controls + (first + i));
+        sum = sum + cage_point(g, point);
+    }
+    return sum * (sfloat(1.0F) / to_float(n));
+}
+
+inline void put_point(pointer<float> points, sint lane, const svec& p) {
+    store(points + lane, p.x);
+    store(points + curve_row + lane, p.y);
+    store(points + 2 * curve_row + lane, p.z);
+}
+inline svec get_point(pointer<const float> points, sint lane) {
+    svec p;
+    p.x = load(points + lane);
+    p.y = load(points + curve_row + lane);
+    p.z = load(points + 2 * curve_row + lane);
+    return p;
+}
+inline svec middle(const svec& a, const svec& b) { return (a + b) * 0.5F; }
+
+/// Writes the interior points of one chunk of a curve of exponent N (points (8 chunk + i) / 2^N, i = 0..8, of which those
+/// outside the curve are undefined) to `points`: x[16], y[16], z[16]. Ends are for the caller.
+inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent, sint chunk,
+                           pointer<float> points) {
+    sint owner = load(field(curve, &CurveRecord::owner_face));
+    sint local = load(field(curve, &CurveRecord::owner_local));
+    sint flags = load(field(curve, &CurveRecord::flags));
+    pointer<FaceRecord> face = g.faces + owner;
+    sint face_class = load(field(face, &FaceRecord::face_class));
+    sint first = load(field(face, &FaceRecord::control_first));
+    sint n = load(field(face, &FaceRecord::control_count));
+    sint strips = load(field(g.classes + face_class, &ClassRecord::strips));
+    sint chunks_before = exponent; // strip_first(exponent)
+    if (branch(exponent > block_log2))
+        chunks_before = strip_first_large(sint(1) << (exponent - block_log2));
+    sint reversed = flags & curve_owner_reversed;
+    sint strip = chunks_before + chunk;
+    sint index = (local * 2 + reversed) * strips + strip;
+    pointer<float> weights = page_weights(c, g, face_class, PageKind::curve, index);
+    for (int lanes = 0; lanes < curve_row; lanes += isa::width) {
+        vmask m = first_lanes(curve_row - lanes);
+        vvec sum{vfloat(0.0F), vfloat(0.0F), vfloat(0.0F)};
+        for (sint i = 0; branch(i < n); ++i) {
+            sint point = load(g.controls + (first + i));
+            vvec p = load_broadcast_vec(g.points + point * 3);
+            vfloat w = load_vector(weights + i * curve_row + lanes, m);
+            sum = madd(w, p, sum);
+        }
+        store_vector(points + lanes, sum.x, m);
+        store_vector(points + curve_row + lanes, sum.y, m);
+        store_vector(points + 2 * curve_row + lanes, sum.z, m);
+    }
+}
+
+/// The same for a cage edge with its ends, which belong to the cage points.
+template <bool Straight>
+inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent, sint chunk,
+                        pointer<float> points) {
+    if (branch(exponent > 0))
+        evaluate_chunk(c, g, curve, exponent, chunk, points);
+    if (branch(chunk == 0)) {
+        sint end = load(field(curve, &CurveRecord::end0));
+        put_point(points, 0, vertex_position<Straight>(c, g, end));
+    }
+    sint last = (sint(1) << exponent) - chunk * block_quads;
+    if (branch(last <= block_quads)) {
+        sint end = load(field(curve, &CurveRecord::end1));
+        put_point(points, last, vertex_position<Straight>(c, g, end));
+    }
+}
+
+/// The middle of a cage edge: one of its points, or (exponent 0) the mean of its ends.
+template <bool Straight> inline svec edge_middle(const Context& c, const Cage& g, pointer<CurveRecord> curve) {
+    pointer<float> points = c.stack + (scratch_curve + scratch_curve_size);
+    sint exponent = 0;
+    if constexpr (!Straight)
+        exponent = edge_exponent(g, curve);
+    sint at = (sint(1) << exponent) >> 1;
+    edge_points<Straight>(c, g, curve, exponent, at >> block_log2, points);
+    if (branch(exponent == 0)) {
+        svec a = get_point(points, 0);
+        svec b = get_point(points, 1);
+        return middle(a, b);
+    }
+    return get_point(points, at & (block_quads - 1));
+}
+
+/// Points of any curve, ends included, into the first curve scratch. `exponent` is the curve's, 0 if it is straight.
+template <bool Straight>
+inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent, sint chunk) {
+    pointer<float> points = c.stack + scratch_curve;
+    sint flags = load(field(curve, &CurveRecord::flags));
+    if (branch((flags & curve_spoke) == 0)) {
+        edge_points<Straight>(c, g, curve, exponent, chunk, points);
+        return points;
+    }
+    if (branch(exponent > 0))
+        evaluate_chunk(c, g, curve, exponent, chunk, points);
+    if (branch(chunk == 0)) {
+        sint edge = load(field(curve, &CurveRecord::end0));
+        put_point(points, 0, edge_middle<Straight>(c, g, g.curves + edge));
+    }
+    sint last = (sint(1) << exponent) - chunk * block_quads;
+    if (branch(last <= block_quads)) {
+        sint face = load(field(curve, &CurveRecord::end1));
+        put_point(points, last, face_centre<Straight>(c, g, g.faces + face));
+    }
+    return points;
+}
+
+} // namespace razor::ISA_TARGET

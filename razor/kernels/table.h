@@ -1,0 +1,62 @@
+// What a target's kernels offer to the host: one table of functions, the same signature for every target.
+#pragma once
+
+#include "isa/services.h"
+#include "razor/frame/counters.h"
+#include "razor/frame/layout.h"
+
+namespace razor {
+
+struct WorkerArguments {
+    FrameHeader* frame = nullptr;
+    int worker = 0;
+    isa::page_service* pages = nullptr;
+    Counters* counters = nullptr;
+};
+
+/// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene coordinates.
+struct TraceArguments {
+    const float* origin[3] = {};
+    const float* direction[3] = {};
+    const float* t_min = nullptr;
+    const float* t_max = nullptr;
+    int count = 0;
+    bool any_hit = false;
+    // Closest hit: distance, weights, patch (-1: none), block number * 128 + quad * 2 + which. Any hit: patch only.
+    float* t = nullptr;
+    float* u = nullptr;
+    float* v = nullptr;
+    std::int32_t* patch = nullptr;
+    std::int32_t* triangle = nullptr;
+};
+
+/// Which instantiation of the kernels a frame needs (its plan).
+enum Plan : int { plan_flat = 0, plan_hanging = 1, plan_count = 2 };
+
+struct KernelTable {
+    const char* name;
+    int width; // lanes
+    /// One worker's share of a frame. Every worker of the frame must call it.
+    void (*render[plan_count])(const WorkerArguments&);
+    /// Refits, then traces rays in packets of consecutive rays: for tests and benchmarks. One worker only.
+    void (*trace[plan_count])(const WorkerArguments&, const TraceArguments&);
+};
+
+// One a target; those that the build left out are not defined.
+namespace plain {
+extern const KernelTable kernels;
+}
+namespace sse4 {
+extern const KernelTable kernels;
+}
+namespace avx2 {
+extern const KernelTable kernels;
+}
+namespace avx512 {
+extern const KernelTable kernels;
+}
+namespace simulated {
+extern const KernelTable kernels;
+}
+
+} // namespace razor
