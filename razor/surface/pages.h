@@ -3,6 +3,7 @@
 
 #include "razor/surface/topology.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -13,8 +14,8 @@ namespace razor {
 struct PageKey {
     int face_class = 0;
     PageKind kind = PageKind::block;
-    int local = 0;         // vertex: corner or corner_count (centre). curve: local curve. block, derivative: sub
-    bool reversed = false; // curve
+    int local = 0; // vertex: corner or corner_count (centre). curve: local curve. block, derivative: sub
+    bool reversed = false;           // curve
     int exponent_u = 0, strip_u = 0; // strip: chunk or block column within its exponent
     int exponent_v = 0, strip_v = 0;
 };
@@ -22,16 +23,29 @@ struct PageKey {
 /// Inverse of the index formulas of PageKind for a class of `corner_count` corners and `strips` strips.
 PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int strips);
 
-/// Floats that follow a page's header line, and the largest such number over all keys of a kind (the section's stride).
+/// Floats that follow a page's header line, and the largest such number over all keys of a kind (the
+/// section's stride).
+///   vertex: one row of control_count weights, zero-padded to a multiple of 64 (any logical width can read
+///   it) curve: control_count rows of curve_row weights, 1 + min(8, 2^N) of them used, the rest zero block:
+///   control_count rows of (nu+1)(nv+1) weights, nu = min(8, 2^Nu), zero-padded to a multiple of RAZOR_WIDTH
+///   derivative: as block, two rows a control point
 std::size_t page_floats(const PageKey& key, int control_count);
 std::size_t largest_page_floats(PageKind kind, int control_count);
 
+/// The layout of a class's pages, with base_line 0. Sections follow each other in the order of PageKind.
+ClassRecord class_record(const FaceClass& face_class, int max_exponent);
+
+/// Lines that all pages of a class span: the next class may start there.
+std::int64_t class_lines(const FaceClass& face_class, int max_exponent);
+
 class PageMaker {
-  public:
+public:
     struct Options {
-        int approximation_level = 4; // Bfr's smooth and sharp level; the README states the error it leaves
+        /// Refinement levels to which Bfr isolates extraordinary points and sharp features before it
+        /// approximates.
+        int approximation_level = 6;
     };
-    /// Keeps references to both arguments.
+    /// Keeps a reference to `topology` and copies what it needs of `mesh`.
     PageMaker(const Mesh& mesh, const Topology& topology, Options options);
     PageMaker(const Mesh& mesh, const Topology& topology) : PageMaker(mesh, topology, Options{}) {}
     ~PageMaker();
@@ -39,9 +53,10 @@ class PageMaker {
     PageMaker& operator=(const PageMaker&) = delete;
 
     /// Writes page_floats(key, ...) weights. Any thread, any order: the weights depend on the key alone.
+    /// Throws std::logic_error if OpenSubdiv uses a control point that the topology does not list.
     void make(const PageKey& key, float* weights) const;
 
-  private:
+private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -1,6 +1,6 @@
-// One linear pass over a cage: patches, curves, owners, face classes. No limit surface is evaluated and no irregular patch
-// is built here. Everything depends on topology and tags alone, never on point positions (except which bilinear polygons
-// are planar, and how concave ones are cut).
+// One linear pass over a cage: patches, curves, owners, face classes. No limit surface is evaluated and no
+// irregular patch is built here. Everything depends on topology and tags alone, never on point positions
+// (except which bilinear polygons are planar, and how concave ones are cut).
 #pragma once
 
 #include "razor/frame/layout.h"
@@ -11,8 +11,8 @@
 
 namespace razor {
 
-/// A set of faces with equal weights: their neighbourhoods agree in valences, face sizes, sharpness, boundary and in which
-/// points of the ring coincide, so one page of weights serves all. Regular faces are one class.
+/// A set of faces with equal weights: their neighbourhoods agree in valences, face sizes, sharpness, boundary
+/// and in which points of the ring coincide, so one page of weights serves all. Regular faces are one class.
 struct FaceClass {
     int representative = 0; // lowest-numbered face of the class, in the mesh's numbering
     int control_count = 0;
@@ -28,11 +28,13 @@ struct Topology {
     std::vector<CurveRecord> curves;  // cage edges first, then spokes
     std::vector<PatchRecord> patches; // ordered by (face, sub); mesh = 0
     std::vector<FaceClass> classes;
-    int max_exponent = max_exponent_limit; // largest curve exponent for which the pages fit their address range
-    int undrawn_faces = 0;                 // holes, and faces that boundary interpolation `none` leaves out
+    int max_exponent =
+        max_exponent_limit; // largest curve exponent for which the pages fit their address range
+    int undrawn_faces = 0;  // holes, and faces that boundary interpolation `none` leaves out
 };
 
-/// Throws UserError naming the mesh and face where the cage cannot be used (see razor/scene/scene.h for the invariants).
+/// Throws UserError naming the mesh and face where the cage cannot be used (see razor/scene/scene.h for the
+/// invariants).
 void validate_mesh(const Mesh& mesh);
 
 /// `mesh` must be valid. Throws UserError for cages that cannot be rendered (naming the face and the cause).

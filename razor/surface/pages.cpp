@@ -1,0 +1,219 @@
+// Each class keeps one Bfr surface, that of its representative, built by whoever asks first. The factory's
+// own cache stays off: it would be asked once a class only, and in OpenSubdiv 3.5 it confuses faces that
+// touch an interior point of two faces.
+#include "razor/surface/pages.h"
+
+#include "razor/surface/refiner.h"
+
+#include <fmt/format.h>
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace razor {
+namespace {
+
+namespace Bfr = OpenSubdiv::Bfr;
+using Factory = Bfr::RefinerSurfaceFactory<>;
+using Uv = std::array<double, 2>;
+
+struct ClassSurface {
+    std::once_flag built;
+    Bfr::Surface<double> surface;
+    std::vector<int> to_control; // from Bfr's control points to positions in the face's control list
+};
+
+/// Position in our regular control list of each point of Bfr's 4 x 4 patch, row by row.
+constexpr std::array<int, 16> regular_order{5, 6, 7, 8, 4, 0, 1, 9, 15, 3, 2, 10, 14, 13, 12, 11};
+
+std::vector<int> map_controls(const Bfr::Surface<double>& surface, const FaceClass& c,
+                              std::span<const int> controls) {
+    if (c.regular) {
+        if (!surface.IsRegular() || surface.GetNumControlPoints() != 16) {
+            throw std::logic_error(fmt::format("face {} is not regular to OpenSubdiv", c.representative));
+        }
+        return {regular_order.begin(), regular_order.end()};
+    }
+    std::vector<int> theirs(static_cast<std::size_t>(surface.GetNumControlPoints()));
+    surface.GetControlPointIndices(theirs.data());
+    std::unordered_map<int, int> position;
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+        position.emplace(controls[i], static_cast<int>(i));
+    }
+    std::vector<int> map;
+    for (const int point : theirs) {
+        const auto found = position.find(point);
+        if (found == position.end()) {
+            throw std::logic_error(fmt::format("face {} depends on point {}, which its control list lacks",
+                                               c.representative, point));
+        }
+        map.push_back(found->second);
+    }
+    return map;
+}
+
+/// Weights of one point of a surface, summed over repeated control points.
+class StencilEvaluator {
+public:
+    StencilEvaluator(const ClassSurface& entry, const FaceClass& c)
+        : entry_(entry), quad_(c.corner_count == 4), parameters_(entry.surface.GetParameterization()) {
+        for (std::size_t k = 0; k < raw_.size(); ++k) {
+            raw_[k].resize(entry.to_control.size());
+            summed_[k].resize(static_cast<std::size_t>(c.control_count));
+        }
+    }
+
+    /// Sub-face coordinates in [0,1]^2 (of the face itself if it is a quad).
+    void evaluate(int sub, Uv uv, bool derivatives) {
+        if (!quad_) {
+            const Uv normalized = uv;
+            parameters_.ConvertNormalizedSubFaceToCoord(sub, normalized.data(), uv.data());
+        }
+        if (derivatives) {
+            entry_.surface.EvaluateStencil(uv.data(), raw_[0].data(), raw_[1].data(), raw_[2].data());
+        } else {
+            entry_.surface.EvaluateStencil(uv.data(), raw_[0].data());
+        }
+        for (std::size_t k = 0; k < (derivatives ? 3U : 1U); ++k) {
+            std::fill(summed_[k].begin(), summed_[k].end(), 0.0);
+            for (std::size_t i = 0; i < entry_.to_control.size(); ++i) {
+                summed_[k][static_cast<std::size_t>(entry_.to_control[i])] += raw_[k][i];
+            }
+        }
+    }
+
+    /// Writes row after row's entry `column`; which: 0 position, 1 d/du, 2 d/dv.
+    void store(std::size_t which, float* rows, std::size_t row_stride, std::size_t column) const {
+        for (std::size_t c = 0; c < summed_[which].size(); ++c) {
+            rows[c * row_stride + column] = static_cast<float>(summed_[which][c]);
+        }
+    }
+
+private:
+    const ClassSurface& entry_;
+    bool quad_;
+    Bfr::Parameterization parameters_;
+    std::array<std::vector<double>, 3> raw_, summed_;
+};
+
+struct SubPoint {
+    int sub;
+    Uv uv;
+};
+
+/// The point at parameter t of local curve `local`, in the direction of the face (spokes: towards the
+/// centre).
+SubPoint on_curve(int local, double t, int corners) {
+    if (local >= corners) {
+        return {local - corners, {1, t}};
+    }
+    if (corners != 4) {
+        return t <= 0.5 ? SubPoint{local, {2 * t, 0}} : SubPoint{(local + 1) % corners, {0, 2 * (1 - t)}};
+    }
+    const std::array<Uv, 4> along{{{t, 0}, {1, t}, {1 - t, 1}, {0, 1 - t}}};
+    return {0, along[static_cast<std::size_t>(local)]};
+}
+
+SubPoint at_vertex(int local, int corners) {
+    if (corners != 4) {
+        return local == corners ? SubPoint{0, {1, 1}} : SubPoint{local, {0, 0}};
+    }
+    constexpr std::array<Uv, 5> corner{{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}}};
+    return {0, corner[static_cast<std::size_t>(local)]};
+}
+
+/// Exact in double: the same point gets the same parameter from every block and chunk.
+double dyadic(int strip, int i, int exponent) {
+    return static_cast<double>(block_quads * strip + i) / (1 << exponent);
+}
+
+int quads(int exponent) {
+    return std::min(block_quads, 1 << exponent);
+}
+
+} // namespace
+
+struct PageMaker::Impl {
+    Impl(const Mesh& mesh, const Topology& t, Options options)
+        : topology(t), refiner(make_refiner(mesh)),
+          factory(*refiner, Bfr::SurfaceFactory::Options()
+                                .EnableCaching(false)
+                                .SetApproxLevelSmooth(options.approximation_level)
+                                .SetApproxLevelSharp(options.approximation_level)),
+          surfaces(t.classes.size()) {}
+
+    const ClassSurface& surface(int face_class) {
+        ClassSurface& entry = surfaces[static_cast<std::size_t>(face_class)];
+        std::call_once(entry.built, [&] {
+            const FaceClass& c = topology.classes[static_cast<std::size_t>(face_class)];
+            if (!factory.InitVertexSurface(c.representative, &entry.surface)) {
+                throw std::logic_error(fmt::format("face {} has no limit surface", c.representative));
+            }
+            const FaceRecord& face = topology.faces[static_cast<std::size_t>(c.representative)];
+            entry.to_control = map_controls(entry.surface, c,
+                                            std::span(topology.controls)
+                                                .subspan(static_cast<std::size_t>(face.control_first),
+                                                         static_cast<std::size_t>(face.control_count)));
+        });
+        return entry;
+    }
+
+    const Topology& topology;
+    std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner;
+    Factory factory;
+    std::vector<ClassSurface> surfaces;
+};
+
+PageMaker::PageMaker(const Mesh& mesh, const Topology& topology, Options options)
+    : impl_(std::make_unique<Impl>(mesh, topology, options)) {}
+
+PageMaker::~PageMaker() = default;
+
+void PageMaker::make(const PageKey& key, float* weights) const {
+    const FaceClass& c = impl_->topology.classes[static_cast<std::size_t>(key.face_class)];
+    StencilEvaluator stencil(impl_->surface(key.face_class), c);
+    std::fill_n(weights, page_floats(key, c.control_count), 0.0F);
+    switch (key.kind) {
+    case PageKind::vertex: {
+        const SubPoint p = at_vertex(key.local, c.corner_count);
+        stencil.evaluate(p.sub, p.uv, false);
+        stencil.store(0, weights, 1, 0);
+        break;
+    }
+    case PageKind::curve:
+        for (int i = 0; i <= quads(key.exponent_u); ++i) {
+            const double t = dyadic(key.strip_u, i, key.exponent_u);
+            const SubPoint p = on_curve(key.local, key.reversed ? 1 - t : t, c.corner_count);
+            stencil.evaluate(p.sub, p.uv, false);
+            stencil.store(0, weights, curve_row, static_cast<std::size_t>(i));
+        }
+        break;
+    case PageKind::block:
+    case PageKind::derivative: {
+        const bool derivatives = key.kind == PageKind::derivative;
+        const std::size_t row = page_floats(key, c.control_count) /
+                                (static_cast<std::size_t>(c.control_count) * (derivatives ? 2U : 1U));
+        std::size_t column = 0;
+        for (int j = 0; j <= quads(key.exponent_v); ++j) {
+            for (int i = 0; i <= quads(key.exponent_u); ++i, ++column) {
+                const Uv uv{dyadic(key.strip_u, i, key.exponent_u), dyadic(key.strip_v, j, key.exponent_v)};
+                stencil.evaluate(key.local, uv, derivatives);
+                if (derivatives) {
+                    stencil.store(1, weights, 2 * row, column);
+                    stencil.store(2, weights + row, 2 * row, column);
+                } else {
+                    stencil.store(0, weights, row, column);
+                }
+            }
+        }
+        break;
+    }
+    }
+}
+
+} // namespace razor

@@ -1,0 +1,43 @@
+#include "razor/surface/topology.h"
+
+#include "razor/surface/adjacency.h"
+#include "razor/surface/bilinear_patches.h"
+#include "razor/surface/curves.h"
+#include "razor/surface/face_classes.h"
+#include "razor/surface/page_layout.h"
+#include "razor/surface/patches.h"
+#include "razor/surface/refiner.h"
+
+#include <algorithm>
+
+namespace razor {
+
+Topology analyse_topology(const Mesh& mesh) {
+    const Adjacency adjacency = build_adjacency(mesh);
+    const std::vector<bool> drawn = faces_with_limit_surface(mesh);
+    Topology topology;
+    topology.undrawn_faces = static_cast<int>(std::count(drawn.begin(), drawn.end(), false));
+    for (const int size : mesh.face_sizes) {
+        topology.faces.push_back({-1, 0, 0, size, 0});
+    }
+    build_edge_curves(adjacency, drawn, topology);
+    if (mesh.scheme == Scheme::bilinear) {
+        append_bilinear_patches(mesh, adjacency, drawn, topology);
+        return topology;
+    }
+    assign_face_classes(mesh, adjacency, drawn, topology);
+    for (int f = 0; f < adjacency.face_count(); ++f) {
+        if (!drawn[static_cast<std::size_t>(f)]) {
+            continue;
+        }
+        if (adjacency.size(f) == 4) {
+            append_quad(adjacency, f, PatchKind::catmull_clark, topology);
+        } else {
+            append_sub_faces(adjacency, f, PatchKind::catmull_clark, topology);
+        }
+    }
+    topology.max_exponent = largest_exponent(mesh, topology.classes);
+    return topology;
+}
+
+} // namespace razor
