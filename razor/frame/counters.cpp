@@ -1,6 +1,5 @@
 #include "razor/frame/counters.h"
 
-
 namespace razor {
 
 Counters& Counters::operator+=(const Counters& o) {

@@ -9,7 +9,6 @@ struct Counters {
     std::int64_t camera_rays = 0, shadow_rays = 0;
     std::int64_t camera_packets = 0, shadow_packets = 0; // rays / (packets x width) is their utilisation
     std::int64_t node_visits = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
-    std::int64_t nodes_split = 0, leaves = 0, nodes_made = 0; // nodes made and never split were not needed
     std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;
     std::int64_t normal_blocks = 0; // blocks whose normals were asked for
     std::int64_t pages_requested = 0;
@@ -27,9 +26,6 @@ template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("block_tests", c.block_tests);
     visit("cell_tests", c.cell_tests);
     visit("quad_tests", c.quad_tests);
-    visit("nodes_split", c.nodes_split);
-    visit("leaves", c.leaves);
-    visit("nodes_made", c.nodes_made);
     visit("patches_opened", c.patches_opened);
     visit("blocks_made", c.blocks_made);
     visit("vertices_made", c.vertices_made);

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace razor {
@@ -77,7 +76,8 @@ struct Frame::Impl {
     std::int64_t undrawn = 0;
 
     template <class T> T* region(const char* structure, int owner, std::size_t count) {
-        return reinterpret_cast<T*>(memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T)));
+        return reinterpret_cast<T*>(
+            memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T)));
     }
     void place_scene(const Scene& scene);
     void place_topology();
@@ -100,9 +100,11 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     counters.resize(static_cast<std::size_t>(options.workers));
     std::uint64_t scene_bytes = 0;
     for (const Topology& t : topologies)
-        scene_bytes += t.patches.size() * (sizeof(PatchRecord) + 64 + sizeof(OpenPatch) * static_cast<std::size_t>(trees)) +
+        scene_bytes += t.patches.size() *
+                           (sizeof(PatchRecord) + 64 + sizeof(OpenPatch) * static_cast<std::size_t>(trees)) +
                        t.controls.size() * 4 + (t.faces.size() + t.points.size() + t.curves.size()) * 64;
-    auto pixels = static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
+    auto pixels =
+        static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(pages->span_bytes() + all_grids + all_nodes + all_lists +
                                                   2 * scene_bytes + pixels * 64 + 4 * gibibyte +
                                                   static_cast<std::uint64_t>(options.workers + trees) * 64 *
@@ -141,8 +143,9 @@ void Frame::Impl::place_scene(const Scene& scene) {
                 plan = plan_hanging;
     }
     if (patches == 0)
-        throw UserError(fmt::format("{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
-                                    scene.name));
+        throw UserError(fmt::format(
+            "{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
+            scene.name));
     if (patches > (std::size_t{1} << 30))
         throw UserError(fmt::format("{}: {} patches are too many; at most 2^30", scene.name, patches));
     header->patch_count = static_cast<std::int32_t>(patches);
@@ -308,7 +311,7 @@ void Frame::Impl::place_view(const Scene& scene) {
 }
 
 void Frame::Impl::reset() {
-    std::memset(header->queues.get(), 0, sizeof(QueueRecord));
+    *header->queues.get() = QueueRecord{};
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
         tree.root_state.word = absent;
@@ -327,10 +330,13 @@ void Frame::Impl::reset() {
     }
 }
 
-Frame::Frame(const Scene& scene, const FrameOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+Frame::Frame(const Scene& scene, const FrameOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options)) {}
 Frame::~Frame() = default;
 
-void Frame::reset() { impl_->reset(); }
+void Frame::reset() {
+    impl_->reset();
+}
 
 namespace {
 
@@ -338,15 +344,17 @@ namespace {
     const char* what = trap.code == trap_grids_full   ? "tessellated grids"
                        : trap.code == trap_nodes_full ? "kd-tree nodes"
                                                       : "kd-tree item lists";
-    throw UserError(fmt::format("frame memory for {} is full; use a larger target edge (--edge-pixels), or share kd-trees "
-                                "between more workers",
-                                what));
+    throw UserError(fmt::format(
+        "frame memory for {} is full; use a larger target edge (--edge-pixels), or share kd-trees "
+        "between more workers",
+        what));
 }
 
 } // namespace
 
 void Frame::render(const KernelTable& kernels, int worker) {
-    WorkerArguments a{impl_->header, worker, impl_->pages.get(), &impl_->counters[static_cast<std::size_t>(worker)]};
+    WorkerArguments a{impl_->header, worker, impl_->pages.get(),
+                      &impl_->counters[static_cast<std::size_t>(worker)]};
     try {
         kernels.render[impl_->plan](a);
     } catch (const isa::trapped& trap) {
@@ -367,11 +375,29 @@ void Frame::set_reach(double distance) {
     impl_->header->reach = static_cast<float>(impl_->geometry.reach + distance);
 }
 
-isa::address_space& Frame::memory() { return *impl_->memory; }
-FrameHeader& Frame::header() { return *impl_->header; }
-Plan Frame::plan() const { return impl_->plan; }
-int Frame::workers() const { return impl_->options.workers; }
-glm::dvec3 Frame::origin() const { return impl_->geometry.origin; }
+void Frame::stop() {
+    auto& word = impl_->header->queues.get()->next_tile.word;
+    std::atomic_ref(word).fetch_or(1 << 30, std::memory_order_relaxed);
+}
+
+isa::page_service& Frame::pages() {
+    return *impl_->pages;
+}
+isa::address_space& Frame::memory() {
+    return *impl_->memory;
+}
+FrameHeader& Frame::header() {
+    return *impl_->header;
+}
+Plan Frame::plan() const {
+    return impl_->plan;
+}
+int Frame::workers() const {
+    return impl_->options.workers;
+}
+glm::dvec3 Frame::origin() const {
+    return impl_->geometry.origin;
+}
 
 std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) {
     return impl_->memory->add(structure, -1, bytes);
@@ -390,9 +416,14 @@ FrameStatistics Frame::statistics() const {
     s.trees = impl_->trees;
     s.patches = static_cast<std::int64_t>(impl_->header->patch_count) * impl_->trees;
     s.undrawn_faces = impl_->undrawn;
-    s.unsplit_nodes = s.counters.nodes_made - s.counters.nodes_split - s.counters.leaves;
     for (int w = 0; w < impl_->options.workers; ++w) {
         const WorkerRecord& r = impl_->header->workers.get()[w];
+        for (int i = w * impl_->nodes_each; i < r.node_next; ++i) {
+            int state = impl_->header->nodes.get()[i].state.word;
+            s.inner_nodes += state == node_inner ? 1 : 0;
+            s.leaves += state == node_leaf ? 1 : 0;
+            s.unsplit_nodes += state == node_unsplit ? 1 : 0;
+        }
         s.grid_bytes += static_cast<std::int64_t>(r.grid_next - w * impl_->grid_lines_each) * line_bytes;
         s.node_bytes += static_cast<std::int64_t>(r.node_next - w * impl_->nodes_each) *
                         static_cast<std::int64_t>(sizeof(KdNode));
@@ -400,7 +431,8 @@ FrameStatistics Frame::statistics() const {
     }
     s.page_bytes = impl_->pages->made_bytes();
     s.page_seconds = impl_->pages->seconds();
-    s.plan = impl_->plan == plan_flat ? "flat patches only: no hanging vertices" : "grids with hanging vertices";
+    s.plan =
+        impl_->plan == plan_flat ? "flat patches only: no hanging vertices" : "grids with hanging vertices";
     return s;
 }
 

@@ -26,7 +26,8 @@ struct FrameStatistics {
     std::int64_t trees = 0;
     std::int64_t patches = 0;        // of the scene, times the trees
     std::int64_t undrawn_faces = 0;  // holes and the like
-    std::int64_t unsplit_nodes = 0;  // nodes that no ray entered
+    std::int64_t inner_nodes = 0, leaves = 0;
+    std::int64_t unsplit_nodes = 0; // nodes that no ray entered
     std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // built this frame
     std::int64_t page_bytes = 0;     // topology pages made so far; they outlive the frame
     double page_seconds = 0;         // host time spent on them
@@ -55,6 +56,9 @@ class Frame {
     /// Rays may start or end this far from the scene's centre (world units).
     void set_reach(double distance);
 
+    /// Lets the workers end early: no tile is taken from the queue any more.
+    void stop();
+    isa::page_service& pages();
     isa::address_space& memory();
     FrameHeader& header();
     /// Counters and plan are those of the render so far.

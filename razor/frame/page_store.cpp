@@ -31,7 +31,8 @@ void PageStore::lay_out(Line* pages, ClassRecord* records) {
 
 void PageStore::make_page(std::int32_t space, std::int32_t kind, std::int32_t index) {
     const ClassRecord& record = records_[space];
-    Line* page = record.pages.get() + record.first[kind] + static_cast<std::int64_t>(index) * record.stride[kind];
+    Line* page =
+        record.pages.get() + record.first[kind] + static_cast<std::int64_t>(index) * record.stride[kind];
     auto& present = reinterpret_cast<PageHeader*>(page)->present.word;
     std::size_t lock = (static_cast<std::size_t>(space) * 7919 + static_cast<std::size_t>(kind) * 131 +
                         static_cast<std::size_t>(index)) %

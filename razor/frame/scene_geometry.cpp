@@ -24,8 +24,8 @@ double distance_to(const Box& b, const glm::dvec3& p) {
     return glm::length(p - glm::clamp(p, b.low, b.high));
 }
 
-/// One level serves a whole mesh for now: the footprint of a pixel at the mesh's nearest point, but no nearer than an
-/// eighth of the way to its centre (a floor reaches under the camera).
+/// One level serves a whole mesh for now: the footprint of a pixel at the mesh's nearest point, but no nearer
+/// than an eighth of the way to its centre (a floor reaches under the camera).
 double automatic_edge_length(const Scene& scene, const Box& box) {
     const Camera& camera = scene.camera;
     double centre = glm::length(box.centre() - camera.position);
@@ -39,7 +39,9 @@ double automatic_edge_length(const Scene& scene, const Box& box) {
 
 } // namespace
 
-double nearest_power_of_two(double length) { return std::exp2(std::round(std::log2(length))); }
+double nearest_power_of_two(double length) {
+    return std::exp2(std::round(std::log2(length)));
+}
 
 SceneGeometry locate_scene(const Scene& scene) {
     SceneGeometry g;

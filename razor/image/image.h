@@ -33,7 +33,7 @@ struct Film {
 };
 
 /// The planes every frame has: beauty R G B (linear), normal.X normal.Y normal.Z (world space, unit or zero),
-/// depth.Z (distance along the ray, world units; 0 where nothing is hit), albedo.R albedo.G albedo.B.
+/// depth.Z (distance along the ray, world units; infinite where nothing is hit), albedo.R albedo.G albedo.B.
 Film make_film(int width, int height);
 
 /// Text that files carry: name and value, for example {"razor.config", "..."}.

@@ -98,7 +98,6 @@ inline Plane choose_plane(const List& l) {
 /// Writes the items on either side of the plane into the lists of two new nodes; returns the lower one's number.
 inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     sint children = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 2, trap_nodes_full);
-    tally(c.counters->nodes_made, 2);
     svec cut_high = l.high;
     svec cut_low = l.low;
     cut_high.x = select(plane.axis == 0, plane.at, l.high.x);
@@ -169,13 +168,11 @@ inline sint build_node(const Context& c, pointer<KdNode> node) {
             store(field(node, &KdNode::split), plane.at);
             store(field(node, &KdNode::axis), plane.axis);
             store(field(node, &KdNode::link), children);
-            tally(c.counters->nodes_split, 1);
             return node_inner;
         }
         if (branch(patches == 0)) {
             close_list(l);
             store(field(node, &KdNode::link), l.line);
-            tally(c.counters->leaves, 1);
             return node_leaf;
         }
         l = open_items(c, l, closed);
@@ -207,7 +204,7 @@ inline void build_root(const Context& c) {
     sint patches = load(field(c.frame, &FrameHeader::patch_count));
     sint from_stride = load(field(c.frame, &FrameHeader::bounds_stride));
     pointer<float> bounds = load(field(c.frame, &FrameHeader::bounds));
-    sint root = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 2, trap_nodes_full);
+    sint root = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
     svec none{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
     List l = make_list(c, patches, 0, none, none);
     vfloat big(3.0e38F);
@@ -241,7 +238,6 @@ inline void build_root(const Context& c) {
     store(field(node, &KdNode::link), l.line);
     store_release(field(node, &KdNode::state), node_unsplit);
     store(field(c.tree, &TreeRecord::root), root);
-    tally(c.counters->nodes_made, 1);
 }
 
 /// Returns once the worker's tree has a root, making it if nobody else does.

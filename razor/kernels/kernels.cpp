@@ -9,7 +9,9 @@ Context begin(const WorkerArguments& a) {
     return make_context(pointer<FrameHeader>(a.frame), sint(a.worker), a.pages, a.counters);
 }
 
-template <Features F> void render(const WorkerArguments& a) { render_worker<F>(begin(a)); }
+template <Features F> void render(const WorkerArguments& a) {
+    render_worker<F>(begin(a));
+}
 
 template <Features F> void trace_all(const WorkerArguments& w, const TraceArguments& a) {
     Context c = begin(w);

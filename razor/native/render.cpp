@@ -1,0 +1,86 @@
+#include "razor/native/render.h"
+
+#include "razor/native/targets.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace razor {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+} // namespace
+
+void run_workers(Frame& frame, const KernelTable& kernels, const std::function<void(double)>& progress,
+                 const std::atomic<bool>* cancel) {
+    int workers = frame.workers();
+    std::mutex mutex;
+    std::condition_variable changed;
+    int running = workers;
+    std::exception_ptr failure;
+    std::vector<std::jthread> threads;
+    for (int w = 0; w < workers; ++w)
+        threads.emplace_back([&, w] {
+            std::exception_ptr mine;
+            try {
+                frame.render(kernels, w);
+            } catch (...) {
+                mine = std::current_exception();
+                frame.stop();
+            }
+            std::lock_guard guard(mutex);
+            if (mine && !failure)
+                failure = mine;
+            --running;
+            changed.notify_one();
+        });
+    bool cancelled = false;
+    {
+        std::unique_lock lock(mutex);
+        while (running > 0) {
+            changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return running == 0; });
+            if (cancel != nullptr && cancel->load() && !cancelled) {
+                cancelled = true;
+                frame.stop();
+            }
+            if (progress)
+                progress(frame.progress());
+        }
+    }
+    threads.clear();
+    if (cancelled)
+        throw Cancelled{};
+    if (failure)
+        std::rethrow_exception(failure);
+}
+
+RenderResult render_native(const Scene& scene, const RenderOptions& options) {
+    const KernelTable& kernels = native_target(options.isa);
+    RenderResult r;
+    r.statistics.isa = kernels.name;
+    r.statistics.width_lanes = kernels.width;
+    int threads =
+        options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+    r.statistics.threads = std::max(threads, 1);
+    auto begin = Clock::now();
+    Frame frame(scene, {.workers = r.statistics.threads, .share = options.share});
+    r.statistics.load_seconds = seconds_since(begin);
+    begin = Clock::now();
+    run_workers(frame, kernels, options.progress, options.cancel);
+    r.statistics.render_seconds = seconds_since(begin);
+    r.statistics.frame = frame.statistics();
+    r.film = frame.film();
+    return r;
+}
+
+} // namespace razor

@@ -1,0 +1,51 @@
+// Rendering a scene on the host: one thread a worker runs the kernels of the chosen target.
+#pragma once
+
+#include "razor/frame/frame.h"
+#include "razor/image/image.h"
+#include "razor/scene/scene.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+namespace razor {
+
+struct RenderOptions {
+    int threads = 0;          // 0: one a core
+    std::string isa = "auto"; // plain, sse4, avx2, avx512 or auto: the best this processor has
+    int share = 0;            // workers that share one kd-tree; 0: all
+    /// Called now and then with the fraction of tiles begun, from the calling thread.
+    std::function<void(double fraction)> progress;
+    /// Set to true from anywhere to stop early; render_native then throws Cancelled.
+    const std::atomic<bool>* cancel = nullptr;
+};
+
+struct RenderStatistics {
+    FrameStatistics frame;
+    std::string isa;
+    int width_lanes = 0, threads = 0;
+    double load_seconds = 0;   // topology and frame memory
+    double render_seconds = 0; // refit, builds and rays
+};
+
+/// Every figure by name: counters, what was built, what laziness left unbuilt, host seconds apart.
+void to_json(nlohmann::ordered_json& json, const RenderStatistics& statistics);
+
+struct RenderResult {
+    Film film;
+    RenderStatistics statistics;
+};
+
+struct Cancelled {};
+
+/// Throws UserError for scenes and options that cannot be rendered.
+RenderResult render_native(const Scene& scene, const RenderOptions& options);
+
+/// Runs all workers of a frame to the end; throws what the first failing worker threw.
+void run_workers(Frame& frame, const KernelTable& kernels, const std::function<void(double)>& progress = {},
+                 const std::atomic<bool>* cancel = nullptr);
+
+} // namespace razor

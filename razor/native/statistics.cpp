@@ -1,0 +1,41 @@
+#include "razor/native/render.h"
+
+#include <nlohmann/json.hpp>
+
+namespace razor {
+
+namespace {
+
+double share(std::int64_t part, std::int64_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+} // namespace
+
+void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
+    const FrameStatistics& f = s.frame;
+    const Counters& c = f.counters;
+    json["target"] = {{"isa", s.isa}, {"width", s.width_lanes}, {"threads", s.threads}};
+    json["plan"] = f.plan;
+    nlohmann::ordered_json& counters = json["counters"];
+    for_each_counter(c, [&](const char* name, std::int64_t value) { counters[name] = value; });
+    json["utilisation"] = {{"camera_packets", share(c.camera_rays, c.camera_packets * s.width_lanes)},
+                           {"shadow_packets", share(c.shadow_rays, c.shadow_packets * s.width_lanes)}};
+    json["built"] = {{"trees", f.trees},
+                     {"inner_nodes", f.inner_nodes},
+                     {"leaves", f.leaves},
+                     {"grid_bytes", f.grid_bytes},
+                     {"node_bytes", f.node_bytes},
+                     {"list_bytes", f.list_bytes},
+                     {"topology_page_bytes", f.page_bytes}};
+    json["left_out"] = {{"patches_never_opened", f.patches - c.patches_opened},
+                        {"of_patches", f.patches},
+                        {"nodes_never_split", f.unsplit_nodes},
+                        {"blocks_without_normals", c.blocks_made - c.normal_blocks},
+                        {"undrawn_faces", f.undrawn_faces}};
+    json["host"] = {{"load_seconds", s.load_seconds},
+                    {"render_seconds", s.render_seconds},
+                    {"topology_page_seconds", f.page_seconds}};
+}
+
+} // namespace razor
