@@ -24,12 +24,20 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
   list(APPEND ISA_FLAGS_plain -O1)
 endif()
 
-# Flags and definitions of one target, for any CMake target that includes isa/isa.h.
-function(isa_configure CMAKE_TARGET ISA)
+# Flags and definitions of one target and logical width, for any CMake target that includes isa/isa.h. A width other than
+# RAZOR_WIDTH is for tests: one program holds one width, and links nothing that was compiled for another.
+function(isa_compile_for CMAKE_TARGET ISA WIDTH)
   string(TOUPPER ${ISA} ISA_UPPER)
   target_compile_options(${CMAKE_TARGET} PRIVATE -fno-math-errno ${ISA_FLAGS_${ISA}})
-  target_compile_definitions(${CMAKE_TARGET} PRIVATE ISA_TARGET=${ISA} ISA_TARGET_${ISA_UPPER}=1)
-  target_link_libraries(${CMAKE_TARGET} PRIVATE isa razor_warnings)
+  target_compile_definitions(${CMAKE_TARGET} PRIVATE ISA_TARGET=${ISA} ISA_TARGET_${ISA_UPPER}=1 ISA_WIDTH=${WIDTH})
+  target_include_directories(${CMAKE_TARGET} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${CMAKE_TARGET} PRIVATE razor_warnings)
+endfunction()
+
+# The same at the configured width, with what host code shares.
+function(isa_configure CMAKE_TARGET ISA)
+  isa_compile_for(${CMAKE_TARGET} ${ISA} ${RAZOR_WIDTH})
+  target_link_libraries(${CMAKE_TARGET} PRIVATE isa)
 endfunction()
 
 function(razor_kernels NAME)

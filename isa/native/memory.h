@@ -1,5 +1,5 @@
-// Native memory of the vocabulary: typed handles and everything that may be done through them. A handle cannot be
-// dereferenced or converted; one memory operation, branch or atomic per full expression.
+// Native memory of the vocabulary: typed handles and everything that may be done through them. A handle
+// cannot be dereferenced or converted; one memory operation, branch or atomic per full expression.
 #pragma once
 
 #include "isa/memory_types.h"
@@ -15,16 +15,15 @@ namespace ISA_NATIVE {
 
 /// A handle to a T in frame memory, or to the first of many.
 template <class T> class pointer {
-  public:
+public:
     pointer() = default;
     /// Host code only: where a kernel's arguments come from.
     explicit pointer(T* host) : host_(host) {}
     template <class U>
-        requires std::is_const_v<T> && std::is_same_v<std::remove_const_t<T>, U>
-    pointer(pointer<U> p) : host_(p.host()) {}
+    requires std::is_const_v<T> && std::is_same_v<std::remove_const_t<T>, U> pointer(pointer<U> p) : host_(p.host()) {}
     T* host() const { return host_; }
 
-  private:
+private:
     T* host_ = nullptr;
 };
 
@@ -56,8 +55,7 @@ inline sfloat load(pointer<float> p) { return *p.host(); }
 inline sint load(pointer<std::int32_t> p) { return *p.host(); }
 /// An enumeration of 32 bits loads as its number.
 template <class E>
-    requires(std::is_enum_v<E> && sizeof(E) == 4)
-inline sint load(pointer<E> p) {
+requires(std::is_enum_v<E> && sizeof(E) == 4) inline sint load(pointer<E> p) {
     return static_cast<std::int32_t>(*p.host());
 }
 template <class T> inline pointer<T> load(pointer<const isa::ref<T>> p) { return pointer<T>(p.host()->get()); }
@@ -75,20 +73,17 @@ inline vint load_broadcast(pointer<std::int32_t> p) { return vint(*p.host()); }
 namespace detail {
 template <class V, class T> inline V vector_load(const T* p) {
     V a;
-    for (int i = 0; i < registers; ++i)
-        a.r[i] = reg::load(p + i * reg::lanes);
+    detail::each_register([&](int i) { a.r[i] = reg::load(p + i * reg::lanes); });
     return a;
 }
 template <class V, class T> inline V vector_load(const T* p, const vmask& m) {
     V a;
-    for (int i = 0; i < registers; ++i)
-        a.r[i] = reg::load(p + i * reg::lanes, m.r[i]);
+    detail::each_register([&](int i) { a.r[i] = reg::load(p + i * reg::lanes, m.r[i]); });
     return a;
 }
 template <class V, class T> inline V vector_gather(const T* p, const vint& index, const vmask& m) {
     V a;
-    for (int i = 0; i < registers; ++i)
-        a.r[i] = reg::gather(p, index.r[i], m.r[i]);
+    detail::each_register([&](int i) { a.r[i] = reg::gather(p, index.r[i], m.r[i]); });
     return a;
 }
 } // namespace detail
@@ -103,20 +98,16 @@ inline vint load_vector(pointer<const std::int32_t> p, const vmask& m) {
 inline vfloat load_vector(pointer<float> p, const vmask& m) { return detail::vector_load<vfloat>(p.host(), m); }
 inline vint load_vector(pointer<std::int32_t> p, const vmask& m) { return detail::vector_load<vint>(p.host(), m); }
 inline void store_vector(pointer<float> p, const vfloat& a) {
-    for (int i = 0; i < registers; ++i)
-        reg::store(p.host() + i * reg::lanes, a.r[i]);
+    detail::each_register([&](int i) { reg::store(p.host() + i * reg::lanes, a.r[i]); });
 }
 inline void store_vector(pointer<std::int32_t> p, const vint& a) {
-    for (int i = 0; i < registers; ++i)
-        reg::store(p.host() + i * reg::lanes, a.r[i]);
+    detail::each_register([&](int i) { reg::store(p.host() + i * reg::lanes, a.r[i]); });
 }
 inline void store_vector(pointer<float> p, const vfloat& a, const vmask& m) {
-    for (int i = 0; i < registers; ++i)
-        reg::store(p.host() + i * reg::lanes, a.r[i], m.r[i]);
+    detail::each_register([&](int i) { reg::store(p.host() + i * reg::lanes, a.r[i], m.r[i]); });
 }
 inline void store_vector(pointer<std::int32_t> p, const vint& a, const vmask& m) {
-    for (int i = 0; i < registers; ++i)
-        reg::store(p.host() + i * reg::lanes, a.r[i], m.r[i]);
+    detail::each_register([&](int i) { reg::store(p.host() + i * reg::lanes, a.r[i], m.r[i]); });
 }
 
 // --- indexed elements: p[index], index counting elements (signed 32 bits). Masked-off lanes as above.
@@ -134,12 +125,10 @@ inline vint gather(pointer<std::int32_t> p, const vint& index, const vmask& m) {
 }
 /// Lanes are written in ascending order: of equal indices the highest set lane stays.
 inline void scatter(pointer<float> p, const vint& index, const vfloat& a, const vmask& m) {
-    for (int i = 0; i < registers; ++i)
-        reg::scatter(p.host(), index.r[i], a.r[i], m.r[i]);
+    detail::each_register([&](int i) { reg::scatter(p.host(), index.r[i], a.r[i], m.r[i]); });
 }
 inline void scatter(pointer<std::int32_t> p, const vint& index, const vint& a, const vmask& m) {
-    for (int i = 0; i < registers; ++i)
-        reg::scatter(p.host(), index.r[i], a.r[i], m.r[i]);
+    detail::each_register([&](int i) { reg::scatter(p.host(), index.r[i], a.r[i], m.r[i]); });
 }
 
 // --- hints
@@ -147,7 +136,8 @@ inline void prefetch(pointer<const void> p) { __builtin_prefetch(p.host()); }
 /// The contents of these bytes are dead: a cache need not write them back. Natively nothing.
 template <class T> inline void discard(pointer<T>, sint /*bytes*/) {}
 
-// --- words shared between workers. Sequences of plain stores before a release are seen after the acquire that reads it.
+// --- words shared between workers. Sequences of plain stores before a release are seen after the acquire
+// that reads it.
 inline sint load_acquire(pointer<isa::shared<std::int32_t>> p) {
     return std::atomic_ref<std::int32_t>(p.host()->word).load(std::memory_order_acquire);
 }
@@ -191,7 +181,7 @@ inline void tally(std::int64_t& counter, sint n) { counter += n.v; }
 inline void tally(std::int64_t& counter, int n) { counter += n; }
 /// Until its end, work and traffic count under this phase of the frame (simulated machine). Natively nothing.
 class phase_scope {
-  public:
+public:
     explicit phase_scope(int) {}
     phase_scope(const phase_scope&) = delete;
     phase_scope& operator=(const phase_scope&) = delete;

@@ -1,8 +1,9 @@
 // Registers of the portable target: loops over small arrays. The oracle of the operation tests.
-// Sections, the same in every registers_*.h: types, float arithmetic, float comparison, integers, masks, conversion,
-// memory, within one register.
+// Sections, the same in every registers_*.h: types, float arithmetic, float comparison, integers, masks,
+// conversion, memory, within one register, across registers.
 #pragma once
 
+#include "isa/native/unroll.h"
 #include "isa/target.h"
 
 #include <bit>
@@ -94,6 +95,9 @@ inline M le(F a, F b) {
 inline M eq(F a, F b) {
     return each<M>([&](int i) { return a.v[i] == b.v[i]; });
 }
+inline M ne(F a, F b) {
+    return each<M>([&](int i) { return a.v[i] != b.v[i]; });
+}
 inline F select(M m, F a, F b) {
     return each<F>([&](int i) { return m.v[i] ? a.v[i] : b.v[i]; });
 }
@@ -140,8 +144,14 @@ inline I max(I a, I b) {
 inline M lt(I a, I b) {
     return each<M>([&](int i) { return a.v[i] < b.v[i]; });
 }
+inline M le(I a, I b) {
+    return each<M>([&](int i) { return a.v[i] <= b.v[i]; });
+}
 inline M eq(I a, I b) {
     return each<M>([&](int i) { return a.v[i] == b.v[i]; });
+}
+inline M ne(I a, I b) {
+    return each<M>([&](int i) { return a.v[i] != b.v[i]; });
 }
 inline I select(M m, I a, I b) {
     return each<I>([&](int i) { return m.v[i] ? a.v[i] : b.v[i]; });
@@ -188,7 +198,8 @@ inline F as_float(I a) {
     return each<F>([&](int i) { return std::bit_cast<float>(a.v[i]); });
 }
 
-// --- memory. Addresses need only the alignment of one element; masked-off lanes are not accessed and load as 0.
+// --- memory. Addresses need only the alignment of one element; masked-off lanes are not accessed and load as
+// 0.
 inline F load(const float* p) {
     return each<F>([&](int i) { return p[i]; });
 }
@@ -225,7 +236,8 @@ inline F gather(const float* p, I index, M m) {
 inline I gather(const std::int32_t* p, I index, M m) {
     return each<I>([&](int i) { return m.v[i] ? p[index.v[i]] : 0; });
 }
-inline void scatter(float* p, I index, F a, M m) { // lanes in ascending order: of equal indices the highest lane stays
+inline void scatter(float* p, I index, F a,
+                    M m) { // lanes in ascending order: of equal indices the highest lane stays
     for (int i = 0; i < lanes; ++i)
         if (m.v[i])
             p[index.v[i]] = a.v[i];
@@ -261,5 +273,41 @@ inline std::int32_t reduce_min(I a) {
 inline std::int32_t reduce_max(I a) {
     return fold(a, [](std::int32_t x, std::int32_t y) { return x > y ? x : y; });
 }
+
+} // namespace ISA_NATIVE::reg
+
+#include "isa/native/through_memory.h"
+
+namespace ISA_NATIVE::reg {
+
+// --- across registers: arrays of n registers that make up one vector
+template <int n> inline bool any(const M (&m)[n]) {
+    std::uint32_t b = 0;
+    for (int i = 0; i < n; ++i)
+        b |= bits(m[i]);
+    return b != 0;
+}
+template <int n> inline bool all(const M (&m)[n]) {
+    std::uint32_t b = ~0U;
+    for (int i = 0; i < n; ++i)
+        b &= bits(m[i]);
+    return b == (1U << lanes) - 1;
+}
+// Lane i of the result is lane index[i], modulo n * lanes, of a.
+template <class R, int n> inline void permute(R (&to)[n], const R (&a)[n], const I (&index)[n]) {
+    through_memory::permute(to, a, index);
+}
+// The lanes of a that m names, in order, from lane 0 on; the rest are 0.
+template <class R, int n> inline void compress(R (&to)[n], const R (&a)[n], const M (&m)[n]) {
+    through_memory::compress(to, a, m, [](R x, M k) {
+        R r{};
+        for (int i = 0, to_lane = 0; i < lanes; ++i)
+            if (k.v[i])
+                r.v[to_lane++] = x.v[i];
+        return r;
+    });
+}
+// One lane, modulo n * lanes.
+template <class R, int n> inline auto extract(const R (&a)[n], int lane) { return through_memory::extract(a, lane); }
 
 } // namespace ISA_NATIVE::reg

@@ -1,5 +1,5 @@
-// Native scalars of the vocabulary: sfloat, sint, sbool. They hold one number each and convert from constants, but never
-// back to C++ numbers or bool: branch(sbool) is the only way to decide anything.
+// Native scalars of the vocabulary: sfloat, sint, sbool. They hold one number each and convert from constants, but
+// never back to C++ numbers or bool: branch(sbool) is the only way to decide anything.
 #pragma once
 
 #include "isa/target.h"
@@ -36,7 +36,8 @@ struct sfloat {
     sfloat(double) = delete;
 };
 
-// --- sfloat arithmetic: correctly rounded, IEEE 754 for NaN and infinities (a NaN result is quiet, its payload unspecified)
+// --- sfloat arithmetic: correctly rounded, IEEE 754 for NaN and infinities (a NaN result is quiet, its payload
+// unspecified)
 inline sfloat operator+(sfloat a, sfloat b) { return a.v + b.v; }
 inline sfloat operator-(sfloat a, sfloat b) { return a.v - b.v; }
 inline sfloat operator*(sfloat a, sfloat b) { return a.v * b.v; }

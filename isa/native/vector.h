@@ -1,12 +1,15 @@
-// Native vectors of the vocabulary: vfloat, vint, vmask of isa::width lanes, as arrays of one target's registers.
-// Lane-wise unless stated. IEEE 754 for NaN and infinities; a NaN result is quiet and its payload unspecified.
+// Native vectors of the vocabulary: vfloat, vint, vmask of isa::width lanes, as arrays of one target's
+// registers. Lane-wise unless stated. IEEE 754 for NaN and infinities; a NaN result is quiet and its payload
+// unspecified.
 #pragma once
 
 #include "isa/native/scalar.h"
+#include "isa/native/unroll.h"
 #include "isa/target.h"
 #include ISA_REGISTERS
 
 #include <bit>
+#include <concepts>
 #include <cstdint>
 
 namespace ISA_NATIVE {
@@ -14,12 +17,23 @@ namespace ISA_NATIVE {
 static_assert(width % reg::lanes == 0);
 inline constexpr int registers = width / reg::lanes;
 
+namespace detail {
+template <class F> [[gnu::always_inline]] inline void each_register(F f) { unroll<registers>(f); }
+} // namespace detail
+
+// Copies go register by register: g++ moves a whole array by way of memory.
 struct vfloat {
     reg::F r[registers];
     vfloat() = default; // undefined lanes
+    vfloat(const vfloat& a) {
+        detail::each_register([&](int i) { r[i] = a.r[i]; });
+    }
+    vfloat& operator=(const vfloat& a) {
+        detail::each_register([&](int i) { r[i] = a.r[i]; });
+        return *this;
+    }
     vfloat(float constant) {
-        for (auto& x : r)
-            x = reg::broadcast(constant);
+        detail::each_register([&](int i) { r[i] = reg::broadcast(constant); });
     }
     vfloat(sfloat a) : vfloat(a.v) {} // broadcast
     vfloat(std::int32_t) = delete;
@@ -28,9 +42,15 @@ struct vfloat {
 struct vint {
     reg::I r[registers];
     vint() = default; // undefined lanes
+    vint(const vint& a) {
+        detail::each_register([&](int i) { r[i] = a.r[i]; });
+    }
+    vint& operator=(const vint& a) {
+        detail::each_register([&](int i) { r[i] = a.r[i]; });
+        return *this;
+    }
     vint(std::int32_t constant) {
-        for (auto& x : r)
-            x = reg::broadcast(constant);
+        detail::each_register([&](int i) { r[i] = reg::broadcast(constant); });
     }
     vint(sint a) : vint(a.v) {} // broadcast
     vint(float) = delete;
@@ -39,31 +59,24 @@ struct vint {
 struct vmask {
     reg::M r[registers];
     vmask() = default; // undefined lanes
+    vmask(const vmask& a) {
+        detail::each_register([&](int i) { r[i] = a.r[i]; });
+    }
+    vmask& operator=(const vmask& a) {
+        detail::each_register([&](int i) { r[i] = a.r[i]; });
+        return *this;
+    }
     vmask(bool constant) {
-        for (auto& x : r)
-            x = reg::from_bits(constant ? 0xffffffffU : 0U);
+        detail::each_register([&](int i) { r[i] = reg::from_bits(constant ? 0xffffffffU : 0U); });
     }
     vmask(sbool a) : vmask(a.v) {} // broadcast
     template <class T> vmask(T) = delete;
 };
 
 namespace detail {
-template <class R, class A, class Op> inline R map(Op op, const A& a) {
+template <class R, class Op, class... A> inline R map(Op op, const A&... a) {
     R r;
-    for (int i = 0; i < registers; ++i)
-        r.r[i] = op(a.r[i]);
-    return r;
-}
-template <class R, class A, class B, class Op> inline R map(Op op, const A& a, const B& b) {
-    R r;
-    for (int i = 0; i < registers; ++i)
-        r.r[i] = op(a.r[i], b.r[i]);
-    return r;
-}
-template <class R, class A, class B, class C, class Op> inline R map(Op op, const A& a, const B& b, const C& c) {
-    R r;
-    for (int i = 0; i < registers; ++i)
-        r.r[i] = op(a.r[i], b.r[i], c.r[i]);
+    each_register([&](int i) { r.r[i] = op(a.r[i]...); });
     return r;
 }
 } // namespace detail
@@ -86,7 +99,8 @@ inline vfloat fms(const vfloat& a, const vfloat& b, const vfloat& c) {
 inline vfloat fnma(const vfloat& a, const vfloat& b, const vfloat& c) {
     return detail::map<vfloat>(ISA_OP(fnma), a, b, c);
 }
-/// a*b - p: the exact rounding error of p = a*b on every target, sse4 too (barring overflow, and underflow of the error).
+/// a*b - p: the exact rounding error of p = a*b on every target, sse4 too (barring overflow, and underflow of
+/// the error).
 inline vfloat product_error(const vfloat& a, const vfloat& b, const vfloat& p) {
     return detail::map<vfloat>(ISA_OP(product_error), a, b, p);
 }
@@ -110,6 +124,7 @@ inline vmask operator<=(const vfloat& a, const vfloat& b) { return detail::map<v
 inline vmask operator>(const vfloat& a, const vfloat& b) { return b < a; }
 inline vmask operator>=(const vfloat& a, const vfloat& b) { return b <= a; }
 inline vmask operator==(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
+inline vmask operator!=(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(ne), a, b); }
 
 // --- vint arithmetic: 32 bits, wraps
 inline vint operator+(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(add), a, b); }
@@ -125,13 +140,13 @@ inline vint shift_right_logical(const vint& a, const vint& n) {
     return detail::map<vint>(ISA_OP(shift_right_logical), a, n);
 }
 /// Shifts of all lanes by one constant from 0 to 31.
-inline vint operator<<(const vint& a, int n) {
+template <std::same_as<vint> V> inline vint operator<<(const V& a, int n) {
     return detail::map<vint>([n](reg::I x) { return reg::shift_left(x, n); }, a);
 }
-inline vint operator>>(const vint& a, int n) {
+template <std::same_as<vint> V> inline vint operator>>(const V& a, int n) {
     return detail::map<vint>([n](reg::I x) { return reg::shift_right(x, n); }, a);
 }
-inline vint shift_right_logical(const vint& a, int n) {
+template <std::same_as<vint> V> inline vint shift_right_logical(const V& a, int n) {
     return detail::map<vint>([n](reg::I x) { return reg::shift_right_logical(x, n); }, a);
 }
 inline vint min(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(min), a, b); }
@@ -139,40 +154,37 @@ inline vint max(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(
 
 // --- vint comparison
 inline vmask operator<(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
+inline vmask operator<=(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(le), a, b); }
 inline vmask operator>(const vint& a, const vint& b) { return b < a; }
+inline vmask operator>=(const vint& a, const vint& b) { return b <= a; }
 inline vmask operator==(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
+inline vmask operator!=(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(ne), a, b); }
 
 // --- masks. && and || do not exist: use & and |.
 inline vmask operator&(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_and), a, b); }
 inline vmask operator|(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_or), a, b); }
 inline vmask operator^(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_xor), a, b); }
 inline vmask operator!(const vmask& a) { return detail::map<vmask>(ISA_OP(mask_not), a); }
-inline vmask operator<=(const vint& a, const vint& b) { return !(b < a); }
-inline vmask operator>=(const vint& a, const vint& b) { return !(a < b); }
-inline vmask operator!=(const vint& a, const vint& b) { return !(a == b); }
-inline vmask operator!=(const vfloat& a, const vfloat& b) { return !(a == b); }
 vmask operator&&(const vmask&, const vmask&) = delete;
 vmask operator||(const vmask&, const vmask&) = delete;
 
 namespace detail {
 inline std::uint64_t bits(const vmask& m) { // bit i = lane i
     std::uint64_t b = 0;
-    for (int i = 0; i < registers; ++i)
-        b |= static_cast<std::uint64_t>(reg::bits(m.r[i])) << (i * reg::lanes);
+    each_register([&](int i) { b |= static_cast<std::uint64_t>(reg::bits(m.r[i])) << (i * reg::lanes); });
     return b;
 }
 inline vmask from_bits(std::uint64_t b) {
     vmask m;
-    for (int i = 0; i < registers; ++i)
-        m.r[i] = reg::from_bits(static_cast<std::uint32_t>(b >> (i * reg::lanes)));
+    each_register([&](int i) { m.r[i] = reg::from_bits(static_cast<std::uint32_t>(b >> (i * reg::lanes))); });
     return m;
 }
 inline constexpr std::uint64_t all_lanes = width == 64 ? ~0ULL : (1ULL << (width % 64)) - 1;
 } // namespace detail
 
-inline sbool any(const vmask& m) { return detail::bits(m) != 0; }
-inline sbool all(const vmask& m) { return detail::bits(m) == detail::all_lanes; }
-inline sbool none(const vmask& m) { return detail::bits(m) == 0; }
+inline sbool any(const vmask& m) { return reg::any(m.r); }
+inline sbool all(const vmask& m) { return reg::all(m.r); }
+inline sbool none(const vmask& m) { return !reg::any(m.r); }
 /// Number of set lanes.
 inline sint count(const vmask& m) { return std::popcount(detail::bits(m)); }
 /// Lowest set lane; the width if there is none.
@@ -212,75 +224,64 @@ inline vfloat abs(const vfloat& a) { return as_float(as_int(a) & vint(0x7fffffff
 /// 0, 1, 2, ... width-1.
 inline vint lane_index() {
     vint r;
-    for (int i = 0; i < registers; ++i)
-        r.r[i] = reg::add(reg::iota(), reg::broadcast(std::int32_t{i * reg::lanes}));
+    detail::each_register([&](int i) { r.r[i] = reg::add(reg::iota(), reg::broadcast(std::int32_t{i * reg::lanes})); });
     return r;
 }
 namespace detail {
-template <class V, class Op> inline auto folded(V a, Op op) {
-    for (int n = registers / 2; n >= 1; n /= 2)
-        for (int i = 0; i < n; ++i)
-            a.r[i] = op(a.r[i], a.r[i + n]);
-    return a.r[0];
+template <int n, class R, class Op> inline R folded(const R* a, Op op) { // n registers, registers / n apart
+    if constexpr (n == 1)
+        return a[0];
+    else
+        return op(folded<n / 2>(a, op), folded<n / 2>(a + registers / n, op));
 }
 } // namespace detail
 /// Reductions fold lane i with lane i + n/2 for n = width, width/2, ... 2: one order on every target.
-inline sfloat reduce_add(const vfloat& a) { return reg::reduce_add(detail::folded(a, ISA_OP(add))); }
+inline sfloat reduce_add(const vfloat& a) { return reg::reduce_add(detail::folded<registers>(a.r, ISA_OP(add))); }
 /// By min and max above, in the same order (so a NaN in some lane may or may not reach the result).
-inline sfloat reduce_min(const vfloat& a) { return reg::reduce_min(detail::folded(a, ISA_OP(min))); }
-inline sfloat reduce_max(const vfloat& a) { return reg::reduce_max(detail::folded(a, ISA_OP(max))); }
-inline sint reduce_add(const vint& a) { return reg::reduce_add(detail::folded(a, ISA_OP(add))); }
-inline sint reduce_min(const vint& a) { return reg::reduce_min(detail::folded(a, ISA_OP(min))); }
-inline sint reduce_max(const vint& a) { return reg::reduce_max(detail::folded(a, ISA_OP(max))); }
+inline sfloat reduce_min(const vfloat& a) { return reg::reduce_min(detail::folded<registers>(a.r, ISA_OP(min))); }
+inline sfloat reduce_max(const vfloat& a) { return reg::reduce_max(detail::folded<registers>(a.r, ISA_OP(max))); }
+inline sint reduce_add(const vint& a) { return reg::reduce_add(detail::folded<registers>(a.r, ISA_OP(add))); }
+inline sint reduce_min(const vint& a) { return reg::reduce_min(detail::folded<registers>(a.r, ISA_OP(min))); }
+inline sint reduce_max(const vint& a) { return reg::reduce_max(detail::folded<registers>(a.r, ISA_OP(max))); }
 
 namespace detail {
-template <class T> struct lanes_of {
-    alignas(64) T v[width];
-};
+template <class T> struct lanes_of { alignas(64) T v[width]; };
 inline lanes_of<float> spread(const vfloat& a) {
     lanes_of<float> s;
-    for (int i = 0; i < registers; ++i)
-        reg::store(s.v + i * reg::lanes, a.r[i]);
+    each_register([&](int i) { reg::store(s.v + i * reg::lanes, a.r[i]); });
     return s;
 }
 inline lanes_of<std::int32_t> spread(const vint& a) {
     lanes_of<std::int32_t> s;
-    for (int i = 0; i < registers; ++i)
-        reg::store(s.v + i * reg::lanes, a.r[i]);
+    each_register([&](int i) { reg::store(s.v + i * reg::lanes, a.r[i]); });
     return s;
-}
-template <class V, class T> inline V collect(const lanes_of<T>& s) {
-    V a;
-    for (int i = 0; i < registers; ++i)
-        a.r[i] = reg::load(s.v + i * reg::lanes);
-    return a;
-}
-template <class V> inline V permuted(const V& a, const vint& index) {
-    auto from = spread(a);
-    V r;
-    vmask every(true);
-    for (int i = 0; i < registers; ++i)
-        r.r[i] = reg::gather(from.v, reg::bit_and(index.r[i], reg::broadcast(std::int32_t{width - 1})), every.r[i]);
-    return r;
-}
-template <class V> inline V compressed(const V& a, const vmask& m) {
-    auto from = spread(a);
-    decltype(from) to{};
-    int n = 0;
-    for (std::uint64_t b = bits(m); b != 0; b &= b - 1)
-        to.v[n++] = from.v[std::countr_zero(b)];
-    return collect<V>(to);
 }
 } // namespace detail
 /// Lane i of the result is lane index[i] (modulo the width) of a.
-inline vfloat permute(const vfloat& a, const vint& index) { return detail::permuted(a, index); }
-inline vint permute(const vint& a, const vint& index) { return detail::permuted(a, index); }
+inline vfloat permute(const vfloat& a, const vint& index) {
+    vfloat r;
+    reg::permute(r.r, a.r, index.r);
+    return r;
+}
+inline vint permute(const vint& a, const vint& index) {
+    vint r;
+    reg::permute(r.r, a.r, index.r);
+    return r;
+}
 /// The lanes of a that m names, in order, from lane 0 on; the rest are 0.
-inline vfloat compress(const vfloat& a, const vmask& m) { return detail::compressed(a, m); }
-inline vint compress(const vint& a, const vmask& m) { return detail::compressed(a, m); }
+inline vfloat compress(const vfloat& a, const vmask& m) {
+    vfloat r;
+    reg::compress(r.r, a.r, m.r);
+    return r;
+}
+inline vint compress(const vint& a, const vmask& m) {
+    vint r;
+    reg::compress(r.r, a.r, m.r);
+    return r;
+}
 /// One lane (modulo the width).
-inline sfloat extract(const vfloat& a, sint lane) { return detail::spread(a).v[lane.v & (width - 1)]; }
-inline sint extract(const vint& a, sint lane) { return detail::spread(a).v[lane.v & (width - 1)]; }
+inline sfloat extract(const vfloat& a, sint lane) { return reg::extract(a.r, lane.v); }
+inline sint extract(const vint& a, sint lane) { return reg::extract(a.r, lane.v); }
 
 #undef ISA_OP
 

@@ -3,6 +3,8 @@
 
 #include "isa/simulated/scalar.h"
 
+#include <concepts>
+
 namespace isa::simulated {
 
 class vfloat {
@@ -116,13 +118,13 @@ ISA_INFIX(vint, ^, vint, vint, integer)
 ISA_INFIX(vint, <<, vint, vint, integer)
 ISA_INFIX(vint, >>, vint, vint, integer)
 ISA_BINARY(vint, shift_right_logical, vint, vint, integer)
-inline vint operator<<(const vint& a, int n) {
+template <std::same_as<vint> V> inline vint operator<<(const V& a, int n) {
     return detail::lanewise<vint>(operation::integer, [n](const auto& x) { return x << n; }, a);
 }
-inline vint operator>>(const vint& a, int n) {
+template <std::same_as<vint> V> inline vint operator>>(const V& a, int n) {
     return detail::lanewise<vint>(operation::integer, [n](const auto& x) { return x >> n; }, a);
 }
-inline vint shift_right_logical(const vint& a, int n) {
+template <std::same_as<vint> V> inline vint shift_right_logical(const V& a, int n) {
     return detail::lanewise<vint>(operation::integer, [n](const auto& x) { return shift_right_logical(x, n); }, a);
 }
 ISA_BINARY(vint, min, vint, vint, integer)
