@@ -187,6 +187,14 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     return scene;
 }
 
+/// In lower case.
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return extension;
+}
+
 } // namespace
 
 SceneDescription read_scene_file(const std::filesystem::path& path) {
@@ -204,15 +212,20 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
     }
 }
 
+bool is_model_file(const std::filesystem::path& path) {
+    return extension_of(path) == ".obj";
+}
+
 SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (extension == ".toml") {
+    if (extension_of(path) == ".toml") {
         return read_scene_file(path);
     }
-    if (extension == ".obj") {
+    if (is_model_file(path)) {
         return frame_model(path, framing);
+    }
+    if (std::filesystem::is_directory(path)) {
+        throw UserError(fmt::format("{}: is a directory; give a file ending in .toml or .obj",
+                                    printable(path.string(), 1000)));
     }
     throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in .toml or .obj",
                                 printable(path.string(), 1000)));

@@ -19,8 +19,14 @@ SceneDescription read_scene_file(const std::filesystem::path& path);
 SceneDescription parse_scene_file(std::string_view text, std::string_view file_name,
                                   const std::filesystem::path& folder);
 
-/// What `path` holds by its extension: .toml is a scene file, .obj a bare model, framed and lit by itself (y
-/// up).
+/// Whether the name ends in .obj, in any case.
+bool is_model_file(const std::filesystem::path& path);
+
+/// What `path` holds by its extension: .toml is a scene file, .obj a bare model, framed and lit by itself.
+/// Throws UserError for any other extension.
+SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing);
+
+/// The scene of `describe` with default framing: y up.
 Scene load_scene(const std::filesystem::path& path);
 
 } // namespace razor

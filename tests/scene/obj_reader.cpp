@@ -298,8 +298,8 @@ TEST(ObjReader, EverySharedFileHasItsPublishedCounts) {
         EXPECT_EQ(polygons, listed.polygons) << name;
         EXPECT_EQ(largest, listed.largest) << name;
         EXPECT_EQ(mesh.face_vertices.size(), corners) << name;
-        const auto tags = [&](const char* tag) {
-            return listed.tags.contains(tag) ? listed.tags.at(tag) : 0;
+        const auto tags = [&counts = listed.tags](const char* tag) {
+            return counts.contains(tag) ? counts.at(tag) : 0;
         };
         EXPECT_EQ(mesh.creases.size(), static_cast<std::size_t>(tags("crease"))) << name;
         EXPECT_EQ(mesh.corners.size(), static_cast<std::size_t>(tags("corner"))) << name;

@@ -1,0 +1,129 @@
+#include "razor/program/arguments.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/nearest.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+namespace razor {
+namespace {
+
+/// All option names of the subcommand that was given, else of the program.
+std::vector<std::string> option_names(const CLI::App& app) {
+    const auto chosen = app.get_subcommands();
+    std::vector<std::string> names;
+    for (const CLI::Option* const option : (chosen.empty() ? app : *chosen.front()).get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            names.push_back("--" + name);
+        }
+    }
+    return names;
+}
+
+/// CLI11's complaint as one line, with the nearest option for one that does not exist.
+std::string mend(const CLI::App& app, const CLI::ParseError& error) {
+    std::string message = error.what();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    message = printable(message.substr(0, message.find_last_not_of(". ") + 1), 300);
+    const std::vector<std::string> extras = app.remaining(true);
+    if (!extras.empty() && extras.front().starts_with("--")) {
+        const std::vector<std::string> names = option_names(app);
+        const std::vector<std::string_view> known(names.begin(), names.end());
+        const std::string typed = extras.front().substr(0, extras.front().find('='));
+        return fmt::format("unknown option {}; did you mean {}?", printable(typed), nearest(typed, known));
+    }
+    const auto chosen = app.get_subcommands();
+    if (chosen.empty() && !extras.empty()) {
+        std::vector<std::string> names;
+        for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
+            names.push_back(command->get_name());
+        }
+        const std::vector<std::string_view> known(names.begin(), names.end());
+        if (!known.empty()) {
+            return fmt::format("unknown command {}; did you mean {}?", printable(extras.front()),
+                               nearest(extras.front(), known));
+        }
+    }
+    return fmt::format("{}; see {}{} --help", message, app.get_name(),
+                       chosen.empty() ? "" : " " + chosen.front()->get_name());
+}
+
+int complain(const CLI::App& app, std::string_view message, int code) {
+    fmt::print(stderr, "{}: {}\n", app.get_name(), message);
+    return code;
+}
+
+} // namespace
+
+std::string_view version() {
+    return RAZOR_VERSION;
+}
+
+int parse_whole(std::string_view option, std::string_view text, Range range) {
+    long long value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool right = error == std::errc{} && stop == text.data() + text.size();
+    if (!right || static_cast<double>(value) < range.least || static_cast<double>(value) > range.most) {
+        throw UserError(fmt::format("{} '{}' is not possible; give a whole number from {} to {}", option,
+                                    printable(text), range.least, range.most));
+    }
+    return static_cast<int>(value);
+}
+
+double parse_number(std::string_view option, std::string_view text, Range range) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool right = error == std::errc{} && stop == text.data() + text.size();
+    if (!right || !(value >= range.least && value <= range.most)) {
+        throw UserError(fmt::format("{} '{}' is not possible; give a number from {} to {}", option,
+                                    printable(text), range.least, range.most));
+    }
+    return value;
+}
+
+std::pair<int, int> parse_size(std::string_view option, std::string_view text, Range range) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string_view::npos) {
+        throw UserError(fmt::format("{} '{}' is not possible; give WIDTHxHEIGHT, for example 640x480", option,
+                                    printable(text)));
+    }
+    return {parse_whole(fmt::format("the width of {}", option), text.substr(0, cross), range),
+            parse_whole(fmt::format("the height of {}", option), text.substr(cross + 1), range)};
+}
+
+std::size_t parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> words) {
+    const auto found = std::find(words.begin(), words.end(), text);
+    if (found == words.end()) {
+        throw UserError(fmt::format("{} '{}' is unknown; give one of: {}", option, printable(text),
+                                    fmt::join(words, ", ")));
+    }
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action) {
+    try {
+        app.parse(argc, argv);
+        return action();
+    } catch (const CLI::Success& help) {
+        return app.exit(help, std::cout, std::cerr);
+    } catch (const CLI::ParseError& error) {
+        return complain(app, mend(app, error), 2);
+    } catch (const UserError& error) {
+        return complain(app, error.what(), 2);
+    } catch (const std::bad_alloc&) {
+        return complain(app, "out of memory; render a smaller model or picture", 1);
+    } catch (const std::exception& error) {
+        return complain(app, fmt::format("internal error: {}", printable(error.what(), 300)), 1);
+    }
+}
+
+} // namespace razor

@@ -1,0 +1,33 @@
+// Command-line values with clear messages, and how every program ends on a mistake.
+#pragma once
+
+#include "razor/scene/ranges.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace razor {
+
+/// "0.1.0".
+std::string_view version();
+
+/// `text` as a number in the range. `option` names it in messages: "--spp". Throws UserError.
+int parse_whole(std::string_view option, std::string_view text, Range range);
+double parse_number(std::string_view option, std::string_view text, Range range);
+/// "640x480" as width and height, each in the range.
+std::pair<int, int> parse_size(std::string_view option, std::string_view text, Range range);
+/// The index of `text` in `words`.
+std::size_t parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> words);
+
+/// Parses the command line, then runs `action`, whose result is the exit code. --help and --version end with
+/// 0. A mistake of the user prints one line "PROGRAM: ..." to the error stream and ends with 2, anything
+/// unforeseen likewise with 1.
+int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action);
+
+} // namespace razor

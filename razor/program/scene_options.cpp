@@ -1,0 +1,77 @@
+#include "razor/program/scene_options.h"
+
+#include "razor/program/arguments.h"
+#include "razor/scene/default_scene.h"
+#include "razor/scene/scene_file.h"
+#include "razor/scene/words.h"
+
+#include <algorithm>
+#include <array>
+
+namespace razor {
+namespace {
+
+Scheme parse_scheme(std::string_view word) {
+    std::array<std::string_view, scheme_words.size()> words;
+    std::transform(scheme_words.begin(), scheme_words.end(), words.begin(),
+                   [](const auto& entry) { return entry.first; });
+    return scheme_words[parse_choice("--scheme", word, words)].second;
+}
+
+} // namespace
+
+void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
+    app.add_option(scene_name, scene_,
+                   "a scene file (.toml) or a model (.obj); without one, the built-in scene")
+        ->type_name("FILE");
+    app.add_option("--size", size_, "the picture's size in pixels")->type_name("WxH");
+    app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
+    app.add_option("--light-samples", light_samples_, "shadow rays a hit to the light")->type_name("N");
+    app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
+    app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
+        ->type_name("X");
+    app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
+    app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");
+    app.add_flag("--no-floor", no_floor_, "put no floor under a model file");
+}
+
+SceneDescription SceneOptions::describe() const {
+    // Wrong values are found before any file is read.
+    const auto override_settings = [this](Settings& settings) {
+        if (!size_.empty()) {
+            std::tie(settings.width, settings.height) = parse_size("--size", size_, size_range);
+        }
+        if (!samples_.empty()) {
+            settings.samples = parse_whole("--spp", samples_, samples_range);
+        }
+        if (!light_samples_.empty()) {
+            settings.light_samples = parse_whole("--light-samples", light_samples_, shadow_samples_range);
+        }
+        if (!sky_samples_.empty()) {
+            settings.sky_samples = parse_whole("--sky-samples", sky_samples_, shadow_samples_range);
+        }
+        if (!edge_pixels_.empty()) {
+            settings.edge_pixels = parse_number("--edge-pixels", edge_pixels_, edge_pixels_range);
+        }
+    };
+    FramingOptions framing;
+    override_settings(framing.settings);
+    constexpr std::array<std::string_view, 2> axes{"y", "z"};
+    framing.up = parse_choice("--up", up_, axes) == 0 ? Up::y : Up::z;
+    framing.floor = !no_floor_;
+    if (!scheme_.empty()) {
+        framing.scheme = parse_scheme(scheme_);
+    }
+    const bool built_in = scene_.empty();
+    SceneDescription scene = built_in ? default_scene() : razor::describe(scene_, framing);
+    override_settings(scene.settings);
+    const bool model = !built_in && is_model_file(scene_);
+    if (!scheme_.empty() && !model) { // a model's own scheme is set; its floor stays bilinear
+        for (MeshDescription& mesh : scene.meshes) {
+            mesh.scheme = framing.scheme;
+        }
+    }
+    return scene;
+}
+
+} // namespace razor

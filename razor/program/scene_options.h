@@ -1,0 +1,26 @@
+// The command-line options that choose a scene and override parts of it, for every program that renders.
+#pragma once
+
+#include "razor/scene/description.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace razor {
+
+class SceneOptions {
+public:
+    /// Adds the options to `app`; the scene itself is the option `scene_name`: "scene" for a positional one,
+    /// or "--scene". The object must outlive the parsing.
+    void add_to(CLI::App& app, const std::string& scene_name);
+
+    /// The scene that the parsed options ask for; the built-in one where none is named. Throws UserError.
+    SceneDescription describe() const;
+
+private:
+    std::string scene_, size_, samples_, light_samples_, sky_samples_, edge_pixels_, scheme_, up_ = "y";
+    bool no_floor_ = false;
+};
+
+} // namespace razor

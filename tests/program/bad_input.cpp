@@ -1,0 +1,198 @@
+// razor on mistakes: exit code 2, exactly one line on the error stream, no output file. And on a good scene:
+// whole files.
+#include "razor/image/exr.h"
+#include "tests/program/run.h"
+
+#include <nlohmann/json.hpp>
+
+#include <random>
+#include <set>
+
+namespace razor {
+namespace {
+
+constexpr std::string_view triangle = "v 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n";
+
+/// A folder with small good and bad files, for razor to run in.
+class Razor : public ::testing::Test {
+protected:
+    Razor() {
+        folder_.file("good.obj", triangle);
+        folder_.file("good.toml", "[[mesh]]\nfile = \"good.obj\"\n");
+        folder_.file("empty.obj", "");
+        folder_.file("empty.toml", "");
+        std::mt19937 random(7); // NOLINT(cert-msc32-c,cert-msc51-cpp)
+        std::string noise(5000, '\0');
+        for (char& c : noise) {
+            c = static_cast<char>(random());
+        }
+        folder_.file("random.obj", noise);
+        folder_.file("random.toml", noise);
+        folder_.file("random.exr", noise);
+        folder_.file("key.toml", "[settings]\nsamlpes = 3\n[[mesh]]\nfile = \"good.obj\"\n");
+        folder_.file("type.toml", "[settings]\nsamples = \"3\"\n[[mesh]]\nfile = \"good.obj\"\n");
+        folder_.file("range.toml", "[settings]\nsize = [0, 5]\n[[mesh]]\nfile = \"good.obj\"\n");
+        folder_.file("lost.toml", "[[mesh]]\nfile = \"lost.obj\"\n");
+        std::filesystem::create_directory(folder_ / "folder.obj");
+        std::filesystem::create_directory(folder_ / "folder.toml");
+    }
+
+    Outcome razor(const std::string& arguments) const {
+        return run(std::string(RAZOR_PROGRAM) + " " + arguments, folder_.path());
+    }
+
+    void expect_refused(const std::string& arguments, const std::string& cause) const {
+        SCOPED_TRACE("razor " + arguments);
+        const std::size_t before = folder_.count();
+        const Outcome result = razor(arguments);
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_TRUE(result.err.starts_with("razor: ")) << result.err;
+        EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(folder_.count(), before) << "a file was left";
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Razor, RefusesBadInput) {
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"none.obj", "none.obj: no such file"},
+        {"none.toml", "none.toml: no such file"},
+        {"folder.obj", "folder.obj: is a directory"},
+        {"folder.toml", "folder.toml: is a directory"},
+        {".", "is a directory"},
+        {"''", ""},
+        {"empty.obj", "empty.obj: is empty"},
+        {"empty.toml", "empty.toml: is empty"},
+        {"random.obj", "random.obj:1: "},
+        {"random.toml", "random.toml:1:"},
+        {"random.exr", "neither a scene file nor a model"},
+        {"key.toml", "key.toml:2:1: unknown key 'settings.samlpes'; did you mean 'samples'?"},
+        {"type.toml", "type.toml:2:11: settings.samples is text"},
+        {"range.toml", "range.toml:2:9: settings.size = 0 is out of range"},
+        {"lost.toml", "lost.obj: no such file"},
+        {"good.obj --size 0x5", "--size"},
+        {"good.obj --size 512", "--size '512'"},
+        {"good.obj --size 5x-5", "--size"},
+        {"good.obj --size 99999x99999", "--size"},
+        {"good.obj --spp 0", "--spp '0'"},
+        {"good.obj --spp 1e3", "--spp '1e3'"},
+        {"good.obj --threads 0", "--threads '0'"},
+        {"good.obj --threads many", "--threads 'many'"},
+        {"good.obj --isa mmx", "--isa 'mmx' is unknown; give one of: auto, plain, sse4, avx2, avx512"},
+        {"good.obj --share core", "--share 'core'"},
+        {"good.obj --share 0", "--share '0'"},
+        {"good.obj --share 99999999999", "--share"},
+        {"good.obj --scheme loop", "--scheme 'loop'"},
+        {"good.obj --up x", "--up 'x'"},
+        {"good.obj --edge-pixels nan", "--edge-pixels 'nan'"},
+        {"good.obj --sise 4x4", "unknown option --sise; did you mean --size?"},
+        {"good.obj good.toml", "good.toml"},
+        {"good.obj --stats none/s.json", "none"},
+        {"good.obj --stats .", "is a directory"},
+        {"good.obj -o x.jpg", "end the name in .exr or .png"},
+        {"good.obj -o none/x.png", "no folder none"},
+        {"good.obj -o folder.obj", "end the name in .exr or .png"},
+    };
+    for (const auto& [arguments, cause] : cases) {
+        if (arguments != "''") { // an empty name is no name: the built-in scene
+            expect_refused("render " + arguments + " -o picture.exr", cause);
+        }
+    }
+    expect_refused("", "subcommand");
+    expect_refused("rendr good.obj -o picture.exr", "unknown command rendr; did you mean render?");
+    expect_refused("render good.obj", "no output; add -o");
+    expect_refused("render good.obj -o picture.exr --spp", "--spp: 1 required");
+    expect_refused("--sise", "--sise");
+}
+
+TEST_F(Razor, LoadsOrRefusesEveryOddFile) {
+    const std::filesystem::path odd = std::filesystem::path(RAZOR_SHARED_SCENES) / "odd";
+    if (!std::filesystem::exists(odd)) {
+        GTEST_SKIP() << "no shared scenes in " << odd;
+    }
+    const std::set<std::string> refused{"box_longline.obj", "concave_polygon.obj", "empty.obj",
+                                        "notenoughindices.obj"};
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(odd)) {
+        const std::string name = entry.path().filename().string();
+        ++files;
+        if (refused.contains(name)) {
+            expect_refused("render " + entry.path().string() + " -o picture.exr", name);
+        } else {
+            const Outcome result =
+                razor("render " + entry.path().string() + " -o p.exr --size 24x16 --spp 1");
+            EXPECT_EQ(result.code, 0) << name << ": " << result.err;
+            EXPECT_EQ(result.err, "") << "quiet in a pipe";
+            EXPECT_EQ(read_exr(folder_ / "p.exr").width, 24);
+            std::filesystem::remove(folder_ / "p.exr");
+        }
+    }
+    EXPECT_GE(files, 13U);
+}
+
+TEST_F(Razor, WritesPicturesAndStatistics) {
+    const Outcome result =
+        razor("render good.toml --size 20x10 --spp 1 -o a.exr -o b.png --stats s.json --threads 2 --share 2");
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.out + result.err, "");
+    ImageAttributes attributes;
+    const Film film = read_exr(folder_ / "a.exr", &attributes);
+    EXPECT_EQ(film.width, 20);
+    EXPECT_EQ(film.height, 10);
+    for (const Plane& plane : make_film(1, 1).planes) {
+        EXPECT_NE(film.find(plane.name), nullptr) << plane.name;
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "b.png"));
+    std::ifstream file(folder_ / "s.json");
+    const nlohmann::json statistics = nlohmann::json::parse(file);
+    EXPECT_EQ(statistics.at("options").at("threads"), 2);
+    EXPECT_EQ(statistics.at("options").at("workers_a_tree"), 2);
+    // The embedded scene is what --print-config prints, and renders again.
+    const auto embedded = std::find_if(attributes.begin(), attributes.end(),
+                                       [](const auto& a) { return a.first == "razor.scene"; });
+    ASSERT_NE(embedded, attributes.end());
+    EXPECT_EQ(embedded->second, statistics.at("scene"));
+    const Outcome printed = razor("render good.toml --size 20x10 --spp 1 --print-config");
+    EXPECT_EQ(printed.out, embedded->second);
+    folder_.file("again.toml", printed.out);
+    EXPECT_EQ(razor("render again.toml -o c.exr").code, 0);
+    const Film again = read_exr(folder_ / "c.exr");
+    for (const Plane& plane : film.planes) {
+        EXPECT_EQ(again.find(plane.name)->values, plane.values) << plane.name;
+    }
+}
+
+TEST_F(Razor, FailedWritingLeavesNothing) {
+    // ulimit counts blocks of 512 or 1024 bytes; the picture needs more than four of either.
+    const std::size_t before = folder_.count();
+    const Outcome result = run("ulimit -f 4; trap '' XFSZ; " + std::string(RAZOR_PROGRAM) +
+                                   " render --size 200x200 --spp 1 --edge-pixels 50 -o big.exr",
+                               folder_.path());
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_EQ(result.error_lines(), 1) << result.err;
+    EXPECT_EQ(folder_.count(), before);
+}
+
+TEST_F(Razor, InterruptLeavesNothing) {
+    const std::size_t before = folder_.count();
+    const Outcome result = run("timeout --preserve-status -s INT 0.4 " + std::string(RAZOR_PROGRAM) +
+                                   " render --size 2000x2000 --spp 1000 -o a.exr",
+                               folder_.path());
+    EXPECT_EQ(result.code, 130) << result.err;
+    EXPECT_EQ(result.err, "razor: interrupted; nothing written\n");
+    EXPECT_EQ(folder_.count(), before);
+}
+
+TEST_F(Razor, SaysItsVersion) {
+    const Outcome result = razor("--version");
+    EXPECT_EQ(result.code, 0);
+    EXPECT_TRUE(result.out.starts_with("razor 0.")) << result.out;
+    EXPECT_EQ(razor("--help").code, 0);
+    EXPECT_EQ(razor("render --help").code, 0);
+}
+
+} // namespace
+} // namespace razor

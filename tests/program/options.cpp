@@ -1,0 +1,102 @@
+// The options that choose and override a scene.
+#include "razor/program/arguments.h"
+#include "razor/program/scene_options.h"
+
+#include "razor/scene/default_scene.h"
+#include "razor/scene/error.h"
+#include "tests/scene/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace razor {
+namespace {
+
+SceneDescription described(std::vector<std::string> arguments) {
+    CLI::App app("test");
+    SceneOptions options;
+    options.add_to(app, "scene");
+    std::reverse(arguments.begin(), arguments.end()); // CLI11 takes them from the back
+    app.parse(arguments);
+    return options.describe();
+}
+
+TEST(Arguments, ParseOrRefuse) {
+    EXPECT_EQ(parse_whole("--n", "12", {1, 20}), 12);
+    EXPECT_EQ(parse_number("--x", "0.5", {0, 1}), 0.5);
+    EXPECT_EQ(parse_size("--size", "640x480", {1, 1000}), std::pair(640, 480));
+    for (const char* bad : {"", "x", "1x", "0", "21", "1.5", "-1", " 1", "1 ", "99999999999999999999"}) {
+        EXPECT_THROW(parse_whole("--n", bad, {1, 20}), UserError) << bad;
+    }
+    for (const char* bad : {"", "x", "nan", "inf", "2", "-0.1", "0.5s", "1e999"}) {
+        EXPECT_THROW(parse_number("--x", bad, {0, 1}), UserError) << bad;
+    }
+    for (const char* bad :
+         {"", "640", "640x", "x480", "640x480x3", "0x5", "640X480", "-1x5", "640 x 480", "1001x1"}) {
+        EXPECT_THROW(parse_size("--size", bad, {1, 1000}), UserError) << bad;
+    }
+    constexpr std::array<std::string_view, 2> words{"y", "z"};
+    EXPECT_EQ(parse_choice("--up", "z", words), 1U);
+    EXPECT_THROW(parse_choice("--up", "x", words), UserError);
+}
+
+TEST(SceneOptions, BuiltInSceneWithoutAName) {
+    EXPECT_EQ(to_toml(described({})), to_toml(default_scene()));
+}
+
+TEST(SceneOptions, OverrideTheFile) {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("s.toml", "[settings]\nsamples = 9\n[[mesh]]\nshape = \"box\"\n");
+    EXPECT_EQ(described({file}).settings.samples, 9);
+    const SceneDescription scene =
+        described({file, "--size", "64x32", "--spp", "2", "--light-samples", "3", "--sky-samples", "5",
+                   "--edge-pixels", "1.5", "--scheme", "bilinear"});
+    EXPECT_EQ(scene.settings.width, 64);
+    EXPECT_EQ(scene.settings.height, 32);
+    EXPECT_EQ(scene.settings.samples, 2);
+    EXPECT_EQ(scene.settings.light_samples, 3);
+    EXPECT_EQ(scene.settings.sky_samples, 5);
+    EXPECT_EQ(scene.settings.edge_pixels, 1.5);
+    EXPECT_EQ(scene.meshes[0].scheme, Scheme::bilinear);
+}
+
+TEST(SceneOptions, ShapeAModel) {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 0 2\nf 1 2 3\n");
+    const SceneDescription preset = described({file});
+    ASSERT_EQ(preset.meshes.size(), 2U);
+    EXPECT_EQ(preset.meshes[0].scheme, Scheme::catmull_clark);
+    EXPECT_EQ(preset.meshes[0].rotate, glm::dvec3(0));
+    const SceneDescription turned = described({file, "--up", "z", "--scheme", "bilinear", "--size", "10x40"});
+    EXPECT_EQ(turned.meshes[0].scheme, Scheme::bilinear);
+    EXPECT_EQ(turned.meshes[1].scheme, Scheme::bilinear);
+    EXPECT_EQ(placed_points(turned.meshes[0])[2], glm::dvec3(0, 2, 0));
+    EXPECT_NE(turned.camera.position, described({file, "--up", "z"}).camera.position)
+        << "framed for the picture's shape";
+    EXPECT_EQ(described({file, "--no-floor"}).meshes.size(), 1U);
+    EXPECT_EQ(described({file, "--scheme", "catmark"}).meshes[1].scheme, Scheme::bilinear)
+        << "the floor stays flat";
+}
+
+TEST(SceneOptions, WrongValuesAreRefusedBeforeAnyFileIsRead) {
+    for (const std::vector<std::string>& bad : {std::vector<std::string>{"--spp", "0"},
+                                                {"--size", "9"},
+                                                {"--light-samples", "x"},
+                                                {"--sky-samples", "-1"},
+                                                {"--edge-pixels", "0"},
+                                                {"--scheme", "loop"},
+                                                {"--up", "x"}}) {
+        std::vector<std::string> arguments = bad;
+        arguments.push_back("missing.obj");
+        try {
+            described(arguments);
+            ADD_FAILURE() << bad[0];
+        } catch (const UserError& error) {
+            EXPECT_NE(std::string(error.what()).find(bad[0]), std::string::npos) << error.what();
+        }
+    }
+}
+
+} // namespace
+} // namespace razor
