@@ -3,6 +3,7 @@
 // touch an interior point of two faces.
 #include "razor/surface/pages.h"
 
+#include "razor/surface/far_stencils.h"
 #include "razor/surface/refiner.h"
 
 #include <fmt/format.h>
@@ -26,13 +27,22 @@ struct ClassSurface {
     std::once_flag built;
     Bfr::Surface<double> surface;
     std::vector<int> to_control; // from Bfr's control points to positions in the face's control list
+    std::unordered_map<int, int> position; // in the control list, of each mesh point
 };
 
 /// Position in our regular control list of each point of Bfr's 4 x 4 patch, row by row.
 constexpr std::array<int, 16> regular_order{5, 6, 7, 8, 4, 0, 1, 9, 15, 3, 2, 10, 14, 13, 12, 11};
 
+std::unordered_map<int, int> positions_of(std::span<const int> controls) {
+    std::unordered_map<int, int> position;
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+        position.emplace(controls[i], static_cast<int>(i));
+    }
+    return position;
+}
+
 std::vector<int> map_controls(const Bfr::Surface<double>& surface, const FaceClass& c,
-                              std::span<const int> controls) {
+                              const std::unordered_map<int, int>& position) {
     if (c.regular) {
         if (!surface.IsRegular() || surface.GetNumControlPoints() != 16) {
             throw std::logic_error(fmt::format("face {} is not regular to OpenSubdiv", c.representative));
@@ -41,10 +51,6 @@ std::vector<int> map_controls(const Bfr::Surface<double>& surface, const FaceCla
     }
     std::vector<int> theirs(static_cast<std::size_t>(surface.GetNumControlPoints()));
     surface.GetControlPointIndices(theirs.data());
-    std::unordered_map<int, int> position;
-    for (std::size_t i = 0; i < controls.size(); ++i) {
-        position.emplace(controls[i], static_cast<int>(i));
-    }
     std::vector<int> map;
     for (const int point : theirs) {
         const auto found = position.find(point);
@@ -60,8 +66,10 @@ std::vector<int> map_controls(const Bfr::Surface<double>& surface, const FaceCla
 /// Weights of one point of a surface, summed over repeated control points.
 class StencilEvaluator {
 public:
-    StencilEvaluator(const ClassSurface& entry, const FaceClass& c)
-        : entry_(entry), quad_(c.corner_count == 4), parameters_(entry.surface.GetParameterization()) {
+    /// `far`: null, or what to ask instead of Bfr.
+    StencilEvaluator(const ClassSurface& entry, const FaceClass& c, const FarStencils* far)
+        : entry_(entry), class_(c), far_(c.regular ? nullptr : far),
+          parameters_(entry.surface.GetParameterization()) {
         for (std::size_t k = 0; k < raw_.size(); ++k) {
             raw_[k].resize(entry.to_control.size());
             summed_[k].resize(static_cast<std::size_t>(c.control_count));
@@ -70,7 +78,14 @@ public:
 
     /// Sub-face coordinates in [0,1]^2 (of the face itself if it is a quad).
     void evaluate(int sub, Uv uv, bool derivatives) {
-        if (!quad_) {
+        for (std::vector<double>& weights : summed_) {
+            std::fill(weights.begin(), weights.end(), 0.0);
+        }
+        if (far_ != nullptr) {
+            far_->add(class_.representative, sub, uv, entry_.position, summed_);
+            return;
+        }
+        if (class_.corner_count != 4) {
             const Uv normalized = uv;
             parameters_.ConvertNormalizedSubFaceToCoord(sub, normalized.data(), uv.data());
         }
@@ -80,7 +95,6 @@ public:
             entry_.surface.EvaluateStencil(uv.data(), raw_[0].data());
         }
         for (std::size_t k = 0; k < (derivatives ? 3U : 1U); ++k) {
-            std::fill(summed_[k].begin(), summed_[k].end(), 0.0);
             for (std::size_t i = 0; i < entry_.to_control.size(); ++i) {
                 summed_[k][static_cast<std::size_t>(entry_.to_control[i])] += raw_[k][i];
             }
@@ -96,7 +110,8 @@ public:
 
 private:
     const ClassSurface& entry_;
-    bool quad_;
+    const FaceClass& class_;
+    const FarStencils* far_;
     Bfr::Parameterization parameters_;
     std::array<std::vector<double>, 3> raw_, summed_;
 };
@@ -139,13 +154,24 @@ int quads(int exponent) {
 } // namespace
 
 struct PageMaker::Impl {
-    Impl(const Mesh& mesh, const Topology& t, Options options)
-        : topology(t), refiner(make_refiner(mesh)),
-          factory(*refiner, Bfr::SurfaceFactory::Options()
-                                .EnableCaching(false)
-                                .SetApproxLevelSmooth(options.approximation_level)
-                                .SetApproxLevelSharp(options.approximation_level)),
-          surfaces(t.classes.size()) {}
+    Impl(const Mesh& mesh, const Topology& t, int level)
+        : topology(t), refiner(make_refiner(mesh)), factory(*refiner, Bfr::SurfaceFactory::Options()
+                                                                          .EnableCaching(false)
+                                                                          .SetApproxLevelSmooth(level)
+                                                                          .SetApproxLevelSharp(level)),
+          surfaces(t.classes.size()) {
+        if (mesh.crease_method == CreaseMethod::chaikin) {
+            std::vector<int> irregular;
+            for (const FaceClass& c : t.classes) {
+                if (!c.regular) {
+                    irregular.push_back(c.representative);
+                }
+            }
+            if (!irregular.empty()) {
+                far = std::make_unique<FarStencils>(mesh, irregular, level);
+            }
+        }
+    }
 
     const ClassSurface& surface(int face_class) {
         ClassSurface& entry = surfaces[static_cast<std::size_t>(face_class)];
@@ -155,10 +181,10 @@ struct PageMaker::Impl {
                 throw std::logic_error(fmt::format("face {} has no limit surface", c.representative));
             }
             const FaceRecord& face = topology.faces[static_cast<std::size_t>(c.representative)];
-            entry.to_control = map_controls(entry.surface, c,
-                                            std::span(topology.controls)
-                                                .subspan(static_cast<std::size_t>(face.control_first),
-                                                         static_cast<std::size_t>(face.control_count)));
+            entry.position = positions_of(std::span(topology.controls)
+                                              .subspan(static_cast<std::size_t>(face.control_first),
+                                                       static_cast<std::size_t>(face.control_count)));
+            entry.to_control = map_controls(entry.surface, c, entry.position);
         });
         return entry;
     }
@@ -167,16 +193,17 @@ struct PageMaker::Impl {
     std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner;
     Factory factory;
     std::vector<ClassSurface> surfaces;
+    std::unique_ptr<FarStencils> far;
 };
 
 PageMaker::PageMaker(const Mesh& mesh, const Topology& topology, Options options)
-    : impl_(std::make_unique<Impl>(mesh, topology, options)) {}
+    : impl_(std::make_unique<Impl>(mesh, topology, std::clamp(options.approximation_level, 1, 10))) {}
 
 PageMaker::~PageMaker() = default;
 
 void PageMaker::make(const PageKey& key, float* weights) const {
     const FaceClass& c = impl_->topology.classes[static_cast<std::size_t>(key.face_class)];
-    StencilEvaluator stencil(impl_->surface(key.face_class), c);
+    StencilEvaluator stencil(impl_->surface(key.face_class), c, impl_->far.get());
     std::fill_n(weights, page_floats(key, c.control_count), 0.0F);
     switch (key.kind) {
     case PageKind::vertex: {

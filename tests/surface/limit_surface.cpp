@@ -48,8 +48,16 @@ Samples far_samples(const Mesh& mesh, const Topology& topology) {
         where.t = t.data();
         locations.push_back(where);
     }
+    Far::PatchTableFactory::Options patches;
+    patches.SetPatchPrecision<double>();
+    patches.includeBaseLevelIndices = true;
+    patches.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
+    patches.useInfSharpPatch = true;
+    patches.generateLegacySharpCornerPatches = false; // smooth corners stay smooth, as in Bfr
+    const std::unique_ptr<const Far::PatchTable> patch_table(
+        Far::PatchTableFactory::Create(*refiner, patches));
     const std::unique_ptr<const Far::LimitStencilTableReal<double>> table(
-        Factory::Create(*refiner, locations));
+        Factory::Create(*refiner, locations, nullptr, patch_table.get()));
     Samples samples;
     for (int i = 0; i < table->GetNumStencils(); ++i) {
         const auto stencil = table->GetLimitStencil(i);

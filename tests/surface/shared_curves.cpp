@@ -55,9 +55,7 @@ double worst_gap(const Mesh& mesh) {
 
 void check(const Mesh& mesh) {
     SCOPED_TRACE(mesh.name);
-    // Chaikin creases leave a real gap between the two faces' own evaluations, which owners close.
-    const double tolerance = mesh.crease_method == CreaseMethod::chaikin ? 2e-3 : 2e-6;
-    EXPECT_LT(worst_gap(mesh), tolerance);
+    EXPECT_LT(worst_gap(mesh), 2e-6);
 }
 
 TEST(SharedCurves, OwnersEvaluateWherePatchesDoOnHardCages) {
