@@ -112,7 +112,7 @@ TEST_F(Framing, TurnsZUpExactly) {
 }
 
 TEST_F(Framing, IgnoresPointsThatNoFaceUses) {
-    const Scene scene = framed("v 1e20 0 0\n" + std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"));
+    const Scene scene = framed("v 1e5 0 0\n" + std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"));
     EXPECT_LT(glm::length(scene.camera.position), 20);
 }
 

@@ -175,6 +175,8 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
     const std::vector<std::pair<std::string, std::string>> cases{
         {"[settings]\nsamlpes = 4\n" + mesh,
          "s.toml:2:1: unknown key 'settings.samlpes'; did you mean 'samples'? Known: size"},
+        {"zeta = 1\nalpha = 2\n" + mesh, "s.toml:1:1: unknown key 'zeta'"},
+        {"alpha = 2\nzeta = 1\n" + mesh, "s.toml:1:1: unknown key 'alpha'"},
         {"[setings]\n" + mesh, "s.toml:1:2: unknown key 'setings'; did you mean 'settings'?"},
         {mesh + "sceme = 1\n", "s.toml:3:1: unknown key 'mesh.sceme'; did you mean 'scheme'?"},
         {mesh + "[mesh.parameters]\nwith = 1\n", "unknown key 'mesh.parameters.with'; did you mean 'width'?"},
