@@ -242,9 +242,14 @@ void Frame::Impl::place_workers() {
         header->trees.get()[t].patches.set(
             region<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count)));
     // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
-    std::uint64_t grid_bytes = share_of(all_grids, options.workers);
-    std::uint64_t node_bytes = share_of(all_nodes, options.workers);
-    std::uint64_t list_bytes = share_of(all_lists, options.workers);
+    auto size = [&](std::uint64_t wanted, std::uint64_t all) {
+        std::uint64_t granule = isa::address_space::granule;
+        std::uint64_t most = share_of(all, options.workers);
+        return wanted == 0 ? most : std::min((wanted + granule - 1) / granule * granule, most);
+    };
+    std::uint64_t grid_bytes = size(options.grid_bytes, all_grids);
+    std::uint64_t node_bytes = size(options.node_bytes, all_nodes);
+    std::uint64_t list_bytes = size(options.list_bytes, all_lists);
     grid_lines_each = static_cast<int>(grid_bytes / line_bytes);
     nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
     list_lines_each = static_cast<int>(list_bytes / line_bytes);
@@ -366,6 +371,14 @@ void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
     WorkerArguments a{impl_->header, 0, impl_->pages.get(), &impl_->counters[0]};
     try {
         kernels.trace[impl_->plan](a, arguments);
+    } catch (const isa::trapped& trap) {
+        explain(trap);
+    }
+}
+
+void Frame::build_all(const KernelTable& kernels) {
+    try {
+        kernels.build_all({impl_->header, 0, impl_->pages.get(), &impl_->counters[0]});
     } catch (const isa::trapped& trap) {
         explain(trap);
     }

@@ -1,4 +1,5 @@
-// One frame's memory: the persistent part filled from a scene, room for what the kernels build, and what they leave.
+// One frame's memory: the persistent part filled from a scene, room for what the kernels build, and what they
+// leave.
 #pragma once
 
 #include "isa/address_space.h"
@@ -18,25 +19,28 @@ namespace razor {
 struct FrameOptions {
     int workers = 1;
     int share = 0; // workers that share one kd-tree and its grids; 0: all of them
+    /// Each worker's arenas; 0: as large as 32-bit references allow.
+    std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
 };
 
 /// What was built, and what laziness left unbuilt.
 struct FrameStatistics {
     Counters counters; // summed over workers
     std::int64_t trees = 0;
-    std::int64_t patches = 0;        // of the scene, times the trees
-    std::int64_t undrawn_faces = 0;  // holes and the like
+    std::int64_t patches = 0;       // of the scene, times the trees
+    std::int64_t undrawn_faces = 0; // holes and the like
     std::int64_t inner_nodes = 0, leaves = 0;
-    std::int64_t unsplit_nodes = 0; // nodes that no ray entered
+    std::int64_t unsplit_nodes = 0;                              // nodes that no ray entered
     std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // built this frame
-    std::int64_t page_bytes = 0;     // topology pages made so far; they outlive the frame
-    double page_seconds = 0;         // host time spent on them
-    std::string plan;                // which kernels the scene needs
+    std::int64_t page_bytes = 0; // topology pages made so far; they outlive the frame
+    double page_seconds = 0;     // host time spent on them
+    std::string plan;            // which kernels the scene needs
 };
 
 class Frame {
-  public:
-    /// Analyses the scene's topology and lays out frame memory. Throws UserError for cages that cannot be rendered.
+public:
+    /// Analyses the scene's topology and lays out frame memory. Throws UserError for cages that cannot be
+    /// rendered.
     Frame(const Scene& scene, const FrameOptions& options);
     ~Frame();
     Frame(const Frame&) = delete;
@@ -49,7 +53,10 @@ class Frame {
     void render(const KernelTable& kernels, int worker);
     /// Traces rays given in frame memory (worker 0 alone; call reset() before a render).
     void trace(const KernelTable& kernels, const TraceArguments& arguments);
-    /// Room in frame memory for tests and benchmarks that trace rays of their own. Call before anything is rendered.
+    /// Builds the whole tree, so that traces find nothing left to build (worker 0 alone).
+    void build_all(const KernelTable& kernels);
+    /// Room in frame memory for tests and benchmarks that trace rays of their own. Call before anything is
+    /// rendered.
     template <class T> T* extra(const std::string& structure, std::size_t count) {
         return reinterpret_cast<T*>(memory_bytes(structure, count * sizeof(T)));
     }
@@ -72,7 +79,7 @@ class Frame {
     /// Scene coordinates are world coordinates minus this.
     glm::dvec3 origin() const;
 
-  private:
+private:
     std::byte* memory_bytes(const std::string& structure, std::size_t bytes);
     struct Impl;
     std::unique_ptr<Impl> impl_;

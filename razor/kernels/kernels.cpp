@@ -42,6 +42,22 @@ template <Features F> void trace_all(const WorkerArguments& w, const TraceArgume
     }
 }
 
+/// Nodes lie one after the other in the arena, children behind their parents.
+void build_all(const WorkerArguments& w) {
+    Context c = begin(w);
+    refit(c);
+    ensure_root(c);
+    sint number = load(field(c.tree, &TreeRecord::root));
+    sint end = load(field(c.self, &WorkerRecord::node_next));
+    while (branch(number < end)) {
+        pointer<KdNode> node = c.nodes + number;
+        sint state = load_acquire(field(node, &KdNode::state));
+        split_node(c, node, state);
+        ++number;
+        end = load(field(c.self, &WorkerRecord::node_next));
+    }
+}
+
 constexpr Features flat{.hanging = false};
 constexpr Features hanging{.hanging = true};
 #define RAZOR_NAME(target) #target
@@ -52,6 +68,7 @@ constexpr Features hanging{.hanging = true};
 constinit const KernelTable kernels = {RAZOR_TARGET_NAME(ISA_TARGET),
                                        isa::width,
                                        {render<flat>, render<hanging>},
-                                       {trace_all<flat>, trace_all<hanging>}};
+                                       {trace_all<flat>, trace_all<hanging>},
+                                       build_all};
 
 } // namespace razor::ISA_TARGET

@@ -14,7 +14,8 @@ struct WorkerArguments {
     Counters* counters = nullptr;
 };
 
-/// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene coordinates.
+/// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene
+/// coordinates.
 struct TraceArguments {
     const float* origin[3] = {};
     const float* direction[3] = {};
@@ -22,7 +23,8 @@ struct TraceArguments {
     const float* t_max = nullptr;
     int count = 0;
     bool any_hit = false;
-    // Closest hit: distance, weights, patch (-1: none), block number * 128 + quad * 2 + which. Any hit: patch only.
+    // Closest hit: distance, weights, patch (-1: none), block number * 128 + quad * 2 + which. Any hit: patch
+    // only.
     float* t = nullptr;
     float* u = nullptr;
     float* v = nullptr;
@@ -40,6 +42,9 @@ struct KernelTable {
     void (*render[plan_count])(const WorkerArguments&);
     /// Refits, then traces rays in packets of consecutive rays: for tests and benchmarks. One worker only.
     void (*trace[plan_count])(const WorkerArguments&, const TraceArguments&);
+    /// Refits and splits every node, so that every patch is opened and nothing is lazy: the oracle's tree.
+    /// One worker only.
+    void (*build_all)(const WorkerArguments&);
 };
 
 // One a target; those that the build left out are not defined.
