@@ -1,14 +1,16 @@
-// The records that a frame reads and builds, exactly as they lie in frame memory on every target. Plain data, shared by
-// the host code that fills the persistent part and the kernels that read it. Lengths are world units relative to the
-// mesh's double-precision origin unless stated. Indices are 32 bits and count records of the array they name.
+// The records that a frame reads and builds, exactly as they lie in frame memory on every target. Plain data,
+// shared by the host code that fills the persistent part and the kernels that read it. Lengths are world
+// units relative to the mesh's double-precision origin unless stated. Indices are 32 bits and count records
+// of the array they name.
 //
-// A *patch* is a quadrilateral piece of surface with parameters (u, v) in [0,1]^2: a quad face, one sub-face of an n-gon
-// (corner c to its two edge midpoints and the centre), or a flat triangle. Corner 0 is (0,0), 1 (1,0), 2 (1,1), 3 (0,1).
-// Side 0 is v = 0 and side 2 is v = 1 (both run along u); side 1 is u = 1 and side 3 is u = 0 (both run along v).
+// A *patch* is a quadrilateral piece of surface with parameters (u, v) in [0,1]^2: a quad face, one sub-face
+// of an n-gon (corner c to its two edge midpoints and the centre), or a flat triangle. Corner 0 is (0,0), 1
+// (1,0), 2 (1,1), 3 (0,1). Side 0 is v = 0 and side 2 is v = 1 (both run along u); side 1 is u = 1 and side 3
+// is u = 0 (both run along v).
 //
-// A *curve* is what patches share: a cage edge, running from its lower- to its higher-numbered point, or a *spoke* of an
-// n-gon, running from an edge midpoint to the face centre. Its points are evaluated by its owner only, whoever asks
-// (design: shared points have one owner), so that neighbours agree bit for bit.
+// A *curve* is what patches share: a cage edge, running from its lower- to its higher-numbered point, or a
+// *spoke* of an n-gon, running from an edge midpoint to the face centre. Its points are evaluated by its
+// owner only, whoever asks (design: shared points have one owner), so that neighbours agree bit for bit.
 #pragma once
 
 #include "isa/memory_types.h"
@@ -24,16 +26,19 @@ enum class PatchKind : std::int32_t {
     flat_triangle = 3, // corners 0, 1, 2; corner 3 repeats corner 2
 };
 
-/// A limit-surface face (quad or n-gon) of a cage, or any face of a bilinear mesh (face_class -1; controls = its corners).
+/// A limit-surface face (quad or n-gon) of a cage, or any face of a bilinear mesh (face_class -1; controls =
+/// its corners).
 struct FaceRecord {
     std::int32_t face_class;    // index of the ClassRecord, or -1
     std::int32_t control_first; // its control points: controls[control_first ... + control_count)
     std::int32_t control_count;
     std::int32_t corner_count;
-    std::int32_t curve_first; // face_curves[curve_first + i] is the curve of the edge from corner i to corner i+1
+    std::int32_t
+        curve_first; // face_curves[curve_first + i] is the curve of the edge from corner i to corner i+1
 };
 
-/// Where the limit position of a cage point is evaluated: the lowest-numbered incident face, its lowest such corner.
+/// Where the limit position of a cage point is evaluated: the lowest-numbered incident face, its lowest such
+/// corner.
 struct VertexRecord {
     std::int32_t owner_face;
     std::int32_t owner_corner;
@@ -46,9 +51,11 @@ enum CurveFlags : std::int32_t {
 
 struct CurveRecord {
     std::int32_t owner_face;
-    std::int32_t owner_local; // edges: corner i of the owner's edge i -> i+1; spokes: corner_count + i, from midpoint of edge i
+    std::int32_t owner_local; // edges: corner i of the owner's edge i -> i+1; spokes: corner_count + i, from
+                              // midpoint of edge i
     std::int32_t flags;
-    std::int32_t end0, end1; // edges: points, end0 < end1. Spokes: end0 = the curve of edge i, end1 = the face
+    std::int32_t end0,
+        end1; // edges: points, end0 < end1. Spokes: end0 = the curve of edge i, end1 = the face
 };
 
 enum SideFlags : std::int32_t {
@@ -66,39 +73,52 @@ struct PatchRecord {
     std::int32_t sub; // sub-face (corner) of an n-gon, else 0
     std::int32_t side_curve[4];
     std::int32_t side_flags[4];
-    std::int32_t corner[4]; // quads and triangles: points. Sub-faces: point, curve (middle), face (centre), curve (middle)
+    std::int32_t corner[4]; // quads and triangles: points. Sub-faces: point, curve (middle), face (centre),
+                            // curve (middle)
 };
 static_assert(sizeof(PatchRecord) == 64);
 
-// --- grids and blocks -------------------------------------------------------------------------------------------------
-// A patch of exponents (Nu, Nv) has 2^Nu x 2^Nv quads, cut into blocks of at most 8 x 8 quads (9 x 9 vertices).
+// --- grids and blocks
+// ------------------------------------------------------------------------------------------------- A patch
+// of exponents (Nu, Nv) has 2^Nu x 2^Nv quads, cut into blocks of at most 8 x 8 quads (9 x 9 vertices).
 inline constexpr int block_log2 = 3;
 inline constexpr int block_quads = 1 << block_log2;
 inline constexpr int block_side = block_quads + 1;
 inline constexpr int block_vertices = block_side * block_side;
-inline constexpr int max_exponent_limit = 8; // of a curve; a mesh may have to use less (MeshRecord::max_exponent)
+inline constexpr int max_exponent_limit =
+    8; // of a curve; a mesh may have to use less (MeshRecord::max_exponent)
 
 // Strips number the block columns (or rows, or curve chunks) of all exponents in one sequence:
 // exponent N has max(1, 2^(N-3)) of them, the first at strip_first(N).
-template <class Int> constexpr Int strip_first_large(Int power) { return power + 2; } // power = 2^(N-3), N >= 3
-constexpr int strip_first(int exponent) { return exponent < 3 ? exponent : (1 << (exponent - 3)) + 2; }
-constexpr int strip_count(int exponent) { return exponent < 3 ? 1 : 1 << (exponent - 3); }
+template <class Int> constexpr Int strip_first_large(Int power) {
+    return power + 2;
+} // power = 2^(N-3), N >= 3
+constexpr int strip_first(int exponent) {
+    return exponent < 3 ? exponent : (1 << (exponent - 3)) + 2;
+}
+constexpr int strip_count(int exponent) {
+    return exponent < 3 ? 1 : 1 << (exponent - 3);
+}
 
-// --- topology pages ---------------------------------------------------------------------------------------------------
-// Weights over a face's control points, made by the host on request and immutable from then on. Each has an address fixed
-// by its key: lines are 64 bytes; page = class base + section first + index * section stride. Line 0 of a page holds the
-// word PageHeader::present; the rows of weights follow from line 1.
+// --- topology pages
+// --------------------------------------------------------------------------------------------------- Weights
+// over a face's control points, made by the host on request and immutable from then on. Each has an address
+// fixed by its key: lines are 64 bytes; page = class base + section first + index * section stride. Line 0 of
+// a page holds the word PageHeader::present; the rows of weights follow from line 1.
 inline constexpr int line_bytes = 64;
 struct alignas(line_bytes) Line {
     std::int32_t word[line_bytes / 4];
 };
 
 enum class PageKind : std::int32_t {
-    vertex = 0,     // index = corner (or corner_count: the centre). One row of control_count weights, zero-padded to the width
-    curve = 1,      // index = ((local * 2 + reversed) * strips + strip). control_count rows of 16: points (8*chunk + i)/2^N, i = 0..8
-    block = 2,      // index = (sub * strips + u strip) * strips + v strip. control_count rows, one weight a vertex j*(nu+1)+i,
-                    // padded to the width; positions
-    derivative = 3, // as block; two rows a control point: d/du then d/dv (only their cross product's direction matters)
+    vertex = 0, // index = corner (or corner_count: the centre). One row of control_count weights, zero-padded
+                // to the width
+    curve = 1, // index = ((local * 2 + reversed) * strips + strip). control_count rows of 16: points (8*chunk
+               // + i)/2^N, i = 0..8
+    block = 2, // index = (sub * strips + u strip) * strips + v strip. control_count rows, one weight a vertex
+               // j*(nu+1)+i, padded to the width; positions
+    derivative = 3, // as block; two rows a control point: d/du then d/dv (only their cross product's
+                    // direction matters)
 };
 inline constexpr int page_kinds = 4;
 inline constexpr int curve_row = 16; // floats a row of a curve page
@@ -116,7 +136,8 @@ struct PageHeader {
     isa::shared<std::int32_t> present; // 0 until the weights are there
 };
 
-// --- scene ------------------------------------------------------------------------------------------------------------
+// --- scene
+// ------------------------------------------------------------------------------------------------------------
 struct MeshRecord {
     float origin[3];   // of the mesh, relative to the scene's origin
     float edge_length; // target edge length, a power of two
@@ -125,9 +146,10 @@ struct MeshRecord {
     float albedo[3];
 };
 
-// --- grids: what tessellating a patch yields --------------------------------------------------------------------------
-/// Followed by words: vertices x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i); then, where the
-/// header gives an offset, cell boxes, ancestors, normals. A cell is 2 x 2 quads.
+// --- grids: what tessellating a patch yields
+// --------------------------------------------------------------------------
+/// Followed by words: vertices x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i);
+/// then, where the header gives an offset, cell boxes, ancestors, normals. A cell is 2 x 2 quads.
 struct alignas(line_bytes) BlockHeader {
     float box_low[3], box_high[3]; // of the vertices, mesh coordinates
     std::int32_t patch;
@@ -136,11 +158,12 @@ struct alignas(line_bytes) BlockHeader {
     std::int32_t quads_u, quads_v; // 1, 2, 4 or 8
     std::int32_t triangles;        // a quad: 2, or 1 for a flat triangle
     std::int32_t stride;
-    std::int32_t hangs;            // any of hang[] is not 0
-    std::int32_t hang[4];          // log2 of the sub-edges of this side that lie on one flat ancestor edge
-    std::int32_t cells_at;         // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
-    std::int32_t ancestors_at;     // [side][end][xyz], for sides whose ancestor is longer than the block; 0: none
-    std::int32_t normals_at;       // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
+    std::int32_t hangs;   // not 0 if any of hang[] is not
+    std::int32_t hang[4]; // log2 of the sub-edges of this side that lie on one flat ancestor edge
+    std::int32_t
+        cells_at; // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
+    std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0: none
+    std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
     isa::shared<std::int32_t> normals; // a BuildState
     std::int32_t padding[10];
 };
@@ -158,18 +181,20 @@ struct OpenPatch {
     std::int32_t block_lines; // from one block to the next
 };
 
-// --- kd-tree ----------------------------------------------------------------------------------------------------------
+// --- kd-tree
+// ----------------------------------------------------------------------------------------------------------
 enum NodeState : std::int32_t { node_unsplit = 0, node_busy = 1, node_inner = 2, node_leaf = 3 };
 struct KdNode {
     isa::shared<std::int32_t> state; // a NodeState
     float split;
     std::int32_t axis; // inner: 0, 1, 2
-    std::int32_t link; // inner: index of the lower child, the upper follows; else: first line of its item list
+    std::int32_t
+        link; // inner: index of the lower child, the upper follows; else: first line of its item list
 };
 static_assert(sizeof(KdNode) == 16);
 
-/// An item is a patch (number >= 0) or a block (~first line). The list's arrays follow: item[stride], then the boxes
-/// low x[stride], y, z, high x[stride], y, z in scene coordinates.
+/// An item is a patch (number >= 0) or a block (~first line). The list's arrays follow: item[stride], then
+/// the boxes low x[stride], y, z, high x[stride], y, z in scene coordinates.
 struct ItemList {
     std::int32_t count;
     std::int32_t stride;
@@ -199,7 +224,8 @@ struct alignas(line_bytes) WorkerRecord {
     isa::ref<float> packets; // the rays in flight
 };
 
-// --- the frame --------------------------------------------------------------------------------------------------------
+// --- the frame
+// --------------------------------------------------------------------------------------------------------
 struct alignas(line_bytes) QueueRecord {
     isa::shared<std::int32_t> next_tile;
     std::int32_t padding[15];
@@ -210,19 +236,27 @@ struct alignas(line_bytes) QueueRecord {
 };
 
 /// Planes of the film, one float a pixel each, in this order.
-enum FilmPlane : std::int32_t { film_beauty = 0, film_normal = 3, film_depth = 6, film_albedo = 7, film_planes = 10 };
+enum FilmPlane : std::int32_t {
+    film_beauty = 0,
+    film_normal = 3,
+    film_depth = 6,
+    film_albedo = 7,
+    film_planes = 10
+};
 
 struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t tiles_x, tiles;
     std::int32_t light_samples, sky_samples;
     std::int32_t patch_count, refit_chunks;
-    float camera[3];                         // scene coordinates
-    float film_corner[3], film_x[3], film_y[3]; // direction of the film's top left corner, and a pixel's steps
-    float light_corner[3], light_u[3], light_v[3], light_normal[3], light_radiance[3]; // radiance x area / (pi x samples)
-    float sky[3];        // radiance / samples
-    float background[3]; // what a camera ray that hits nothing sees
-    float reach; // no two points of scene and camera are further apart
+    float camera[3]; // scene coordinates
+    float film_corner[3], film_x[3],
+        film_y[3]; // direction of the film's top left corner, and a pixel's steps
+    float light_corner[3], light_u[3], light_v[3], light_normal[3],
+        light_radiance[3]; // radiance x area / (pi x samples)
+    float sky[3];          // radiance / samples
+    float background[3];   // what a camera ray that hits nothing sees
+    float reach;           // no two points of scene and camera are further apart
     std::int32_t bounds_stride;
     isa::ref<MeshRecord> meshes;
     isa::ref<PatchRecord> patches;
@@ -243,10 +277,12 @@ struct FrameHeader {
     isa::ref<float> film;
 };
 
-inline constexpr int tile_side = 16;     // pixels
-inline constexpr int refit_patches = 64; // a chunk: patches refitted by one grab of the queue (a multiple of every width)
+inline constexpr int tile_side = 16; // pixels
+inline constexpr int refit_patches =
+    64; // a chunk: patches refitted by one grab of the queue (a multiple of every width)
 
-// --- scratch of a worker, in floats -----------------------------------------------------------------------------------
+// --- scratch of a worker, in floats
+// -----------------------------------------------------------------------------------
 inline constexpr int kd_depth_limit = 60;
 inline constexpr int mailbox_slots = 16;
 

@@ -15,7 +15,7 @@
 namespace razor {
 
 class PageStore final : public isa::page_service {
-  public:
+public:
     /// The meshes' classes follow each other. Keeps references to meshes and topologies.
     PageStore(const std::vector<Mesh>& meshes, const std::vector<Topology>& topologies);
     ~PageStore();
@@ -32,7 +32,7 @@ class PageStore final : public isa::page_service {
     std::int64_t made_bytes() const { return made_bytes_.load(); }
     double seconds() const { return static_cast<double>(nanoseconds_.load()) * 1e-9; }
 
-  private:
+private:
     struct Class {
         int mesh, local;
         std::int64_t first_line;

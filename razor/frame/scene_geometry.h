@@ -8,10 +8,10 @@
 namespace razor {
 
 struct SceneGeometry {
-    glm::dvec3 origin;                    // of scene coordinates: the centre of everything
-    std::vector<glm::vec3> mesh_origins;  // relative to it, floats, so that the sum is exact in double
-    std::vector<double> edge_lengths;     // of each mesh, powers of two
-    double reach = 0;                     // no two points of scene and camera are further apart
+    glm::dvec3 origin;                   // of scene coordinates: the centre of everything
+    std::vector<glm::vec3> mesh_origins; // relative to it, floats, so that the sum is exact in double
+    std::vector<double> edge_lengths;    // of each mesh, powers of two
+    double reach = 0;                    // no two points of scene and camera are further apart
 };
 
 SceneGeometry locate_scene(const Scene& scene);

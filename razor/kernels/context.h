@@ -1,4 +1,5 @@
-// What a kernel carries with it: the handles it loaded once from the frame header, in registers, and its worker's own.
+// What a kernel carries with it: the handles it loaded once from the frame header, in registers, and its
+// worker's own.
 #pragma once
 
 #include "isa/isa.h"
@@ -27,7 +28,8 @@ struct Context {
     Counters* counters = nullptr;
 };
 
-inline Context make_context(pointer<FrameHeader> frame, sint worker, isa::page_service* pages, Counters* counters) {
+inline Context make_context(pointer<FrameHeader> frame, sint worker, isa::page_service* pages,
+                            Counters* counters) {
     Context c;
     c.frame = frame;
     c.pages = pages;
@@ -49,8 +51,8 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker, isa::page_s
 }
 
 /// Takes `amount` units from one of the worker's arenas. Natively and in the machine an arena never grows.
-inline sint allocate(const Context& c, std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*end, sint amount,
-                     TrapCode full) {
+inline sint allocate(const Context& c, std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*end,
+                     sint amount, TrapCode full) {
     sint begin = load(field(c.self, next));
     sint limit = load(field(c.self, end));
     if (branch(amount > limit - begin))
@@ -61,7 +63,7 @@ inline sint allocate(const Context& c, std::int32_t WorkerRecord::*next, std::in
 
 /// Resets a build state if its builder is thrown out, so that others that wait try for themselves.
 class BusyGuard {
-  public:
+public:
     BusyGuard(pointer<shared_int> word, int idle) : word_(word), idle_(idle) {}
     BusyGuard(const BusyGuard&) = delete;
     BusyGuard& operator=(const BusyGuard&) = delete;
@@ -75,7 +77,7 @@ class BusyGuard {
         published_ = true;
     }
 
-  private:
+private:
     pointer<shared_int> word_;
     int idle_;
     bool published_ = false;

@@ -1,10 +1,13 @@
-// A packet of rays against a block. Watertight (Woop, Benthin & Wald, JCGT 2013): every vertex is sheared into the ray's
-// frame, edge functions of shared edges are the same bits with opposite signs, and an edge function that rounds to zero is
-// decided by its exact error terms. A sub-edge with hanging vertices uses, on both sides of the edge, the edge function of
-// its flat ancestor. Lanes are rays; vertices are broadcast. Which cells to try is found with one lane a cell.
+// A packet of rays against a block. Watertight (Woop, Benthin & Wald, JCGT 2013): every vertex is sheared
+// into the ray's frame, edge functions of shared edges are the same bits with opposite signs, and an edge
+// function that rounds to zero is decided by its exact error terms. A sub-edge with hanging vertices uses, on
+// both sides of the edge, the edge function of its flat ancestor. Lanes are rays; vertices are broadcast.
+// Which cells to try is found with one lane a cell.
 #pragma once
 
 #include "razor/kernels/kd_build.h"
+
+#include <cstddef>
 
 namespace razor::ISA_TARGET {
 
@@ -21,25 +24,27 @@ struct Rays {
 
 struct Hits {
     vfloat t;
-    vfloat u, v;           // barycentric weights of the triangle's second and third vertex
-    vint patch;            // -1: none
-    vint triangle;         // block number * 128 + quad (row * 8 + column) * 2 + which
-    vint block;            // first line of the block in the grids
+    vfloat u, v;   // barycentric weights of the triangle's second and third vertex
+    vint patch;    // -1: none
+    vint triangle; // block number * 128 + quad (row * 8 + column) * 2 + which
+    vint block;    // first line of the block in the grids
 };
 
-/// A group of rays of one packet whose directions agree in signs and in largest component, with all that is uniform.
+/// A group of rays of one packet whose directions agree in signs and in largest component, with all that is
+/// uniform.
 struct Group {
     vmask alive;
-    sint kx, ky, kz;           // permutation: z is the largest component
-    vfloat ox, oy, oz;         // origin, permuted
-    vfloat shear_x, shear_y;   // d_x / d_z, d_y / d_z
-    vfloat scale_z;            // 1 / d_z
+    sint kx, ky, kz;         // permutation: z is the largest component
+    vfloat ox, oy, oz;       // origin, permuted
+    vfloat shear_x, shear_y; // d_x / d_z, d_y / d_z
+    vfloat scale_z;          // 1 / d_z
     vfloat t_min;
-    sint sign[3];              // 1: the direction's component is negative (unpermuted axes)
-    sfloat flip[3];            // 1 or -1
-    sfloat near[3], far[3];    // bounds of flip * origin, with slack: a plane is entered no earlier, left no later
-    sfloat least[3], most[3];  // bounds of |1 / direction|
-    sfloat first_t;            // least t_min
+    sint sign[3];   // 1: the direction's component is negative (unpermuted axes)
+    sfloat flip[3]; // 1 or -1
+    sfloat near[3],
+        far[3]; // bounds of flip * origin, with slack: a plane is entered no earlier, left no later
+    sfloat least[3], most[3]; // bounds of |1 / direction|
+    sfloat first_t;           // least t_min
 };
 
 struct Projected {
@@ -70,7 +75,7 @@ struct View {
     vfloat ox, oy, oz;
     sint line, patch, number, triangles;
     sint quads_u, quads_v;
-    sint ancestors_at, hang[4];
+    sint ancestors_at, hang[4], hangs;
 };
 
 inline Projected project(const Group& g, const View& v, const vfloat& x, const vfloat& y, const vfloat& z) {
@@ -89,19 +94,11 @@ inline Projected project_vertex(const Group& g, const View& v, sint i) {
     return project(g, v, x, y, z);
 }
 
-/// An edge: its two ends, and the power of two by which its edge function is longer than the sub-edge's.
+/// An edge of a triangle: its two ends, and the power of two by which the sub-edge is shorter.
 struct Edge {
     Projected p, q;
-    vfloat value;
     sfloat scale = 1.0F;
 };
-inline Edge make_edge(const Projected& p, const Projected& q) {
-    Edge e;
-    e.p = p;
-    e.q = q;
-    e.value = edge_function(p, q);
-    return e;
-}
 
 /// The flat ancestor of the sub-edge from vertex number `i` to i+1 along side s.
 inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
@@ -132,25 +129,55 @@ inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
             ends[k] = project_vertex(g, v, vertex);
         }
     }
-    Edge e = make_edge(ends[0], ends[1]);
-    e.scale = as_float((sint(127) - hang) << 23);
-    e.value = e.value * vfloat(e.scale);
-    return e;
+    return {ends[0], ends[1], as_float((sint(127) - hang) << 23)};
 }
 
-inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat V, vfloat W, const Projected& a,
-                   const Projected& b, const Projected& c, sint triangle, vint patch, Hits& hits) {
-    vfloat det = U + V + W;
+/// The four vertices of a quad, and the functions of its edges: bottom 00-10, right 10-11, top 01-11, left
+/// 00-01, and the diagonal 00-11.
+struct Quad {
+    Projected p00, p10, p11, p01;
+    vfloat bottom, right, top, left, diagonal;
+};
+
+/// On which sides of the block the quad lies.
+struct Border {
+    sbool side[4];
+};
+inline Border border_of(const View& v, sint i, sint j) {
+    sint last_u = v.quads_u - 1;
+    sint last_v = v.quads_v - 1;
+    return {{j == 0, i == last_u, j == last_v, i == 0}};
+}
+
+/// Replaces the functions of edges with hanging vertices by their flat ancestors', at the sub-edge's scale.
+inline void hang_edges(const Group& g, const View& v, sint i, sint j, Quad& q) {
+    Border border = border_of(v, i, j);
+    vfloat* functions[4] = {&q.bottom, &q.right, &q.top, &q.left};
+    for (int s = 0; s < 4; ++s) {
+        if (branch(border.side[s] & (v.hang[s] > 0))) {
+            Edge e = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
+            *functions[s] = edge_function(e.p, e.q) * vfloat(e.scale);
+        }
+    }
+}
+
+/// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
+inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat V, vfloat W,
+                   const Projected& a, const Projected& b, const Projected& c, sint triangle, Hits& hits) {
+    vfloat sum = U + V;
+    vfloat det = sum + W;
     inside = inside & (det != vfloat(0.0F));
     vfloat inverse = reciprocal(det);
     vfloat depth = fma(U, a.z, fma(V, b.z, W * c.z));
     vfloat t = depth * g.scale_z * inverse;
     vmask first = t < hits.t;
     vmask equal = t == hits.t;
+    vint patch = vint(v.patch);
+    vint number = vint(triangle);
     if (branch(any(inside & equal))) {
         vmask lower = patch < hits.patch;
         vmask same = patch == hits.patch;
-        same = same & (vint(triangle) < hits.triangle);
+        same = same & (number < hits.triangle);
         lower = lower | same;
         lower = lower | (hits.patch < vint(0));
         first = first | (equal & lower);
@@ -162,7 +189,7 @@ inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat
         hits.u = select(hit, V * inverse, hits.u);
         hits.v = select(hit, W * inverse, hits.v);
         hits.patch = select(hit, patch, hits.patch);
-        hits.triangle = select(hit, vint(triangle), hits.triangle);
+        hits.triangle = select(hit, number, hits.triangle);
         hits.block = select(hit, vint(v.line), hits.block);
     }
 }
@@ -176,72 +203,50 @@ inline vmask agree(const vfloat& u, const vfloat& v, const vfloat& w) {
     return same | (most <= zero);
 }
 
-/// Triangle (a, b, c) with edges ab, bc and ca, for the lanes that may be inside: decides exactly, then takes the hit.
-template <Features F>
-inline void hit_triangle(const Group& g, const View& v, vmask inside, const Edge& ab, const Edge& bc, const Edge& ca,
-                         const Projected& a, const Projected& b, const Projected& c, sint triangle, Hits& hits) {
-    vfloat U = exact_edge_function(bc.p, bc.q);
-    vfloat V = exact_edge_function(ca.p, ca.q);
-    vfloat W = exact_edge_function(ab.p, ab.q);
-    if constexpr (F.hanging) {
-        U = U * vfloat(bc.scale);
-        V = V * vfloat(ca.scale);
-        W = W * vfloat(ab.scale);
-    }
-    inside = inside & agree(U, V, W);
-    accept(g, v, inside, U, V, W, a, b, c, triangle, vint(v.patch), hits);
-}
-inline Edge reversed(const Edge& e) {
-    Edge r = e;
-    r.p = e.q;
-    r.q = e.p;
-    return r;
+/// An edge's function, exact in sign and at the sub-edge's scale.
+template <Features F> inline vfloat exact_function(const Edge& e) {
+    vfloat value = exact_edge_function(e.p, e.q);
+    if constexpr (F.hanging)
+        value = value * vfloat(e.scale);
+    return value;
 }
 
-/// Both triangles of one quad: (00, 10, 11) and (00, 11, 01).
-template <Features F> inline void intersect_quad(const Group& g, const View& v, sint i, sint j, Hits& hits) {
-    sint width = v.quads_u + 1;
-    sint low = j * width + i;
-    sint high = low + width;
-    Projected p00 = project_vertex(g, v, low);
-    Projected p10 = project_vertex(g, v, low + 1);
-    Projected p11 = project_vertex(g, v, high + 1);
-    Projected p01 = project_vertex(g, v, high);
-    Edge bottom = make_edge(p00, p10);
-    Edge right = make_edge(p10, p11);
-    Edge top = make_edge(p01, p11);
-    Edge left = make_edge(p00, p01);
-    Edge diagonal = make_edge(p00, p11);
+/// For lanes that may hit the quad's triangles, (00, 10, 11) and (00, 11, 01): decides exactly, and takes the
+/// hits.
+template <Features F>
+[[gnu::noinline]] void hit_quad(const Group& g, const View& v, sint i, sint j, const Quad& q, vmask inside0,
+                                vmask inside1, Hits& hits) {
+    Edge edges[4] = {{q.p00, q.p10}, {q.p10, q.p11}, {q.p01, q.p11}, {q.p00, q.p01}};
     if constexpr (F.hanging) {
-        sint last_u = v.quads_u - 1;
-        sint last_v = v.quads_v - 1;
-        sbool border[4] = {j == 0, i == last_u, j == last_v, i == 0};
-        Edge* edges[4] = {&bottom, &right, &top, &left};
+        Border border = border_of(v, i, j);
         for (int s = 0; s < 4; ++s) {
-            if (branch(border[s] & (v.hang[s] > 0)))
-                *edges[s] = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
+            if (branch(border.side[s] & (v.hang[s] > 0)))
+                edges[s] = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
         }
     }
-    // Signs: the first triangle needs (bottom, right, -diagonal) to agree, the second (diagonal, -top, -left).
-    vfloat minus = -diagonal.value;
-    vmask inside0 = agree(bottom.value, right.value, minus);
-    vmask inside1 = agree(minus, top.value, left.value);
-    inside0 = inside0 & g.alive;
-    inside1 = inside1 & g.alive;
-    if (branch(any(inside0 | inside1))) {
-        sint quad = ((j << block_log2) + i) * 2;
-        sint triangle = (v.number << 7) + quad;
-        if (branch(any(inside0)))
-            hit_triangle<F>(g, v, inside0, bottom, right, reversed(diagonal), p00, p10, p11, triangle, hits);
-        sbool second = v.triangles > 1;
-        if (branch(second & any(inside1)))
-            hit_triangle<F>(g, v, inside1, diagonal, reversed(top), reversed(left), p00, p11, p01, triangle + 1, hits);
+    sint quad = ((j << block_log2) + i) * 2;
+    sint triangle = (v.number << 7) + quad;
+    vfloat diagonal = exact_edge_function(q.p00, q.p11);
+    vfloat minus = -diagonal;
+    if (branch(any(inside0))) {
+        vfloat right = exact_function<F>(edges[1]);
+        vfloat bottom = exact_function<F>(edges[0]);
+        inside0 = inside0 & agree(right, minus, bottom);
+        accept(g, v, inside0, right, minus, bottom, q.p00, q.p10, q.p11, triangle, hits);
+    }
+    sbool second = v.triangles > 1;
+    if (branch(second & any(inside1))) {
+        vfloat top = -exact_function<F>(edges[2]);
+        vfloat left = -exact_function<F>(edges[3]);
+        inside1 = inside1 & agree(top, left, diagonal);
+        accept(g, v, inside1, top, left, diagonal, q.p00, q.p11, q.p01, triangle + 1, hits);
     }
 }
 
-/// Cells whose box some ray of the group may meet before its present hit: conservative, by interval arithmetic.
-inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint cells_at, sint from, sint cells,
-                       sfloat last_t) {
+/// Cells whose box some ray of the group may meet before its present hit: conservative, by interval
+/// arithmetic.
+inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint cells_at, sint from,
+                       sint cells, sfloat last_t) {
     sfloat shift[3] = {origin.x, origin.y, origin.z};
     vfloat enter = vfloat(g.first_t);
     vfloat leave = vfloat(last_t);
@@ -273,22 +278,89 @@ inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint c
     return m & (enter <= leave);
 }
 
+/// The up to 2 x 2 quads of a cell, row by row; neighbours in a row share two vertices and an edge.
 template <Features F>
-inline void intersect_cell(const Context& c, const Group& g, const View& v, sint column, sint row, Hits& hits) {
+inline void intersect_cell(const Context& c, const Group& g, const View& v, sint column, sint row,
+                           Hits& hits) {
     sint end_u = min(column + 2, v.quads_u);
     sint end_v = min(row + 2, v.quads_v);
+    sint width = v.quads_u + 1;
+    sint low_row = row * width;
     for (sint j = row; branch(j < end_v); ++j) {
+        sint low = low_row + column;
+        low_row = low_row + width;
+        sint high = low_row + column;
+        Quad q;
+        q.p00 = project_vertex(g, v, low);
+        q.p01 = project_vertex(g, v, high);
+        q.left = edge_function(q.p00, q.p01);
         for (sint i = column; branch(i < end_u); ++i) {
             tally(c.counters->quad_tests, 1);
-            intersect_quad<F>(g, v, i, j, hits);
+            ++low;
+            ++high;
+            q.p10 = project_vertex(g, v, low);
+            q.p11 = project_vertex(g, v, high);
+            q.bottom = edge_function(q.p00, q.p10);
+            q.right = edge_function(q.p10, q.p11);
+            q.top = edge_function(q.p01, q.p11);
+            q.diagonal = edge_function(q.p00, q.p11);
+            vfloat next_left = q.right;
+            if constexpr (F.hanging) {
+                if (branch(v.hangs != 0))
+                    hang_edges(g, v, i, j, q);
+            }
+            vfloat minus = -q.diagonal;
+            vmask inside0 = agree(q.bottom, q.right, minus) & g.alive;
+            vmask inside1 = agree(minus, q.top, q.left) & g.alive;
+            if (branch(any(inside0 | inside1)))
+                hit_quad<F>(g, v, i, j, q, inside0, inside1, hits);
+            q.p00 = q.p10;
+            q.p01 = q.p11;
+            q.left = next_left;
         }
     }
 }
 
+/// The packet's rays against boxes of a block, unpermuted, in mesh coordinates.
+struct Slabs {
+    vfloat origin[3], inverse[3], error[3];
+};
+
+/// Lanes whose ray meets a box before its present hit; the box is widened by the slack of positions. Its
+/// planes lie at low[k * step] and at low[(k + 3) * step].
+inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> low, int step,
+                       const vfloat& last_t) {
+    vfloat enter = g.t_min;
+    vfloat leave = last_t;
+    for (int k = 0; k < 3; ++k) {
+        sint near_at = g.sign[k] * (3 * step);
+        sint far_at = sint(3 * step) - near_at;
+        vfloat near = load_broadcast(low + k * step + near_at);
+        vfloat far = load_broadcast(low + k * step + far_at);
+        near = (near - rays.origin[k]) * rays.inverse[k];
+        far = (far - rays.origin[k]) * rays.inverse[k];
+        enter = max(near - rays.error[k], enter);
+        leave = min(far + rays.error[k], leave);
+    }
+    return g.alive & (enter <= leave);
+}
+
 template <Features F> inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
     phase_scope phase(phase_intersect);
-    tally(c.counters->block_tests, 1);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
+    sint mesh = load(field(header, &BlockHeader::mesh));
+    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
+    Slabs rays;
+    for (int k = 0; k < 3; ++k) {
+        vfloat o = load_vector(c.packets + (packet_origin + k * isa::width));
+        rays.origin[k] = o - load_broadcast(origin_at + k);
+        rays.inverse[k] = load_vector(c.packets + (packet_inverse + k * isa::width));
+        rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
+    }
+    static_assert(offsetof(BlockHeader, box_high) == offsetof(BlockHeader, box_low) + 3 * sizeof(float));
+    if (branch(none(rays_meet(g, rays, field(header, &BlockHeader::box_low), 1, hits.t))))
+        return;
+    tally(c.counters->block_tests, 1);
     View v;
     v.line = line;
     v.words = as<float>(header);
@@ -297,10 +369,10 @@ template <Features F> inline void intersect_block(const Context& c, const Group&
     v.triangles = load(field(header, &BlockHeader::triangles));
     v.quads_u = load(field(header, &BlockHeader::quads_u));
     v.quads_v = load(field(header, &BlockHeader::quads_v));
-    sint mesh = load(field(header, &BlockHeader::mesh));
     sint stride = load(field(header, &BlockHeader::stride));
     sint cells_at = load(field(header, &BlockHeader::cells_at));
     if constexpr (F.hanging) {
+        v.hangs = load(field(header, &BlockHeader::hangs));
         v.ancestors_at = load(field(header, &BlockHeader::ancestors_at));
         for (int s = 0; s < 4; ++s)
             v.hang[s] = load(field(header, &BlockHeader::hang) + s);
@@ -309,7 +381,6 @@ template <Features F> inline void intersect_block(const Context& c, const Group&
     v.x = vertices + stride * g.kx;
     v.y = vertices + stride * g.ky;
     v.z = vertices + stride * g.kz;
-    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
     vfloat mx = load_broadcast(origin_at + g.kx);
     vfloat my = load_broadcast(origin_at + g.ky);
     vfloat mz = load_broadcast(origin_at + g.kz);
@@ -330,6 +401,9 @@ template <Features F> inline void intersect_block(const Context& c, const Group&
         vmask met = cells_met(g, v, origin, cells_at, from, cells, last_t);
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
+            pointer<const float> box = v.words + cells_at + cell;
+            if (branch(none(rays_meet(g, rays, box, cell_boxes, hits.t))))
+                continue;
             sint row = cell >> shift;
             sint column = cell - (row << shift);
             tally(c.counters->cell_tests, 1);

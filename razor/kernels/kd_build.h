@@ -1,6 +1,6 @@
-// The kd-tree, split on demand by the surface-area heuristic: a node is split when the first ray enters it. Planes are
-// sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). Patches stay closed in the lists until
-// their box is large against the node's cell (after Hunt et al. 2007).
+// The kd-tree, split on demand by the surface-area heuristic: a node is split when the first ray enters it.
+// Planes are sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). Patches stay
+// closed in the lists until their box is large against the node's cell (after Hunt et al. 2007).
 #pragma once
 
 #include "razor/kernels/kd_list.h"
@@ -11,8 +11,8 @@ inline constexpr int plane_samples = 8;
 inline constexpr float traversal_cost = 1.0F; // a packet's visit to a node ...
 inline constexpr float item_cost = 16.0F;     // ... and its test of a block
 inline constexpr float empty_bonus = 0.85F;
-inline constexpr int few_items = 8;         // so few are opened whatever their size
-inline constexpr float large_item = 0.5F;   // of the cell's largest side
+inline constexpr int few_items = 8;       // so few are opened whatever their size
+inline constexpr float large_item = 0.5F; // of the cell's largest side
 
 struct Plane {
     sfloat cost, at;
@@ -95,7 +95,8 @@ inline Plane choose_plane(const List& l) {
     return best;
 }
 
-/// Writes the items on either side of the plane into the lists of two new nodes; returns the lower one's number.
+/// Writes the items on either side of the plane into the lists of two new nodes; returns the lower one's
+/// number.
 inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     sint children = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 2, trap_nodes_full);
     svec cut_high = l.high;
@@ -228,7 +229,8 @@ inline void build_root(const Context& c) {
     sfloat box[6];
     for (int k = 0; k < 6; ++k) {
         box[k] = k < 3 ? reduce_min(best[k]) : reduce_max(best[k]);
-        pointer<float> to = k < 3 ? field(c.tree, &TreeRecord::low) + k : field(c.tree, &TreeRecord::high) + (k - 3);
+        pointer<float> to =
+            k < 3 ? field(c.tree, &TreeRecord::low) + k : field(c.tree, &TreeRecord::high) + (k - 3);
         store(to, box[k]);
     }
     l.low = {box[0], box[1], box[2]};

@@ -1,4 +1,5 @@
-// Item lists of unsplit kd nodes and leaves: patches (number >= 0) and blocks (~first line) with their boxes, as arrays.
+// Item lists of unsplit kd nodes and leaves: patches (number >= 0) and blocks (~first line) with their boxes,
+// as arrays.
 #pragma once
 
 #include "razor/kernels/tessellate.h"
@@ -13,7 +14,9 @@ struct List {
     svec low, high; // of the cell
 };
 
-inline sint list_stride(sint count) { return (count + 15) & -16; }
+inline sint list_stride(sint count) {
+    return (count + 15) & -16;
+}
 
 /// Room for `count` items; the header is written by close_list.
 inline List make_list(const Context& c, sint count, sint depth, const svec& low, const svec& high) {
@@ -94,12 +97,15 @@ inline sint append(const List& l, sint at, const Items& v, const vmask& m) {
     return at + n;
 }
 
-/// Whether an item lies on the lower, and on the upper side of a plane; a flat item in the plane is on the lower one.
+/// Whether an item lies on the lower, and on the upper side of a plane; a flat item in the plane is on the
+/// lower one.
 inline vmask is_below(const vfloat& low, const vfloat& high, const vfloat& plane) {
     vmask begins = low < plane;
     return begins | (high <= plane);
 }
-inline vmask is_above(const vfloat& high, const vfloat& plane) { return high > plane; }
+inline vmask is_above(const vfloat& high, const vfloat& plane) {
+    return high > plane;
+}
 
 /// Opens the patches among the items that `wanted` chooses and returns the list with their blocks instead.
 template <class Wanted> inline List open_items(const Context& c, const List& old, Wanted wanted) {

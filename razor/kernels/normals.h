@@ -1,5 +1,5 @@
-// Shading normals of a block's vertices, made when the first camera ray is shaded there: limit normals from derivative
-// pages, or those of the bilinear patch. Flat patches have none: their triangles' normals serve.
+// Shading normals of a block's vertices, made when the first camera ray is shaded there: limit normals from
+// derivative pages, or those of the bilinear patch. Flat patches have none: their triangles' normals serve.
 #pragma once
 
 #include "razor/kernels/tessellate.h"
@@ -7,8 +7,8 @@
 namespace razor::ISA_TARGET {
 
 /// Sums derivative rows for a vector of vertices from `from` on.
-inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first, sint controls,
-                              sint from, const vmask& m, vvec& du, vvec& dv) {
+inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first,
+                              sint controls, sint from, const vmask& m, vvec& du, vvec& dv) {
     vfloat zero(0.0F);
     du = {zero, zero, zero};
     dv = {zero, zero, zero};

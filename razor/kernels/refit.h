@@ -1,6 +1,6 @@
 // Refitting: the box of every patch, from its control points, by all workers together. One lane a patch.
-// A limit surface lies in the hull of the control points that influence it (subdivision masks are convex). OpenSubdiv's
-// approximation and rounding may leave it by a little: the box grows by 1/256 of its size.
+// A limit surface lies in the hull of the control points that influence it (subdivision masks are convex).
+// OpenSubdiv's approximation and rounding may leave it by a little: the box grows by 1/256 of its size.
 #pragma once
 
 #include "razor/kernels/vec.h"

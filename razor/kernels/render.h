@@ -1,5 +1,5 @@
-// The worker: refits with the others, then takes tiles from the queue, traces their camera packets, shades, and resolves
-// into the film.
+// The worker: refits with the others, then takes tiles from the queue, traces their camera packets, shades,
+// and resolves into the film.
 #pragma once
 
 #include "razor/kernels/refit.h"
@@ -83,7 +83,8 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint 
 }
 
 /// Means of the samples into the film. Pixels without a hit have infinite depth and a zero normal.
-inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel, sint samples, const vmask& m) {
+inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel, sint samples,
+                    const vmask& m) {
     phase_scope phase(phase_resolve);
     pointer<float> film = load(field(c.frame, &FrameHeader::film));
     sint width = load(field(c.frame, &FrameHeader::width));

@@ -1,5 +1,6 @@
-// Sample points as a deterministic function of (pixel, sample, dimension): the R2 sequence (Roberts 2018: multiples of the
-// plastic constant, modulo 1) moved by a hash of pixel and dimension, so no picture depends on threads, tiles or sharing.
+// Sample points as a deterministic function of (pixel, sample, dimension): the R2 sequence (Roberts 2018:
+// multiples of the plastic constant, modulo 1) moved by a hash of pixel and dimension, so no picture depends
+// on threads, tiles or sharing.
 #pragma once
 
 #include "razor/kernels/vec.h"
@@ -19,7 +20,9 @@ inline vint scramble(const vint& x) {
 }
 
 /// The upper 24 bits as a number in [0, 1): exact.
-inline vfloat unit(const vint& bits) { return to_float(shift_right_logical(bits, 8)) * (1.0F / 16777216.0F); }
+inline vfloat unit(const vint& bits) {
+    return to_float(shift_right_logical(bits, 8)) * (1.0F / 16777216.0F);
+}
 
 struct vpoint {
     vfloat u, v;
@@ -29,7 +32,7 @@ struct vpoint {
 inline vpoint sample_square(const vint& pixel, const vint& sample, int dimension) {
     vint seed = scramble(pixel + vint(std::int32_t(0x9e3779b9U * static_cast<std::uint32_t>(dimension))));
     vint other = scramble(seed);
-    vint x = sample * vint(std::int32_t(3242174889U)) + seed; // 2^32 / p, p the plastic constant
+    vint x = sample * vint(std::int32_t(3242174889U)) + seed;  // 2^32 / p, p the plastic constant
     vint y = sample * vint(std::int32_t(2447445414U)) + other; // 2^32 / p^2
     vpoint s;
     s.u = unit(x);

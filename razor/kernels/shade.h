@@ -1,5 +1,5 @@
-// Hits to surface points, and the light they receive: a rectangle light and a constant sky, both by shadow rays, on matte
-// surfaces. Shadow packets hold width/4 neighbouring hits x 4 samples.
+// Hits to surface points, and the light they receive: a rectangle light and a constant sky, both by shadow
+// rays, on matte surfaces. Shadow packets hold width/4 neighbouring hits x 4 samples.
 #pragma once
 
 #include "isa/math.h"
@@ -16,7 +16,7 @@ struct Surface {
     vvec geometric; // unit normal of the triangle, towards the viewer
     vvec shading;   // unit, interpolated, towards the viewer
     vvec albedo;
-    vint pixel;     // number of the pixel, for sampling
+    vint pixel; // number of the pixel, for sampling
 };
 
 /// The three vertices of the triangles hit, from component arrays at word `base` of each lane's block.
@@ -67,8 +67,8 @@ inline vvec blend(const vvec& a, const vvec& b, const vvec& c, const Hits& h) {
     return madd(h.v, c, madd(h.u, b, a * w));
 }
 
-/// Bound on the error of a point computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the reach of a ray that
-/// leaves it (pbrt's gamma(n) style: 16 half-ulp roundings of the largest terms).
+/// Bound on the error of a point computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the reach
+/// of a ray that leaves it (pbrt's gamma(n) style: 16 half-ulp roundings of the largest terms).
 inline vfloat position_error(const vvec& p, const vvec& origin) {
     vfloat size = max(abs(p.x), max(abs(p.y), abs(p.z)));
     vfloat shift = max(abs(origin.x), max(abs(origin.y), abs(origin.z)));
@@ -154,7 +154,8 @@ struct LightRays {
     vfloat weight; // of the light's radiance (or the sky's), before albedo
 };
 
-/// A point on the rectangle light for each lane. header.light_radiance holds radiance x area / (pi x samples).
+/// A point on the rectangle light for each lane. header.light_radiance holds radiance x area / (pi x
+/// samples).
 inline LightRays sample_light(const Context& c, const Surface& s, const vint& sample) {
     phase_scope phase(phase_light);
     vpoint at = sample_square(s.pixel, sample, dimension_light);
@@ -185,7 +186,8 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
     return l;
 }
 
-/// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance / samples.
+/// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance /
+/// samples.
 inline LightRays sample_sky(const Surface& s, const vint& sample) {
     phase_scope phase(phase_light);
     vpoint at = sample_square(s.pixel, sample, dimension_sky);
@@ -215,8 +217,8 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
     return p;
 }
 
-/// Sum over `samples` shadow rays a hit of the weights of those that arrive. Sky: directions about the normal; else points
-/// on the light. `first_sample` is the number of the camera sample times `samples`.
+/// Sum over `samples` shadow rays a hit of the weights of those that arrive. Sky: directions about the
+/// normal; else points on the light. `first_sample` is the number of the camera sample times `samples`.
 template <Features F, bool Sky>
 inline vfloat gather_light(const Context& c, const Surface& s, sint samples, sint first_sample) {
     constexpr int per_hit = 4;

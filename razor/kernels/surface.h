@@ -1,5 +1,6 @@
-// Points of limit surfaces and of straight-edged patches: curve exponents, curve points, corners, centres. All are pure
-// functions of their owner, recomputed by whoever needs them, so that neighbours agree bit for bit.
+// Points of limit surfaces and of straight-edged patches: curve exponents, curve points, corners, centres.
+// All are pure functions of their owner, recomputed by whoever needs them, so that neighbours agree bit for
+// bit.
 #pragma once
 
 #include "razor/kernels/scratch.h"
@@ -35,10 +36,12 @@ inline Cage load_cage(const Context& c, sint mesh) {
     return g;
 }
 
-inline svec cage_point(const Cage& g, sint point) { return load_svec(g.points + point * 3); }
+inline svec cage_point(const Cage& g, sint point) {
+    return load_svec(g.points + point * 3);
+}
 
-/// Exponent N of a cage edge: 2^N segments of about the target length, N = round(log2(length / target)), by the cage points
-/// alone; in [0, max_exponent].
+/// Exponent N of a cage edge: 2^N segments of about the target length, N = round(log2(length / target)), by
+/// the cage points alone; in [0, max_exponent].
 inline sint edge_exponent(const Cage& g, pointer<CurveRecord> curve) {
     sint end0 = load(field(curve, &CurveRecord::end0));
     sint end1 = load(field(curve, &CurveRecord::end1));
@@ -73,7 +76,8 @@ inline sint curve_exponent(const Cage& g, pointer<CurveRecord> curve) {
 }
 
 /// The weights of a page, made by the host if nobody asked for it before.
-inline pointer<float> page_weights(const Context& c, const Cage& g, sint face_class, PageKind kind, sint index) {
+inline pointer<float> page_weights(const Context& c, const Cage& g, sint face_class, PageKind kind,
+                                   sint index) {
     int k = static_cast<int>(kind);
     pointer<ClassRecord> record = g.classes + face_class;
     pointer<Line> pages = load(field(record, &ClassRecord::pages));
@@ -148,12 +152,14 @@ inline svec get_point(pointer<const float> points, sint lane) {
     p.z = load(points + 2 * curve_row + lane);
     return p;
 }
-inline svec middle(const svec& a, const svec& b) { return (a + b) * 0.5F; }
+inline svec middle(const svec& a, const svec& b) {
+    return (a + b) * 0.5F;
+}
 
-/// Writes the interior points of one chunk of a curve of exponent N (points (8 chunk + i) / 2^N, i = 0..8, of which those
-/// outside the curve are undefined) to `points`: x[16], y[16], z[16]. Ends are for the caller.
-inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent, sint chunk,
-                           pointer<float> points) {
+/// Writes the interior points of one chunk of a curve of exponent N (points (8 chunk + i) / 2^N, i = 0..8, of
+/// which those outside the curve are undefined) to `points`: x[16], y[16], z[16]. Ends are for the caller.
+inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent,
+                           sint chunk, pointer<float> points) {
     sint owner = load(field(curve, &CurveRecord::owner_face));
     sint local = load(field(curve, &CurveRecord::owner_local));
     sint flags = load(field(curve, &CurveRecord::flags));
@@ -186,8 +192,8 @@ inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord>
 
 /// The same for a cage edge with its ends, which belong to the cage points.
 template <bool Straight>
-inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent, sint chunk,
-                        pointer<float> points) {
+inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent,
+                        sint chunk, pointer<float> points) {
     if (branch(exponent > 0))
         evaluate_chunk(c, g, curve, exponent, chunk, points);
     if (branch(chunk == 0)) {
@@ -202,7 +208,8 @@ inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> cu
 }
 
 /// The middle of a cage edge: one of its points, or (exponent 0) the mean of its ends.
-template <bool Straight> inline svec edge_middle(const Context& c, const Cage& g, pointer<CurveRecord> curve) {
+template <bool Straight>
+inline svec edge_middle(const Context& c, const Cage& g, pointer<CurveRecord> curve) {
     pointer<float> points = c.stack + (scratch_curve + scratch_curve_size);
     sint exponent = 0;
     if constexpr (!Straight)
@@ -217,9 +224,11 @@ template <bool Straight> inline svec edge_middle(const Context& c, const Cage& g
     return get_point(points, at & (block_quads - 1));
 }
 
-/// Points of any curve, ends included, into the first curve scratch. `exponent` is the curve's, 0 if it is straight.
+/// Points of any curve, ends included, into the first curve scratch. `exponent` is the curve's, 0 if it is
+/// straight.
 template <bool Straight>
-inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent, sint chunk) {
+inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent,
+                                   sint chunk) {
     pointer<float> points = c.stack + scratch_curve;
     sint flags = load(field(curve, &CurveRecord::flags));
     if (branch((flags & curve_spoke) == 0)) {

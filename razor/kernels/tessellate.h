@@ -1,5 +1,5 @@
-// Opening a patch: exponents of its sides, then its blocks: positions, hanging vertices on coarser edges, ancestors, boxes.
-// (Design: discrete levels. One level a mesh for now.)
+// Opening a patch: exponents of its sides, then its blocks: positions, hanging vertices on coarser edges,
+// ancestors, boxes. (Design: discrete levels. One level a mesh for now.)
 #pragma once
 
 #include "razor/kernels/surface.h"
@@ -30,7 +30,9 @@ inline Side load_side(const Cage& g, pointer<PatchRecord> record, int s) {
     return side;
 }
 
-inline sint half(const Side& side) { return (side.flags & side_half) >> 1; }
+inline sint half(const Side& side) {
+    return (side.flags & side_half) >> 1;
+}
 
 /// Grid exponents: the larger of opposite sides, so that a side is never finer than the grid.
 inline Dicing plan_dicing(const Context& c, const Cage& g, sint patch) {
@@ -83,11 +85,12 @@ inline void scatter_vec(pointer<float> x, sint stride, vint at, const vvec& v, v
     scatter(x + stride * 2, at, v.z, m);
 }
 
-/// Positions of one side of a block from the side's curve, and the side's ancestor if it is longer than the block.
-/// `strip`: the block along the side; `quads`: its segments; vertex i of the side is number first + i * step of the block.
+/// Positions of one side of a block from the side's curve, and the side's ancestor if it is longer than the
+/// block. `strip`: the block along the side; `quads`: its segments; vertex i of the side is number first + i
+/// * step of the block.
 template <bool Straight>
-inline void place_side(const Context& c, const Cage& g, const Block& b, const Side& side, int s, sint n, sint strip,
-                       sint quads, sint first, sint step) {
+inline void place_side(const Context& c, const Cage& g, const Block& b, const Side& side, int s, sint n,
+                       sint strip, sint quads, sint first, sint step) {
     sint reversed = side.flags & side_reversed;
     sint total = sint(1) << (n + half(side)); // grid segments on the whole curve
     sint begin = strip * block_quads;
@@ -154,7 +157,8 @@ inline sint strip_of(sint n, sint block) {
 }
 
 /// Index of a block's page within its section.
-inline sint block_page_index(const Cage& g, sint face_class, sint sub, sint nu, sint nv, sint column, sint row) {
+inline sint block_page_index(const Cage& g, sint face_class, sint sub, sint nu, sint nv, sint column,
+                             sint row) {
     sint strips = load(field(g.classes + face_class, &ClassRecord::strips));
     sint su = strip_of(nu, column);
     sint sv = strip_of(nv, row);
@@ -162,12 +166,15 @@ inline sint block_page_index(const Cage& g, sint face_class, sint sub, sint nu, 
 }
 
 /// Rows of a page hold this many floats.
-inline sint page_stride(sint vertices) { return (vertices + (isa::width - 1)) & -isa::width; }
+inline sint page_stride(sint vertices) {
+    return (vertices + (isa::width - 1)) & -isa::width;
+}
 
-/// sum over controls of weight x point for `Vectors` vectors of block vertices from `from` on, stored to x, y, z arrays.
+/// sum over controls of weight x point for `Vectors` vectors of block vertices from `from` on, stored to x,
+/// y, z arrays.
 template <int Vectors>
-inline void weigh(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first, sint controls, sint from,
-                  sint vertices, pointer<float> x, sint stride) {
+inline void weigh(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first, sint controls,
+                  sint from, sint vertices, pointer<float> x, sint stride) {
     vvec sum[Vectors];
     vmask m[Vectors];
     for (int v = 0; v < Vectors; ++v) {
@@ -193,8 +200,8 @@ inline void weigh(const Cage& g, pointer<float> weights, sint row_stride, sint c
 }
 
 /// All vertices of a row-major array of `vertices`, three vectors at a time where there is work for them.
-inline void weigh_all(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first, sint controls,
-                      sint vertices, pointer<float> x, sint stride) {
+inline void weigh_all(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first,
+                      sint controls, sint vertices, pointer<float> x, sint stride) {
     constexpr int w = isa::width;
     sint from = 0;
     for (; branch(vertices - from > 2 * w); from += 3 * w)
@@ -270,7 +277,8 @@ inline void place_flat(const Cage& g, const Dicing& d, const Block& b) {
     }
 }
 
-template <bool Straight> inline void place_sides(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+template <bool Straight>
+inline void place_sides(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
     sint columns = sint(1) << max(d.nu - block_log2, 0);
     sint rows = sint(1) << max(d.nv - block_log2, 0);
     sint width = b.quads_u + 1;
@@ -358,10 +366,8 @@ inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
 
     sbool several_cells = quads_u > 2;
     several_cells = several_cells | (quads_v > 2);
-    sbool hangs = false;
     sbool long_ancestor = false;
     for (int s = 0; s < 4; ++s) {
-        hangs = hangs | (d.side[s].hang > 0);
         sint segments = s % 2 == 0 ? quads_u : quads_v;
         long_ancestor = long_ancestor | ((sint(1) << d.side[s].hang) > segments);
     }
@@ -376,9 +382,9 @@ inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
     sint lines = (words + 15) >> 4;
     sint blocks = columns * rows;
     sint all_lines = lines * blocks;
-    sint first_line = allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, all_lines, trap_grids_full);
+    sint first_line =
+        allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, all_lines, trap_grids_full);
     sint is_triangle = select(d.kind == static_cast<int>(PatchKind::flat_triangle), sint(1), sint(2));
-    sint any_hang = select(hangs, sint(1), sint(0));
 
     sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
     sint control_first = load(field(g.faces + d.face, &FaceRecord::control_first));
@@ -413,9 +419,12 @@ inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
             hang[1] = select(b.column == columns - 1, d.side[1].hang, sint(0));
             hang[2] = select(b.row == rows - 1, d.side[2].hang, sint(0));
             hang[3] = select(b.column == 0, d.side[3].hang, sint(0));
-            for (int s = 0; s < 4; ++s)
+            sint hangs = 0;
+            for (int s = 0; s < 4; ++s) {
+                hangs = hangs | hang[s];
                 store(field(b.header, &BlockHeader::hang) + s, hang[s]);
-            store(field(b.header, &BlockHeader::hangs), any_hang);
+            }
+            store(field(b.header, &BlockHeader::hangs), hangs);
             if (branch(flat)) {
                 place_flat(g, d, b);
             } else if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {

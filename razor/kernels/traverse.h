@@ -1,6 +1,7 @@
-// Packets through the kd-tree. A packet is traversed in groups of rays whose directions agree in signs and in largest
-// component, so that order and projection are uniform. A hit anywhere in a block counts, whatever cell led to it; a cell's
-// exit, rounded outward, only ends traversal; equal distances go to the lowest (patch, triangle).
+// Packets through the kd-tree. A packet is traversed in groups of rays whose directions agree in signs and in
+// largest component, so that order and projection are uniform. A hit anywhere in a block counts, whatever
+// cell led to it; a cell's exit, rounded outward, only ends traversal; equal distances go to the lowest
+// (patch, triangle).
 #pragma once
 
 #include "razor/kernels/intersect.h"
@@ -9,7 +10,8 @@
 
 namespace razor::ISA_TARGET {
 
-inline constexpr float infinite = 3.0e38F; // distances beyond every scene, whose sums and products stay finite enough
+inline constexpr float infinite =
+    3.0e38F; // distances beyond every scene, whose sums and products stay finite enough
 
 /// 1/d, with directions too small to invert replaced by a tiny one of the same sign.
 inline vfloat safe_inverse(const vfloat& d) {
@@ -19,8 +21,8 @@ inline vfloat safe_inverse(const vfloat& d) {
     return reciprocal(select(usable, d, tiny));
 }
 
-/// Slack of positions: a bound on the rounding of everything between a vertex and a plane's distance, for coordinates up to
-/// `reach` (a dozen roundings of half an ulp each).
+/// Slack of positions: a bound on the rounding of everything between a vertex and a plane's distance, for
+/// coordinates up to `reach` (a dozen roundings of half an ulp each).
 inline sfloat position_slack(const Context& c) {
     sfloat reach = load(field(c.frame, &FrameHeader::reach));
     return reach * (12.0F / 16777216.0F);
@@ -44,7 +46,8 @@ inline vint sign_bits(const vvec& d) {
     return xy | z;
 }
 
-/// Everything uniform about the rays `alive`, which share direction class `direction_class` (axis * 8 + sign bits).
+/// Everything uniform about the rays `alive`, which share direction class `direction_class` (axis * 8 + sign
+/// bits).
 inline Group make_group(const Context& c, const Rays& r, vmask alive, sint direction_class) {
     Group g;
     g.alive = alive;
@@ -122,7 +125,8 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
 }
 
 /// One group from the root. AnyHit: the first hit retires a lane; its hit distance becomes -infinite.
-template <Features F, bool AnyHit> inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
+template <Features F, bool AnyHit>
+inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
     phase_scope phase(phase_traverse);
     vfloat enter, leave;
     clip_to_tree(c, r, enter, leave);

@@ -12,10 +12,18 @@ struct svec {
     sfloat x, y, z;
 };
 
-inline vvec operator+(const vvec& a, const vvec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline vvec operator-(const vvec& a, const vvec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline vvec operator*(const vvec& a, const vfloat& s) { return {a.x * s, a.y * s, a.z * s}; }
-inline vfloat dot(const vvec& a, const vvec& b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+inline vvec operator+(const vvec& a, const vvec& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline vvec operator-(const vvec& a, const vvec& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline vvec operator*(const vvec& a, const vfloat& s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+inline vfloat dot(const vvec& a, const vvec& b) {
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
 inline vvec cross(const vvec& a, const vvec& b) {
     return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
 }
@@ -38,12 +46,22 @@ inline vvec normalise(const vvec& a, const vvec& fallback) {
     return select(good, unit, fallback);
 }
 
-inline vfloat largest(const vvec& a) { return max(a.x, max(a.y, a.z)); }
-inline sfloat largest(const svec& a) { return max(a.x, max(a.y, a.z)); }
+inline vfloat largest(const vvec& a) {
+    return max(a.x, max(a.y, a.z));
+}
+inline sfloat largest(const svec& a) {
+    return max(a.x, max(a.y, a.z));
+}
 
-inline svec operator+(const svec& a, const svec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline svec operator-(const svec& a, const svec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline svec operator*(const svec& a, sfloat s) { return {a.x * s, a.y * s, a.z * s}; }
+inline svec operator+(const svec& a, const svec& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline svec operator-(const svec& a, const svec& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline svec operator*(const svec& a, sfloat s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
 
 inline svec load_svec(pointer<const float> p) {
     svec v;
