@@ -6,9 +6,8 @@
 #include "isa/native/vector.h"
 #include "isa/services.h"
 
-#include <atomic>
 #include <cstddef>
-#include <thread>
+#include <sched.h>
 #include <type_traits>
 
 namespace ISA_NATIVE {
@@ -139,33 +138,31 @@ template <class T> inline void discard(pointer<T>, sint /*bytes*/) {}
 // --- words shared between workers. Sequences of plain stores before a release are seen after the acquire
 // that reads it.
 inline sint load_acquire(pointer<isa::shared<std::int32_t>> p) {
-    return std::atomic_ref<std::int32_t>(p.host()->word).load(std::memory_order_acquire);
+    return __atomic_load_n(&p.host()->word, __ATOMIC_ACQUIRE);
 }
 inline void store_release(pointer<isa::shared<std::int32_t>> p, sint a) {
-    std::atomic_ref<std::int32_t> word(p.host()->word);
-    word.store(a.v, std::memory_order_release);
+    __atomic_store_n(&p.host()->word, a.v, __ATOMIC_RELEASE);
 }
 /// Adds; returns the value before.
 inline sint fetch_add(pointer<isa::shared<std::int32_t>> p, sint a) {
-    return std::atomic_ref<std::int32_t>(p.host()->word).fetch_add(a.v, std::memory_order_acq_rel);
+    return __atomic_fetch_add(&p.host()->word, a.v, __ATOMIC_ACQ_REL);
 }
 /// Stores `desired` if the word is `expected`; returns the value before.
 inline sint compare_exchange(pointer<isa::shared<std::int32_t>> p, sint expected, sint desired) {
     std::int32_t before = expected.v;
-    std::atomic_ref<std::int32_t>(p.host()->word).compare_exchange_strong(before, desired.v, std::memory_order_acq_rel);
+    __atomic_compare_exchange_n(&p.host()->word, &before, desired.v, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
     return before;
 }
 /// Waits until the word is no longer `value`; returns what it is then.
 inline sint wait_while(pointer<isa::shared<std::int32_t>> p, sint value) {
-    std::atomic_ref<std::int32_t> word(p.host()->word);
     for (int spin = 0;; ++spin) {
-        std::int32_t now = word.load(std::memory_order_acquire);
-        if (now != value.v)
+        sint now = load_acquire(p);
+        if (now.v != value.v)
             return now;
         if (spin < 64)
             __builtin_ia32_pause();
         else
-            std::this_thread::yield();
+            sched_yield();
     }
 }
 
@@ -175,7 +172,7 @@ inline void request_page(isa::page_service& service, sint space, sint kind, sint
     service.make_page(space.v, kind.v, index.v);
 }
 /// Gives up: the host catches isa::trapped in the worker's outermost call.
-[[noreturn]] inline void trap(int code) { throw isa::trapped(code); }
+[[noreturn]] inline void trap(int code) { isa::throw_trapped(code); }
 /// Instrumentation, not part of the machine: adds to a counter of the host and costs no simulated time.
 inline void tally(std::int64_t& counter, sint n) { counter += n.v; }
 inline void tally(std::int64_t& counter, int n) { counter += n; }

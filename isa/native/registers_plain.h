@@ -6,10 +6,7 @@
 #include "isa/native/unroll.h"
 #include "isa/target.h"
 
-#include <bit>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace ISA_NATIVE::reg {
 
@@ -58,16 +55,16 @@ inline F div(F a, F b) {
     return each<F>([&](int i) { return a.v[i] / b.v[i]; });
 }
 inline F fma(F a, F b, F c) { // a*b + c, one rounding
-    return each<F>([&](int i) { return std::fma(a.v[i], b.v[i], c.v[i]); });
+    return each<F>([&](int i) { return __builtin_fmaf(a.v[i], b.v[i], c.v[i]); });
 }
 inline F fms(F a, F b, F c) { // a*b - c, one rounding
-    return each<F>([&](int i) { return std::fma(a.v[i], b.v[i], -c.v[i]); });
+    return each<F>([&](int i) { return __builtin_fmaf(a.v[i], b.v[i], -c.v[i]); });
 }
 inline F fnma(F a, F b, F c) { // c - a*b, one rounding
-    return each<F>([&](int i) { return std::fma(-a.v[i], b.v[i], c.v[i]); });
+    return each<F>([&](int i) { return __builtin_fmaf(-a.v[i], b.v[i], c.v[i]); });
 }
 inline F product_error(F a, F b, F p) { // a*b - p, exact where p is the rounded product
-    return each<F>([&](int i) { return std::fma(a.v[i], b.v[i], -p.v[i]); });
+    return each<F>([&](int i) { return __builtin_fmaf(a.v[i], b.v[i], -p.v[i]); });
 }
 inline F min(F a, F b) { // a < b ? a : b
     return each<F>([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
@@ -76,13 +73,13 @@ inline F max(F a, F b) { // a > b ? a : b
     return each<F>([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
 }
 inline F sqrt(F a) {
-    return each<F>([&](int i) { return std::sqrt(a.v[i]); });
+    return each<F>([&](int i) { return __builtin_sqrtf(a.v[i]); });
 }
 inline F floor(F a) {
-    return each<F>([&](int i) { return std::floor(a.v[i]); });
+    return each<F>([&](int i) { return __builtin_floorf(a.v[i]); });
 }
 inline F round_even(F a) {
-    return each<F>([&](int i) { return std::nearbyint(a.v[i]); });
+    return each<F>([&](int i) { return __builtin_rintf(a.v[i]); });
 }
 
 // --- float comparison
@@ -184,18 +181,17 @@ inline M from_bits(std::uint32_t b) { // bits above the lanes are ignored
 inline I to_int(F a) { // towards zero; NaN and what does not fit give INT_MIN
     return each<I>([&](int i) {
         float x = a.v[i];
-        return x >= -2147483648.0F && x < 2147483648.0F ? static_cast<std::int32_t>(x)
-                                                        : std::numeric_limits<std::int32_t>::min();
+        return x >= -2147483648.0F && x < 2147483648.0F ? static_cast<std::int32_t>(x) : (-0x7fffffff - 1);
     });
 }
 inline F to_float(I a) { // to nearest, ties to even
     return each<F>([&](int i) { return static_cast<float>(a.v[i]); });
 }
 inline I as_int(F a) {
-    return each<I>([&](int i) { return std::bit_cast<std::int32_t>(a.v[i]); });
+    return each<I>([&](int i) { return __builtin_bit_cast(std::int32_t, a.v[i]); });
 }
 inline F as_float(I a) {
-    return each<F>([&](int i) { return std::bit_cast<float>(a.v[i]); });
+    return each<F>([&](int i) { return __builtin_bit_cast(float, a.v[i]); });
 }
 
 // --- memory. Addresses need only the alignment of one element; masked-off lanes are not accessed and load as

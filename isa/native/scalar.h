@@ -4,10 +4,7 @@
 
 #include "isa/target.h"
 
-#include <bit>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace ISA_NATIVE {
 
@@ -43,24 +40,44 @@ inline sfloat operator-(sfloat a, sfloat b) { return a.v - b.v; }
 inline sfloat operator*(sfloat a, sfloat b) { return a.v * b.v; }
 inline sfloat operator/(sfloat a, sfloat b) { return a.v / b.v; }
 /// Flips the sign bit, of NaN too.
-inline sfloat operator-(sfloat a) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(a.v) ^ 0x80000000U); }
+inline sfloat operator-(sfloat a) {
+    return __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, a.v) ^ 0x80000000U);
+}
 #if defined(ISA_TARGET_SSE4)
-/// a*b + c. One rounding; two on sse4.
-inline sfloat fma(sfloat a, sfloat b, sfloat c) { return a.v * b.v + c.v; }
+namespace detail {
+inline float fused(float a, float b, float c) { return a * b + c; }
+} // namespace detail
 #else
-/// a*b + c. One rounding; two on sse4.
-inline sfloat fma(sfloat a, sfloat b, sfloat c) { return std::fma(a.v, b.v, c.v); }
+namespace detail {
+inline float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
+} // namespace detail
 #endif
+/// a*b + c. One rounding; two on sse4.
+inline sfloat fma(sfloat a, sfloat b, sfloat c) { return detail::fused(a.v, b.v, c.v); }
+/// a*b - c. One rounding; two on sse4.
+inline sfloat fms(sfloat a, sfloat b, sfloat c) { return detail::fused(a.v, b.v, -c.v); }
+/// c - a*b. One rounding; two on sse4.
+inline sfloat fnma(sfloat a, sfloat b, sfloat c) { return detail::fused(-a.v, b.v, c.v); }
+/// a*b - p: the exact rounding error of p = a*b on every target, sse4 too (barring overflow, and underflow of the
+/// error).
+inline sfloat product_error(sfloat a, sfloat b, sfloat p) {
+    return static_cast<float>(static_cast<double>(a.v) * static_cast<double>(b.v) - static_cast<double>(p.v));
+}
 /// a < b ? a : b (b where either is NaN or both are zeros).
 inline sfloat min(sfloat a, sfloat b) { return a.v < b.v ? a.v : b.v; }
 /// a > b ? a : b (b where either is NaN or both are zeros).
 inline sfloat max(sfloat a, sfloat b) { return a.v > b.v ? a.v : b.v; }
 /// Clears the sign bit, of NaN too.
-inline sfloat abs(sfloat a) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(a.v) & 0x7fffffffU); }
+inline sfloat abs(sfloat a) { return __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, a.v) & 0x7fffffffU); }
 /// Correctly rounded; NaN below zero, -0 at -0.
-inline sfloat sqrt(sfloat a) { return std::sqrt(a.v); }
+inline sfloat sqrt(sfloat a) { return __builtin_sqrtf(a.v); }
 /// Exact; NaN and infinities unchanged.
-inline sfloat floor(sfloat a) { return std::floor(a.v); }
+inline sfloat floor(sfloat a) { return __builtin_floorf(a.v); }
+/// To the nearest integer, ties to even; exact; NaN and infinities unchanged.
+inline sfloat round_even(sfloat a) { return __builtin_rintf(a.v); }
+/// 1/a and 1/sqrt(a) by true division and square root: one and two roundings.
+inline sfloat reciprocal(sfloat a) { return 1.0F / a.v; }
+inline sfloat reciprocal_sqrt(sfloat a) { return 1.0F / __builtin_sqrtf(a.v); }
 
 // --- sfloat comparison: false where either is NaN, except !=
 inline sbool operator<(sfloat a, sfloat b) { return a.v < b.v; }
@@ -116,14 +133,13 @@ inline sint select(sbool m, sint a, sint b) { return m.v ? a : b; }
 // --- conversion
 /// Towards zero; NaN and what does not fit give INT_MIN.
 inline sint to_int(sfloat a) {
-    return a.v >= -2147483648.0F && a.v < 2147483648.0F ? static_cast<std::int32_t>(a.v)
-                                                        : std::numeric_limits<std::int32_t>::min();
+    return a.v >= -2147483648.0F && a.v < 2147483648.0F ? static_cast<std::int32_t>(a.v) : (-0x7fffffff - 1);
 }
 /// To nearest, ties to even.
 inline sfloat to_float(sint a) { return static_cast<float>(a.v); }
 /// The same 32 bits.
-inline sint as_int(sfloat a) { return std::bit_cast<std::int32_t>(a.v); }
-inline sfloat as_float(sint a) { return std::bit_cast<float>(a.v); }
+inline sint as_int(sfloat a) { return __builtin_bit_cast(std::int32_t, a.v); }
+inline sfloat as_float(sint a) { return __builtin_bit_cast(float, a.v); }
 
 // --- control
 /// The one way from a vocabulary value to a C++ decision: if (branch(x < y)), for (sint i = 0; branch(i < n); ++i).

@@ -8,7 +8,6 @@
 #include "isa/target.h"
 #include ISA_REGISTERS
 
-#include <bit>
 #include <concepts>
 #include <cstdint>
 
@@ -186,11 +185,11 @@ inline sbool any(const vmask& m) { return reg::any(m.r); }
 inline sbool all(const vmask& m) { return reg::all(m.r); }
 inline sbool none(const vmask& m) { return !reg::any(m.r); }
 /// Number of set lanes.
-inline sint count(const vmask& m) { return std::popcount(detail::bits(m)); }
+inline sint count(const vmask& m) { return __builtin_popcountll(detail::bits(m)); }
 /// Lowest set lane; the width if there is none.
 inline sint first(const vmask& m) {
     std::uint64_t b = detail::bits(m);
-    return b == 0 ? width : std::countr_zero(b);
+    return b == 0 ? width : __builtin_ctzll(b);
 }
 /// Clears the lowest set lane, if there is one.
 inline vmask clear_first(const vmask& m) {

@@ -7,14 +7,14 @@
 namespace isa::simulated {
 
 template <class T> class pointer {
-  public:
+public:
     pointer() = default;
     explicit pointer(T* host) : value_(host) {}
     template <class U>
-        requires std::is_const_v<T> && std::is_same_v<std::remove_const_t<T>, U>
-    pointer(const pointer<U>& p) : value_(access::value(p)), time_(access::time(p)) {}
+    requires std::is_const_v<T> && std::is_same_v<std::remove_const_t<T>, U> pointer(const pointer<U>& p)
+        : value_(access::value(p)), time_(access::time(p)) {}
 
-  private:
+private:
     friend struct access;
     values::pointer<T> value_;
     stamp time_;
@@ -90,8 +90,7 @@ inline sint load(const pointer<const std::int32_t>& p, ISA_SITE) { return detail
 inline sfloat load(const pointer<float>& p, ISA_SITE) { return detail::scalar_load<sfloat>(p, where); }
 inline sint load(const pointer<std::int32_t>& p, ISA_SITE) { return detail::scalar_load<sint>(p, where); }
 template <class E>
-    requires(std::is_enum_v<E> && sizeof(E) == 4)
-inline sint load(const pointer<E>& p, ISA_SITE) {
+requires(std::is_enum_v<E> && sizeof(E) == 4) inline sint load(const pointer<E>& p, ISA_SITE) {
     return detail::scalar_load<sint>(p, where);
 }
 template <class T> inline pointer<T> load(const pointer<const isa::ref<T>>& p, ISA_SITE) {
@@ -112,15 +111,11 @@ inline vint load_broadcast(const pointer<const std::int32_t>& p, ISA_SITE) {
     return detail::broadcast_load<vint>(p, where);
 }
 inline vfloat load_broadcast(const pointer<float>& p, ISA_SITE) { return detail::broadcast_load<vfloat>(p, where); }
-inline vint load_broadcast(const pointer<std::int32_t>& p, ISA_SITE) {
-    return detail::broadcast_load<vint>(p, where);
-}
+inline vint load_broadcast(const pointer<std::int32_t>& p, ISA_SITE) { return detail::broadcast_load<vint>(p, where); }
 
 // --- width consecutive elements
 inline vfloat load_vector(const pointer<const float>& p, ISA_SITE) { return detail::vector_load<vfloat>(p, where); }
-inline vint load_vector(const pointer<const std::int32_t>& p, ISA_SITE) {
-    return detail::vector_load<vint>(p, where);
-}
+inline vint load_vector(const pointer<const std::int32_t>& p, ISA_SITE) { return detail::vector_load<vint>(p, where); }
 inline vfloat load_vector(const pointer<float>& p, ISA_SITE) { return detail::vector_load<vfloat>(p, where); }
 inline vint load_vector(const pointer<std::int32_t>& p, ISA_SITE) { return detail::vector_load<vint>(p, where); }
 inline vfloat load_vector(const pointer<const float>& p, const vmask& m, ISA_SITE) {
@@ -212,17 +207,17 @@ inline sint wait_while(const shared_word& p, const sint& value, ISA_SITE) {
 inline void request_page(isa::page_service& service, const sint& space, const sint& kind, const sint& index) {
     timing::request_page(&service, access::value(space).v, access::value(kind).v, access::value(index).v);
 }
-[[noreturn]] inline void trap(int code) { throw isa::trapped(code); }
+[[noreturn]] inline void trap(int code) { isa::throw_trapped(code); }
 inline void tally(std::int64_t& counter, const sint& n) { counter += access::value(n).v; }
 inline void tally(std::int64_t& counter, int n) { counter += n; }
 class phase_scope {
-  public:
+public:
     explicit phase_scope(int phase) : before_(timing::set_phase(phase)) {}
     phase_scope(const phase_scope&) = delete;
     phase_scope& operator=(const phase_scope&) = delete;
     ~phase_scope() { timing::set_phase(before_); }
 
-  private:
+private:
     std::int32_t before_;
 };
 

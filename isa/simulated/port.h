@@ -1,12 +1,13 @@
 // The timing port: what the simulated target tells the machine and asks of it. Declared here, implemented by whoever is
 // linked: sim/ (the machine), or a recorder that only notes what is touched. Plain functions, no virtual calls.
 //
-// A value of the simulated target is its payload and a stamp. An operation hands over the stamps of its operands and gets
-// the stamp of its result. Operands never wait by themselves: a load returns a stamp in the future, or one that carries an
-// open ticket whose time is not known yet, and the machine makes whoever uses it wait (stall on use). Rules of time 1 to 5.
+// A value of the simulated target is its payload and a stamp. An operation hands over the stamps of its operands and
+// gets the stamp of its result. Operands never wait by themselves: a load returns a stamp in the future, or one that
+// carries an open ticket whose time is not known yet, and the machine makes whoever uses it wait (stall on use). Rules
+// of time 1 to 5.
 //
-// Addresses are host addresses inside frame memory; the machine turns them into simulated ones by subtracting the base of
-// the address space (isa/address_space.h), so that no host address reaches a result.
+// Addresses are host addresses inside frame memory; the machine turns them into simulated ones by subtracting the base
+// of the address space (isa/address_space.h), so that no host address reaches a result.
 #pragma once
 
 #include <cstdint>
@@ -27,28 +28,29 @@ struct stamp {
 struct site {
     const char* file;
     std::uint32_t line;
-    static constexpr site here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    [[gnu::always_inline]] static constexpr site here(const char* file = __builtin_FILE(),
+                                                      int line = __builtin_LINE()) {
         return {file, static_cast<std::uint32_t>(line)};
     }
 };
 
 enum class operation : std::uint8_t {
-    integer,          // add, subtract, logic, shift, min, max, compare of integers
+    integer, // add, subtract, logic, shift, min, max, compare of integers
     integer_multiply,
-    add,              // float add, subtract, min, max
+    add, // float add, subtract, min, max
     multiply,
-    fused,            // fused multiply-add
+    fused, // fused multiply-add
     divide,
     square_root,
-    compare,          // float comparison
-    convert,          // float <-> integer, rounding
+    compare, // float comparison
+    convert, // float <-> integer, rounding
     select,
-    mask,             // logic on masks and scalar conditions
-    broadcast,        // scalar to all lanes
-    shuffle,          // permute, compress, extract
-    reduce,           // all lanes to one scalar
-    mask_to_scalar,   // any, all, count, first
-    address,          // address arithmetic that no addressing mode folds
+    mask,           // logic on masks and scalar conditions
+    broadcast,      // scalar to all lanes
+    shuffle,        // permute, compress, extract
+    reduce,         // all lanes to one scalar
+    mask_to_scalar, // any, all, count, first
+    address,        // address arithmetic that no addressing mode folds
 };
 inline constexpr int operation_kinds = 16;
 
@@ -82,8 +84,8 @@ void scatter(site where, const void* p, const std::int32_t* index, std::uint64_t
 void prefetch(site where, const void* p, const stamp& address);
 void discard(site where, const void* p, std::uint32_t bytes, const stamp& address);
 
-// --- shared words (rule 5). before_atomic returns when the operation may act on the word; the caller then does so at once
-// and reports by after_atomic what it read and, if it wrote, that it did. The stamp is that of the value read.
+// --- shared words (rule 5). before_atomic returns when the operation may act on the word; the caller then does so at
+// once and reports by after_atomic what it read and, if it wrote, that it did. The stamp is that of the value read.
 enum class atomic : std::uint8_t { load_acquire, store_release, fetch_add, compare_exchange };
 void before_atomic(site where, atomic kind, const void* p, const stamp& address, const stamp& operands);
 stamp after_atomic(site where, atomic kind, const void* p, bool wrote);

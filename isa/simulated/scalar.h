@@ -10,7 +10,8 @@ namespace timing = isa::timing;
 using timing::operation;
 using timing::stamp;
 
-/// The one door to payload and stamp, for the headers of this folder. Kernels have no business here (checked by the lint).
+/// The one door to payload and stamp, for the headers of this folder. Kernels have no business here (checked by the
+/// lint).
 struct access {
     template <class T> static const auto& value(const T& x) { return x.value_; }
     template <class T> static const stamp& time(const T& x) { return x.time_; }
@@ -23,40 +24,40 @@ struct access {
 };
 
 class sbool {
-  public:
+public:
     sbool() = default;
     sbool(bool constant) : value_(constant) {}
     template <class T> sbool(T) = delete;
 
-  private:
+private:
     friend struct access;
     values::sbool value_;
     stamp time_;
 };
 
 class sint {
-  public:
+public:
     sint() = default;
     sint(std::int32_t constant) : value_(constant) {}
     sint(bool) = delete;
     sint(float) = delete;
     sint(double) = delete;
 
-  private:
+private:
     friend struct access;
     values::sint value_;
     stamp time_;
 };
 
 class sfloat {
-  public:
+public:
     sfloat() = default;
     sfloat(float constant) : value_(constant) {}
     sfloat(std::int32_t) = delete;
     sfloat(bool) = delete;
     sfloat(double) = delete;
 
-  private:
+private:
     friend struct access;
     values::sfloat value_;
     stamp time_;
@@ -78,15 +79,18 @@ inline R scalar(operation kind, Op op, const A& a, const B& b, const C& c) {
 } // namespace detail
 #define ISA_UNARY(result, name, argument, kind)                                                                        \
     inline result name(const argument& a) {                                                                            \
-        return detail::scalar<result>(operation::kind, [](const auto& x) { return name(x); }, a);                      \
+        return detail::scalar<result>(                                                                                 \
+            operation::kind, [](const auto& x) { return name(x); }, a);                                                \
     }
 #define ISA_BINARY(result, name, left, right, kind)                                                                    \
     inline result name(const left& a, const right& b) {                                                                \
-        return detail::scalar<result>(operation::kind, [](const auto& x, const auto& y) { return name(x, y); }, a, b); \
+        return detail::scalar<result>(                                                                                 \
+            operation::kind, [](const auto& x, const auto& y) { return name(x, y); }, a, b);                           \
     }
 #define ISA_INFIX(result, symbol, left, right, kind)                                                                   \
     inline result operator symbol(const left& a, const right& b) {                                                     \
-        return detail::scalar<result>(operation::kind, [](const auto& x, const auto& y) { return x symbol y; }, a, b); \
+        return detail::scalar<result>(                                                                                 \
+            operation::kind, [](const auto& x, const auto& y) { return x symbol y; }, a, b);                           \
     }
 
 ISA_INFIX(sfloat, +, sfloat, sfloat, add)
@@ -94,17 +98,27 @@ ISA_INFIX(sfloat, -, sfloat, sfloat, add)
 ISA_INFIX(sfloat, *, sfloat, sfloat, multiply)
 ISA_INFIX(sfloat, /, sfloat, sfloat, divide)
 inline sfloat operator-(const sfloat& a) {
-    return detail::scalar<sfloat>(operation::integer, [](const auto& x) { return -x; }, a);
-}
-inline sfloat fma(const sfloat& a, const sfloat& b, const sfloat& c) {
     return detail::scalar<sfloat>(
-        operation::fused, [](const auto& x, const auto& y, const auto& z) { return fma(x, y, z); }, a, b, c);
+        operation::integer, [](const auto& x) { return -x; }, a);
 }
+#define ISA_FUSED(name)                                                                                                \
+    inline sfloat name(const sfloat& a, const sfloat& b, const sfloat& c) {                                            \
+        return detail::scalar<sfloat>(                                                                                 \
+            operation::fused, [](const auto& x, const auto& y, const auto& z) { return name(x, y, z); }, a, b, c);     \
+    }
+ISA_FUSED(fma)
+ISA_FUSED(fms)
+ISA_FUSED(fnma)
+ISA_FUSED(product_error)
+#undef ISA_FUSED
 ISA_BINARY(sfloat, min, sfloat, sfloat, add)
 ISA_BINARY(sfloat, max, sfloat, sfloat, add)
 ISA_UNARY(sfloat, abs, sfloat, integer)
 ISA_UNARY(sfloat, sqrt, sfloat, square_root)
 ISA_UNARY(sfloat, floor, sfloat, convert)
+ISA_UNARY(sfloat, round_even, sfloat, convert)
+ISA_UNARY(sfloat, reciprocal, sfloat, divide)
+inline sfloat reciprocal_sqrt(const sfloat& a) { return reciprocal(sqrt(a)); }
 
 ISA_INFIX(sbool, <, sfloat, sfloat, compare)
 ISA_INFIX(sbool, <=, sfloat, sfloat, compare)
@@ -122,7 +136,8 @@ ISA_INFIX(sint, ^, sint, sint, integer)
 ISA_INFIX(sint, <<, sint, sint, integer)
 ISA_INFIX(sint, >>, sint, sint, integer)
 inline sint operator-(const sint& a) {
-    return detail::scalar<sint>(operation::integer, [](const auto& x) { return -x; }, a);
+    return detail::scalar<sint>(
+        operation::integer, [](const auto& x) { return -x; }, a);
 }
 ISA_BINARY(sint, shift_right_logical, sint, sint, integer)
 ISA_BINARY(sint, min, sint, sint, integer)
@@ -144,7 +159,8 @@ ISA_INFIX(sbool, &, sbool, sbool, mask)
 ISA_INFIX(sbool, |, sbool, sbool, mask)
 ISA_INFIX(sbool, ^, sbool, sbool, mask)
 inline sbool operator!(const sbool& a) {
-    return detail::scalar<sbool>(operation::mask, [](const auto& x) { return !x; }, a);
+    return detail::scalar<sbool>(
+        operation::mask, [](const auto& x) { return !x; }, a);
 }
 sbool operator&&(const sbool&, const sbool&) = delete;
 sbool operator||(const sbool&, const sbool&) = delete;

@@ -8,7 +8,7 @@
 namespace isa::simulated {
 
 class vfloat {
-  public:
+public:
     vfloat() = default;
     vfloat(float constant) : value_(constant) {}
     vfloat(const sfloat& a)
@@ -16,34 +16,32 @@ class vfloat {
     vfloat(std::int32_t) = delete;
     vfloat(double) = delete;
 
-  private:
+private:
     friend struct access;
     values::vfloat value_;
     stamp time_;
 };
 class vint {
-  public:
+public:
     vint() = default;
     vint(std::int32_t constant) : value_(constant) {}
-    vint(const sint& a)
-        : value_(access::value(a)), time_(timing::vector_op(operation::broadcast, access::time(a))) {}
+    vint(const sint& a) : value_(access::value(a)), time_(timing::vector_op(operation::broadcast, access::time(a))) {}
     vint(float) = delete;
     vint(double) = delete;
 
-  private:
+private:
     friend struct access;
     values::vint value_;
     stamp time_;
 };
 class vmask {
-  public:
+public:
     vmask() = default;
     vmask(bool constant) : value_(constant) {}
-    vmask(const sbool& a)
-        : value_(access::value(a)), time_(timing::vector_op(operation::broadcast, access::time(a))) {}
+    vmask(const sbool& a) : value_(access::value(a)), time_(timing::vector_op(operation::broadcast, access::time(a))) {}
     template <class T> vmask(T) = delete;
 
-  private:
+private:
     friend struct access;
     values::vmask value_;
     stamp time_;
@@ -68,7 +66,8 @@ inline R lanewise(operation kind, Op op, const A& a, const B& b, const C& c) {
 #undef ISA_INFIX
 #define ISA_UNARY(result, name, argument, kind)                                                                        \
     inline result name(const argument& a) {                                                                            \
-        return detail::lanewise<result>(operation::kind, [](const auto& x) { return name(x); }, a);                    \
+        return detail::lanewise<result>(                                                                               \
+            operation::kind, [](const auto& x) { return name(x); }, a);                                                \
     }
 #define ISA_BINARY(result, name, left, right, kind)                                                                    \
     inline result name(const left& a, const right& b) {                                                                \
@@ -119,13 +118,16 @@ ISA_INFIX(vint, <<, vint, vint, integer)
 ISA_INFIX(vint, >>, vint, vint, integer)
 ISA_BINARY(vint, shift_right_logical, vint, vint, integer)
 template <std::same_as<vint> V> inline vint operator<<(const V& a, int n) {
-    return detail::lanewise<vint>(operation::integer, [n](const auto& x) { return x << n; }, a);
+    return detail::lanewise<vint>(
+        operation::integer, [n](const auto& x) { return x << n; }, a);
 }
 template <std::same_as<vint> V> inline vint operator>>(const V& a, int n) {
-    return detail::lanewise<vint>(operation::integer, [n](const auto& x) { return x >> n; }, a);
+    return detail::lanewise<vint>(
+        operation::integer, [n](const auto& x) { return x >> n; }, a);
 }
 template <std::same_as<vint> V> inline vint shift_right_logical(const V& a, int n) {
-    return detail::lanewise<vint>(operation::integer, [n](const auto& x) { return shift_right_logical(x, n); }, a);
+    return detail::lanewise<vint>(
+        operation::integer, [n](const auto& x) { return shift_right_logical(x, n); }, a);
 }
 ISA_BINARY(vint, min, vint, vint, integer)
 ISA_BINARY(vint, max, vint, vint, integer)
@@ -140,7 +142,8 @@ ISA_INFIX(vmask, &, vmask, vmask, mask)
 ISA_INFIX(vmask, |, vmask, vmask, mask)
 ISA_INFIX(vmask, ^, vmask, vmask, mask)
 inline vmask operator!(const vmask& a) {
-    return detail::lanewise<vmask>(operation::mask, [](const auto& x) { return !x; }, a);
+    return detail::lanewise<vmask>(
+        operation::mask, [](const auto& x) { return !x; }, a);
 }
 vmask operator&&(const vmask&, const vmask&) = delete;
 vmask operator||(const vmask&, const vmask&) = delete;
@@ -152,7 +155,8 @@ ISA_UNARY(vfloat, to_float, vint, convert)
 inline vint as_int(const vfloat& a) { return access::make<vint>(as_int(access::value(a)), access::time(a)); }
 inline vfloat as_float(const vint& a) { return access::make<vfloat>(as_float(access::value(a)), access::time(a)); }
 inline vfloat operator-(const vfloat& a) {
-    return detail::lanewise<vfloat>(operation::integer, [](const auto& x) { return -x; }, a);
+    return detail::lanewise<vfloat>(
+        operation::integer, [](const auto& x) { return -x; }, a);
 }
 ISA_UNARY(vfloat, abs, vfloat, integer)
 
@@ -168,7 +172,8 @@ template <class R, class A, class B, class Op> inline R crossing(operation kind,
 } // namespace detail
 #define ISA_TO_SCALAR(result, name, argument, kind)                                                                    \
     inline result name(const argument& a) {                                                                            \
-        return detail::to_scalar<result>(operation::kind, [](const auto& x) { return name(x); }, a);                   \
+        return detail::to_scalar<result>(                                                                              \
+            operation::kind, [](const auto& x) { return name(x); }, a);                                                \
     }
 ISA_TO_SCALAR(sbool, any, vmask, mask_to_scalar)
 ISA_TO_SCALAR(sbool, all, vmask, mask_to_scalar)
@@ -187,8 +192,7 @@ inline vmask clear_first(const vmask& m) {
                                timing::cross_op(operation::mask, access::time(m), stamp{}));
 }
 inline vmask first_lanes(const sint& n) {
-    return access::make<vmask>(first_lanes(access::value(n)),
-                               timing::vector_op(operation::broadcast, access::time(n)));
+    return access::make<vmask>(first_lanes(access::value(n)), timing::vector_op(operation::broadcast, access::time(n)));
 }
 /// A constant: no cost.
 inline vint lane_index() { return access::make<vint>(values::lane_index(), stamp{}); }

@@ -1,0 +1,7 @@
+#include "isa/services.h"
+
+namespace isa {
+
+void throw_trapped(int code) { throw trapped(code); }
+
+} // namespace isa
