@@ -70,7 +70,7 @@ void assign_face_classes(const Mesh& mesh, const Adjacency& adjacency, const std
             known.try_emplace(n.signature, next_class); // regular faces: the empty signature
         if (is_new) {
             topology.classes.push_back(
-                {f, static_cast<int>(n.controls.size()), adjacency.size(f), n.regular});
+                {f, static_cast<int>(n.controls.size()), adjacency.size(f), n.regular, n.folded});
         }
         FaceRecord& record = topology.faces[static_cast<std::size_t>(f)];
         record.face_class = entry->second;

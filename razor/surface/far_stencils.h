@@ -1,6 +1,9 @@
-// Limit stencils by Far, for meshes whose creases follow Chaikin's rule: there Bfr 3.5 returns stencils that
-// are off by 5e-4 of the cage's size on some faces (catmark_chaikin1.obj), at every approximation level,
-// where Far's are exact.
+// Limit stencils by Far, where OpenSubdiv 3.5's Bfr cannot be trusted:
+// - creases by Chaikin's rule: on some faces Bfr is off by 5e-4 of the cage's size (catmark_chaikin1.obj), at
+// every
+//   approximation level, where Far is exact;
+// - faces round an interior point of two faces: Bfr crashes if there are creases near, and its cache confuses
+// them.
 #pragma once
 
 #include "razor/scene/scene.h"

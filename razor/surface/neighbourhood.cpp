@@ -102,6 +102,7 @@ void NeighbourhoodWalker::append_fan(int corner) {
     std::vector<std::int32_t>& out = result_.signature;
     out.push_back(static_cast<std::int32_t>(fan_.corners.size()));
     out.push_back(fan_.closed ? 1 : 0);
+    result_.folded = result_.folded || (fan_.closed && fan_.counter_clockwise == 1);
     out.push_back(fan_.counter_clockwise);
     out.push_back(fan_.clockwise);
     out.push_back(
@@ -123,6 +124,7 @@ void NeighbourhoodWalker::append_fan(int corner) {
 const Neighbourhood& NeighbourhoodWalker::visit(int face, int control_cap) {
     face_ = face;
     result_.signature.clear();
+    result_.folded = false;
     result_.regular = gather_regular(face);
     if (result_.regular) {
         return result_;

@@ -30,6 +30,7 @@ struct Neighbourhood {
     /// counter-clockwise.
     std::vector<int> controls;
     std::vector<std::int32_t> signature; // empty if regular
+    bool folded = false;                 // see FaceClass
 };
 
 class NeighbourhoodWalker {

@@ -1,6 +1,5 @@
 // Each class keeps one Bfr surface, that of its representative, built by whoever asks first. The factory's
-// own cache stays off: it would be asked once a class only, and in OpenSubdiv 3.5 it confuses faces that
-// touch an interior point of two faces.
+// own cache stays off: it would be asked once a class only. Classes that Bfr gets wrong ask Far instead.
 #include "razor/surface/pages.h"
 
 #include "razor/surface/far_stencils.h"
@@ -68,8 +67,7 @@ class StencilEvaluator {
 public:
     /// `far`: null, or what to ask instead of Bfr.
     StencilEvaluator(const ClassSurface& entry, const FaceClass& c, const FarStencils* far)
-        : entry_(entry), class_(c), far_(c.regular ? nullptr : far),
-          parameters_(entry.surface.GetParameterization()) {
+        : entry_(entry), class_(c), far_(far), parameters_(OpenSubdiv::Sdc::SCHEME_CATMARK, c.corner_count) {
         for (std::size_t k = 0; k < raw_.size(); ++k) {
             raw_[k].resize(entry.to_control.size());
             summed_[k].resize(static_cast<std::size_t>(c.control_count));
@@ -159,31 +157,34 @@ struct PageMaker::Impl {
                                                                           .EnableCaching(false)
                                                                           .SetApproxLevelSmooth(level)
                                                                           .SetApproxLevelSharp(level)),
-          surfaces(t.classes.size()) {
-        if (mesh.crease_method == CreaseMethod::chaikin) {
-            std::vector<int> irregular;
-            for (const FaceClass& c : t.classes) {
-                if (!c.regular) {
-                    irregular.push_back(c.representative);
-                }
-            }
-            if (!irregular.empty()) {
-                far = std::make_unique<FarStencils>(mesh, irregular, level);
+          surfaces(t.classes.size()), chaikin(mesh.crease_method == CreaseMethod::chaikin) {
+        std::vector<int> faces;
+        for (const FaceClass& c : t.classes) {
+            if (asks_far(c)) {
+                faces.push_back(c.representative);
             }
         }
+        if (!faces.empty()) {
+            far = std::make_unique<FarStencils>(mesh, faces, level);
+        }
     }
+
+    bool asks_far(const FaceClass& c) const { return !c.regular && (chaikin || c.folded); }
 
     const ClassSurface& surface(int face_class) {
         ClassSurface& entry = surfaces[static_cast<std::size_t>(face_class)];
         std::call_once(entry.built, [&] {
             const FaceClass& c = topology.classes[static_cast<std::size_t>(face_class)];
-            if (!factory.InitVertexSurface(c.representative, &entry.surface)) {
-                throw std::logic_error(fmt::format("face {} has no limit surface", c.representative));
-            }
             const FaceRecord& face = topology.faces[static_cast<std::size_t>(c.representative)];
             entry.position = positions_of(std::span(topology.controls)
                                               .subspan(static_cast<std::size_t>(face.control_first),
                                                        static_cast<std::size_t>(face.control_count)));
+            if (asks_far(c)) {
+                return;
+            }
+            if (!factory.InitVertexSurface(c.representative, &entry.surface)) {
+                throw std::logic_error(fmt::format("face {} has no limit surface", c.representative));
+            }
             entry.to_control = map_controls(entry.surface, c, entry.position);
         });
         return entry;
@@ -193,6 +194,7 @@ struct PageMaker::Impl {
     std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner;
     Factory factory;
     std::vector<ClassSurface> surfaces;
+    bool chaikin;
     std::unique_ptr<FarStencils> far;
 };
 
@@ -203,7 +205,8 @@ PageMaker::~PageMaker() = default;
 
 void PageMaker::make(const PageKey& key, float* weights) const {
     const FaceClass& c = impl_->topology.classes[static_cast<std::size_t>(key.face_class)];
-    StencilEvaluator stencil(impl_->surface(key.face_class), c, impl_->far.get());
+    StencilEvaluator stencil(impl_->surface(key.face_class), c,
+                             impl_->asks_far(c) ? impl_->far.get() : nullptr);
     std::fill_n(weights, page_floats(key, c.control_count), 0.0F);
     switch (key.kind) {
     case PageKind::vertex: {

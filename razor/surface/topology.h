@@ -18,6 +18,8 @@ struct FaceClass {
     int control_count = 0;
     int corner_count = 4;
     bool regular = false;
+    /// A corner lies inside a fan of only two faces. Bfr 3.5 crashes on some creases there.
+    bool folded = false;
 };
 
 struct Topology {
