@@ -69,6 +69,7 @@ int RenderCommand::run() const {
     if (!print_config_ && outputs_.empty() && statistics_.empty()) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
     }
+    options.cancel = &watch_interrupts();
     const SceneDescription description = scene_.describe();
     const std::string config = to_toml(description);
     if (print_config_) {
@@ -83,7 +84,6 @@ int RenderCommand::run() const {
     }
 
     Progress progress(!quiet_);
-    options.cancel = &watch_interrupts();
     options.progress = [&](double fraction) { progress.show(fraction); };
     const auto start = std::chrono::steady_clock::now();
     RenderResult result;
