@@ -32,8 +32,9 @@ struct Film {
     Plane* find(std::string_view name);
 };
 
-/// The planes every frame has: beauty R G B (linear), normal.X normal.Y normal.Z (world space, unit or zero),
-/// depth.Z (distance along the ray, world units; infinite where nothing is hit), albedo.R albedo.G albedo.B.
+/// The planes every frame has: beauty R G B (linear radiance), normal.X normal.Y normal.Z (world space; zero
+/// where nothing is hit), depth.Z (distance along the ray, world units; infinite where nothing is hit),
+/// albedo.R albedo.G albedo.B.
 Film make_film(int width, int height);
 
 /// Text that files carry: name and value, for example {"razor.config", "..."}.
