@@ -63,7 +63,7 @@ Strip strip_of(int number) { // inverse of strip_first
     if (number < 3) {
         return {number, 0};
     }
-    const int log2 = std::bit_width(static_cast<unsigned>(number - 2)) - 1;
+    const int log2 = static_cast<int>(std::bit_width(static_cast<unsigned>(number - 2))) - 1;
     return {log2 + 3, number - 2 - (1 << log2)};
 }
 
