@@ -8,7 +8,8 @@ namespace razor {
 struct Counters {
     std::int64_t camera_rays = 0, shadow_rays = 0;
     std::int64_t camera_packets = 0, shadow_packets = 0; // rays / (packets x width) is their utilisation
-    std::int64_t node_visits = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
+    std::int64_t groups = 0; // of rays alike in direction, traversed one after the other
+    std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
     std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;
     std::int64_t normal_blocks = 0; // blocks whose normals were asked for
     std::int64_t pages_requested = 0;
@@ -22,7 +23,9 @@ template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("shadow_rays", c.shadow_rays);
     visit("camera_packets", c.camera_packets);
     visit("shadow_packets", c.shadow_packets);
+    visit("groups", c.groups);
     visit("node_visits", c.node_visits);
+    visit("box_tests", c.box_tests);
     visit("block_tests", c.block_tests);
     visit("cell_tests", c.cell_tests);
     visit("quad_tests", c.quad_tests);

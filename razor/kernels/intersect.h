@@ -358,6 +358,7 @@ template <Features F> inline void intersect_block(const Context& c, const Group&
         rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
     }
     static_assert(offsetof(BlockHeader, box_high) == offsetof(BlockHeader, box_low) + 3 * sizeof(float));
+    tally(c.counters->box_tests, 1);
     if (branch(none(rays_meet(g, rays, field(header, &BlockHeader::box_low), 1, hits.t))))
         return;
     tally(c.counters->block_tests, 1);

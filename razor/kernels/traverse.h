@@ -128,6 +128,7 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
 template <Features F, bool AnyHit>
 inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
     phase_scope phase(phase_traverse);
+    tally(c.counters->groups, 1);
     vfloat enter, leave;
     clip_to_tree(c, r, enter, leave);
     vfloat never(std::numeric_limits<float>::infinity());

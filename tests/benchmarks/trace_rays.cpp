@@ -272,6 +272,21 @@ void run(const std::string& model, double triangles, int size, const std::string
     shadow.count = shadow_rays(lazy.header(), camera, shadow);
     lazy.trace(kernels, shadow.arguments(true));
     FrameStatistics s = lazy.statistics();
+    Counters before = s.counters;
+    for (bool any_hit : {false, true}) {
+        const RayArrays& rays = any_hit ? shadow : camera;
+        lazy.trace(kernels, rays.arguments(any_hit));
+        Counters after = lazy.statistics().counters;
+        double packets = std::ceil(rays.count / static_cast<double>(kernels.width));
+        fmt::print("{} packet: {:.1f} groups, {:.1f} nodes, {:.1f} boxes, {:.1f} blocks, {:.1f} cells, {:.1f} quads\n",
+                   any_hit ? "shadow" : "camera", static_cast<double>(after.groups - before.groups) / packets,
+                   static_cast<double>(after.node_visits - before.node_visits) / packets,
+                   static_cast<double>(after.box_tests - before.box_tests) / packets,
+                   static_cast<double>(after.block_tests - before.block_tests) / packets,
+                   static_cast<double>(after.cell_tests - before.cell_tests) / packets,
+                   static_cast<double>(after.quad_tests - before.quad_tests) / packets);
+        before = after;
+    }
     int our_hits = hits_of(camera), our_shadows = hits_of(shadow);
     fmt::print("{}: {} triangles, target edge {}, {} kernels of width {}\n", model, corners.size() / 3,
                chosen, kernels.name, kernels.width);
