@@ -1,0 +1,211 @@
+#include "tests/kernels/cages.h"
+
+#include "razor/scene/default_scene.h"
+#include "razor/scene/description.h"
+#include "razor/scene/obj_reader.h"
+#include "razor/scene/shapes/shapes.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <random>
+#include <utility>
+
+namespace razor::test {
+
+namespace {
+
+void add_face(Mesh& mesh, std::initializer_list<int> corners) {
+    mesh.face_sizes.push_back(static_cast<int>(corners.size()));
+    mesh.face_vertices.insert(mesh.face_vertices.end(), corners);
+}
+
+struct Box {
+    glm::dvec3 low{1e300}, high{-1e300};
+};
+Box box_of(const Mesh& mesh) {
+    Box b;
+    for (const glm::dvec3& p : mesh.points) {
+        b.low = glm::min(b.low, p);
+        b.high = glm::max(b.high, p);
+    }
+    return b;
+}
+
+Mesh shape(const char* name) {
+    const ShapeKind* kind = find_shape_kind(name);
+    std::vector<double> values;
+    for (const ShapeParameter& p : kind->parameters)
+        values.push_back(p.preset);
+    return kind->make(values);
+}
+
+} // namespace
+
+Mesh cube_cage() {
+    Mesh m;
+    m.name = "cube";
+    for (int i = 0; i < 8; ++i)
+        m.points.emplace_back((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+    add_face(m, {0, 2, 3, 1});
+    add_face(m, {4, 5, 7, 6});
+    add_face(m, {0, 1, 5, 4});
+    add_face(m, {2, 6, 7, 3});
+    add_face(m, {0, 4, 6, 2});
+    add_face(m, {1, 3, 7, 5});
+    return m;
+}
+
+Mesh torus_cage(int rings, int sides) {
+    Mesh m;
+    m.name = "torus";
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < sides; ++j) {
+            double a = 2 * std::numbers::pi * i / rings;
+            double b = 2 * std::numbers::pi * j / sides;
+            double r = 1 + 0.4 * std::cos(b);
+            m.points.emplace_back(r * std::cos(a), 0.4 * std::sin(b), r * std::sin(a));
+        }
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < sides; ++j) {
+            int next_i = (i + 1) % rings;
+            int next_j = (j + 1) % sides;
+            add_face(m, {i * sides + j, i * sides + next_j, next_i * sides + next_j, next_i * sides + j});
+        }
+    return m;
+}
+
+Mesh urchin_cage() {
+    return shape("urchin");
+}
+
+Mesh stretched(Mesh mesh) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> jitter(-1, 1);
+    Box box = box_of(mesh);
+    glm::dvec3 size = box.high - box.low;
+    glm::dvec3 centre = (box.low + box.high) * 0.5;
+    for (glm::dvec3& p : mesh.points) {
+        glm::dvec3 q = (p - centre) / size;
+        q *= 0.3 + 4.0 * glm::abs(q);
+        for (int k = 0; k < 3; ++k)
+            q[k] += 0.05 * jitter(random);
+        p = q * glm::dvec3(1, 3, 0.4);
+    }
+    mesh.name += " stretched";
+    return mesh;
+}
+
+Mesh bilinear(Mesh mesh) {
+    mesh.scheme = Scheme::bilinear;
+    mesh.name += " bilinear";
+    return mesh;
+}
+
+std::optional<Mesh> shared_mesh(const std::string& path) {
+    std::filesystem::path file = std::filesystem::path(RAZOR_SHARED_SCENES) / path;
+    if (!std::filesystem::exists(file))
+        return {};
+    return read_obj(file);
+}
+
+Scene scene_of(const Mesh& mesh, double edges_across) {
+    Box box = box_of(mesh);
+    double size = glm::length(box.high - box.low);
+    glm::dvec3 centre = (box.low + box.high) * 0.5;
+    Scene s;
+    s.name = mesh.name;
+    s.meshes.push_back(mesh);
+    s.meshes.back().edge_length = size / edges_across;
+    s.materials.push_back({"grey", {0.6F, 0.5F, 0.4F}});
+    RectangleLight light;
+    light.corner = centre + glm::dvec3(-0.5, 1.2, 0.8) * size;
+    light.edge_u = glm::dvec3(0.6, 0, 0) * size;
+    light.edge_v = glm::dvec3(0, 0.2, -0.6) * size;
+    if (glm::dot(glm::cross(light.edge_u, light.edge_v), centre - light.corner) < 0)
+        std::swap(light.edge_u, light.edge_v);
+    light.radiance = {9, 8, 7};
+    s.lights.push_back(light);
+    s.sky = {0.2F, 0.3F, 0.4F};
+    s.camera.position = centre + glm::dvec3(0.3, 0.4, 1.3) * size;
+    s.camera.target = centre;
+    s.camera.fov_degrees = 50;
+    s.settings = {.width = 32, .height = 32, .samples = 1, .light_samples = 2, .sky_samples = 2};
+    return s;
+}
+
+Scene small_default_scene(int width, int height) {
+    Scene s = build_scene(default_scene());
+    s.settings.width = width;
+    s.settings.height = height;
+    s.settings.samples = 1;
+    s.settings.light_samples = 2;
+    s.settings.sky_samples = 2;
+    return s;
+}
+
+bool is_closed(const Mesh& mesh) {
+    std::map<std::pair<int, int>, int> faces;
+    std::size_t first = 0;
+    for (int n : mesh.face_sizes) {
+        for (int i = 0; i < n; ++i) {
+            int a = mesh.face_vertices[first + static_cast<std::size_t>(i)];
+            int b = mesh.face_vertices[first + static_cast<std::size_t>((i + 1) % n)];
+            ++faces[std::minmax(a, b)];
+        }
+        first += static_cast<std::size_t>(n);
+    }
+    for (const auto& [edge, count] : faces)
+        if (count != 2)
+            return false;
+    return mesh.holes.empty();
+}
+
+std::vector<std::string> scene_names() {
+    return {
+        "cube",          "torus_stretched",         "urchin",          "urchin_stretched", "torus_bilinear",
+        "default",       "cube_bilinear_stretched", "urchin_bilinear", "catmark_car",      "spot",
+        "female_generic"};
+}
+
+std::optional<NamedScene> named_scene(const std::string& name) {
+    auto of = [&](const Mesh& mesh, double edges_across) {
+        return NamedScene{name, scene_of(mesh, edges_across), is_closed(mesh)};
+    };
+    auto of_shared = [&](const char* path, double edges_across) -> std::optional<NamedScene> {
+        std::optional<Mesh> mesh = shared_mesh(path);
+        if (!mesh)
+            return {};
+        return of(*mesh, edges_across);
+    };
+    if (name == "cube")
+        return of(cube_cage(), 60);
+    if (name == "torus_stretched")
+        return of(stretched(torus_cage(9, 6)), 90);
+    if (name == "urchin")
+        return of(urchin_cage(), 70);
+    if (name == "urchin_stretched")
+        return of(stretched(urchin_cage()), 90);
+    if (name == "torus_bilinear")
+        return of(bilinear(stretched(torus_cage(9, 6))), 60);
+    if (name == "cube_bilinear_stretched")
+        return of(bilinear(stretched(cube_cage())), 40);
+    if (name == "urchin_bilinear")
+        return of(bilinear(stretched(urchin_cage())), 60);
+    if (name == "default")
+        return NamedScene{name, small_default_scene(24, 24), false};
+    if (name == "catmark_car")
+        return of_shared("osd/catmark_car.obj", 50);
+    if (name == "spot")
+        return of_shared("spot/spot_quadrangulated.obj", 120);
+    if (name == "female_generic")
+        return of_shared("makehuman/female_generic.obj", 60);
+    return {};
+}
+
+} // namespace razor::test

@@ -1,0 +1,41 @@
+// Small scenes for the tests of the kernels: cages made here, real ones from RAZOR_SHARED_SCENES.
+#pragma once
+
+#include "razor/scene/scene.h"
+
+#include <optional>
+#include <string>
+
+namespace razor::test {
+
+Mesh cube_cage();
+/// `rings` x `sides` quads, a closed surface; radii 1 and 0.4.
+Mesh torus_cage(int rings, int sides);
+/// Closed, with pentagons and extraordinary points.
+Mesh urchin_cage();
+/// Squeezed along the axes and jittered, so that neighbouring edges differ in length by powers of two. Stays
+/// closed.
+Mesh stretched(Mesh mesh);
+/// As bilinear patches, most of them not planar once jittered.
+Mesh bilinear(Mesh mesh);
+/// Nothing where the shared scenes are not there.
+std::optional<Mesh> shared_mesh(const std::string& path_below_scenes);
+
+/// One mesh before a camera, lit, 32 x 32 pixels. `edges_across`: target edges over the mesh's diagonal.
+Scene scene_of(const Mesh& mesh, double edges_across);
+Scene small_default_scene(int width, int height);
+
+/// Every edge has two faces.
+bool is_closed(const Mesh& mesh);
+
+struct NamedScene {
+    std::string name;
+    Scene scene;
+    bool closed = false;
+};
+/// The scenes that rays are compared on; shared ones only where they are there.
+std::vector<std::string> scene_names();
+/// Nothing for a shared mesh that is not there.
+std::optional<NamedScene> named_scene(const std::string& name);
+
+} // namespace razor::test

@@ -1,0 +1,45 @@
+// A built frame as the triangles that rays meet, read from frame memory on the host: for oracles and checks.
+#pragma once
+
+#include "razor/frame/frame.h"
+
+#include <array>
+#include <vector>
+
+namespace razor::test {
+
+using Point = std::array<float, 3>;
+
+/// The edge whose side of it decides about rays: the triangle's own, or the longer flat one on which it lies.
+struct FlatEdge {
+    Point from{}, to{};
+    int hang = 0; // log2 of the triangle's edges on it
+};
+
+struct Triangle {
+    int patch = 0, number = 0; // as TraceArguments name them
+    int mesh = 0;
+    std::array<Point, 3> vertex{};
+    std::array<FlatEdge, 3> edge{}; // 0 -> 1, 1 -> 2, 2 -> 0
+};
+
+/// One block of a grid.
+struct BlockView {
+    const BlockHeader* header = nullptr;
+    const float* words = nullptr; // the same address
+
+    Point vertex(int i) const; // by its number
+    /// Vertex i along a side, and the number of segments of the side.
+    Point along(int side, int i) const;
+    int segments(int side) const;
+    /// What decides about sub-edge i -> i+1 of a side, in that direction.
+    FlatEdge ancestor(int side, int i) const;
+};
+
+/// The blocks of an opened patch, row by row; none if it is closed.
+std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0);
+
+/// All triangles of all opened patches.
+std::vector<Triangle> triangles_of(Frame& frame, int tree = 0);
+
+} // namespace razor::test

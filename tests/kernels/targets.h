@@ -1,0 +1,29 @@
+// The targets of this build that this processor can run, for tests.
+#pragma once
+
+#include "razor/native/targets.h"
+
+#include <cstring>
+#include <vector>
+
+namespace razor::test {
+
+/// All native targets, and `simulated` where it is built: it runs here on a timing port that keeps no time.
+inline std::vector<const KernelTable*> all_targets() {
+    std::vector<const KernelTable*> targets = native_targets();
+#ifdef RAZOR_HAS_SIMULATED
+    targets.push_back(&simulated::kernels);
+#endif
+    return targets;
+}
+
+/// Those whose fused multiply-add rounds once, or those whose does not.
+inline std::vector<const KernelTable*> targets_with(bool fused) {
+    std::vector<const KernelTable*> targets;
+    for (const KernelTable* t : all_targets())
+        if ((std::strcmp(t->name, "sse4") != 0) == fused)
+            targets.push_back(t);
+    return targets;
+}
+
+} // namespace razor::test
