@@ -30,8 +30,8 @@ struct Hits {
     vint block;    // first line of the block in the grids
 };
 
-/// A group of rays of one packet whose directions agree in signs and in largest component, with all that is
-/// uniform.
+/// A group of rays of one packet whose directions agree in largest component, with all that is common to
+/// them.
 struct Group {
     vmask alive;
     sint kx, ky, kz;         // permutation: z is the largest component
@@ -39,7 +39,8 @@ struct Group {
     vfloat shear_x, shear_y; // d_x / d_z, d_y / d_z
     vfloat scale_z;          // 1 / d_z
     vfloat t_min;
-    sint sign[3];   // 1: the direction's component is negative (unpermuted axes)
+    sbool mixed[3]; // whether the directions' components differ in sign (unpermuted axes)
+    sint sign[3];   // 1: the component is negative; of the first ray, where they differ
     sfloat flip[3]; // 1 or -1
     sfloat near[3],
         far[3]; // bounds of flip * origin, with slack: a plane is entered no earlier, left no later
@@ -253,6 +254,8 @@ inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint c
     vmask m = first_lanes(cells - from);
     pointer<float> low = v.words + cells_at + from;
     for (int k = 0; k < 3; ++k) {
+        if (branch(g.mixed[k]))
+            continue;
         // With the axis flipped to a positive direction: entering plane minus the furthest origin, and so on.
         sint near_at = g.sign[k] * (3 * cell_boxes);
         sint far_at = sint(3 * cell_boxes) - near_at;
@@ -328,6 +331,7 @@ struct Slabs {
 
 /// Lanes whose ray meets a box before its present hit; the box is widened by the slack of positions. Its
 /// planes lie at low[k * step] and at low[(k + 3) * step].
+template <bool Mixed>
 inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> low, int step,
                        const vfloat& last_t) {
     vfloat enter = g.t_min;
@@ -339,13 +343,19 @@ inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> l
         vfloat far = load_broadcast(low + k * step + far_at);
         near = (near - rays.origin[k]) * rays.inverse[k];
         far = (far - rays.origin[k]) * rays.inverse[k];
+        if constexpr (Mixed) {
+            vfloat first = min(near, far);
+            far = max(near, far);
+            near = first;
+        }
         enter = max(near - rays.error[k], enter);
         leave = min(far + rays.error[k], leave);
     }
     return g.alive & (enter <= leave);
 }
 
-template <Features F> inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
+template <Features F, bool Mixed>
+inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
     phase_scope phase(phase_intersect);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
     sint mesh = load(field(header, &BlockHeader::mesh));
@@ -359,7 +369,7 @@ template <Features F> inline void intersect_block(const Context& c, const Group&
     }
     static_assert(offsetof(BlockHeader, box_high) == offsetof(BlockHeader, box_low) + 3 * sizeof(float));
     tally(c.counters->box_tests, 1);
-    if (branch(none(rays_meet(g, rays, field(header, &BlockHeader::box_low), 1, hits.t))))
+    if (branch(none(rays_meet<Mixed>(g, rays, field(header, &BlockHeader::box_low), 1, hits.t))))
         return;
     tally(c.counters->block_tests, 1);
     View v;
@@ -403,7 +413,7 @@ template <Features F> inline void intersect_block(const Context& c, const Group&
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
             pointer<const float> box = v.words + cells_at + cell;
-            if (branch(none(rays_meet(g, rays, box, cell_boxes, hits.t))))
+            if (branch(none(rays_meet<Mixed>(g, rays, box, cell_boxes, hits.t))))
                 continue;
             sint row = cell >> shift;
             sint column = cell - (row << shift);

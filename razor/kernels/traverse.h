@@ -1,4 +1,4 @@
-// Packets through the kd-tree. A packet is traversed in groups of rays whose directions agree in signs and in
+// Packets through the kd-tree. A packet is traversed in groups of rays whose directions agree in
 // largest component, so that order and projection are uniform. A hit anywhere in a block counts, whatever
 // cell led to it; a cell's exit, rounded outward, only ends traversal; equal distances go to the lowest
 // (patch, triangle).
@@ -46,12 +46,12 @@ inline vint sign_bits(const vvec& d) {
     return xy | z;
 }
 
-/// Everything uniform about the rays `alive`, which share direction class `direction_class` (axis * 8 + sign
-/// bits).
-inline Group make_group(const Context& c, const Rays& r, vmask alive, sint direction_class) {
+/// Everything common to the rays `alive`, whose directions are largest in component `largest`; `signs` are
+/// the first one's.
+inline Group make_group(const Context& c, const Rays& r, vmask alive, sint largest, sint signs) {
     Group g;
     g.alive = alive;
-    g.kz = direction_class >> 3;
+    g.kz = largest;
     g.kx = select(g.kz == 2, sint(0), g.kz + 1);
     g.ky = select(g.kx == 2, sint(0), g.kx + 1);
     vfloat dx = r.direction.y;
@@ -93,7 +93,10 @@ inline Group make_group(const Context& c, const Rays& r, vmask alive, sint direc
         store_vector(c.packets + (packet_origin + k * isa::width), o);
         store_vector(c.packets + (packet_inverse + k * isa::width), inverse);
         store_vector(c.packets + (packet_error + k * isa::width), rate * vfloat(slack));
-        g.sign[k] = (direction_class >> k) & 1;
+        g.sign[k] = (signs >> k) & 1;
+        vmask other = as_int(inverse) < vint(0);
+        other = other ^ vmask(g.sign[k] != 0);
+        g.mixed[k] = any(alive & other);
         sfloat least_o = reduce_min(select(alive, o, far_away));
         sfloat most_o = reduce_max(select(alive, o, vfloat(-infinite)));
         sbool negative = g.sign[k] != 0;
@@ -125,7 +128,7 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
 }
 
 /// One group from the root. AnyHit: the first hit retires a lane; its hit distance becomes -infinite.
-template <Features F, bool AnyHit>
+template <Features F, bool AnyHit, bool Mixed>
 inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
     phase_scope phase(phase_traverse);
     tally(c.counters->groups, 1);
@@ -157,18 +160,35 @@ inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
             vfloat early = t - error;
             vfloat late = t + error;
             vmask inside = enter <= leave;
-            vmask to_near = inside & (enter <= late);
-            vmask to_far = inside & (leave >= early);
             sint sign = select(axis == 0, g.sign[0], select(axis == 1, g.sign[1], g.sign[2]));
             sint near = link + sign;
+            sint far = link + (sint(1) - sign);
+            // What is near for the first ray comes first; for rays that run the other way the two are
+            // swapped.
+            vmask to_near = inside & (enter <= late);
+            vmask to_far = inside & (leave >= early);
+            vfloat near_enter = enter;
+            vfloat near_leave = min(late, leave);
+            vfloat far_enter = max(early, enter);
+            if constexpr (Mixed) {
+                vmask other = as_int(inverse) < vint(0);
+                other = other ^ vmask(sign != 0);
+                vmask swapped = (to_near ^ to_far) & other;
+                to_near = to_near ^ swapped;
+                to_far = to_far ^ swapped;
+                vfloat near_leave_other = select(other, leave, near_leave);
+                leave = select(other, near_leave, leave);
+                near_leave = near_leave_other;
+                near_enter = select(other, far_enter, enter);
+                far_enter = select(other, enter, far_enter);
+            }
             if (branch(none(to_far))) {
                 number = near;
-                enter = select(to_near, enter, never);
-                leave = min(late, leave);
+                enter = select(to_near, near_enter, never);
+                leave = near_leave;
                 continue;
             }
-            vfloat far_enter = select(to_far, max(early, enter), never);
-            sint far = link + (sint(1) - sign);
+            far_enter = select(to_far, far_enter, never);
             if (branch(none(to_near))) {
                 number = far;
                 enter = far_enter;
@@ -180,8 +200,8 @@ inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
             top = top + stack_entry;
             ++depth;
             number = near;
-            enter = select(to_near, enter, never);
-            leave = min(late, leave);
+            enter = select(to_near, near_enter, never);
+            leave = near_leave;
             continue;
         }
         pointer<ItemList> list = as<ItemList>(c.lists + link);
@@ -194,7 +214,7 @@ inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
             sint seen = load(mailbox + slot);
             if (branch(seen != line)) {
                 store(mailbox + slot, line);
-                intersect_block<F>(c, g, line, hits);
+                intersect_block<F, Mixed>(c, g, line, hits);
                 if constexpr (AnyHit) {
                     vmask hit = hits.patch >= vint(0);
                     g.alive = g.alive & !hit;
@@ -249,15 +269,20 @@ template <Features F, bool AnyHit> inline Hits trace(const Context& c, const Ray
     ensure_root(c);
     Hits hits = no_hits(r);
     vint axis = largest_component(r.direction);
-    vint direction_class = sign_bits(r.direction);
-    direction_class = direction_class | (axis << 3);
+    vint signs = sign_bits(r.direction);
     vmask left = usable_rays(r);
     while (branch(any(left))) {
-        sint one = extract(direction_class, first(left));
-        vmask same = left & (direction_class == vint(one));
+        sint one = first(left);
+        sint largest = extract(axis, one);
+        vmask same = left & (axis == vint(largest));
         left = left & !same;
-        Group g = make_group(c, r, same, one);
-        trace_group<F, AnyHit>(c, r, g, hits);
+        Group g = make_group(c, r, same, largest, extract(signs, one));
+        sbool mixed = g.mixed[0] | g.mixed[1];
+        mixed = mixed | g.mixed[2];
+        if (branch(mixed))
+            trace_group<F, AnyHit, true>(c, r, g, hits);
+        else
+            trace_group<F, AnyHit, false>(c, r, g, hits);
     }
     return hits;
 }
