@@ -120,6 +120,20 @@ Mesh pillow(int sides) {
     return cage(sides, {front, back});
 }
 
+namespace {
+std::vector<std::vector<int>> torus(int round, int along, int first_point) {
+    std::vector<std::vector<int>> faces;
+    for (int i = 0; i < round; ++i) {
+        for (int j = 0; j < along; ++j) {
+            const int i1 = (i + 1) % round, j1 = (j + 1) % along;
+            faces.push_back({first_point + i * along + j, first_point + i1 * along + j,
+                             first_point + i1 * along + j1, first_point + i * along + j1});
+        }
+    }
+    return faces;
+}
+} // namespace
+
 bool have_shared_scenes() {
     return fs::is_directory(fs::path(RAZOR_SHARED_SCENES) / "osd");
 }
@@ -198,16 +212,11 @@ std::vector<Mesh> hard_meshes() {
         Mesh& m = add("smooth triangles", triangle_pole(9));
         m.triangles = TriangleSubdivision::smooth;
     }
-    {
-        std::vector<std::vector<int>> faces; // a torus 3 faces round: ring points coincide
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 5; ++j) {
-                const int i1 = (i + 1) % 3, j1 = (j + 1) % 5;
-                faces.push_back({i * 5 + j, i1 * 5 + j, i1 * 5 + j1, i * 5 + j1});
-            }
-        }
-        add("thin torus", cage(15, faces));
-    }
+    // A torus 3 faces round, where ring points coincide, beside one 6 faces round, where they do not.
+    std::vector<std::vector<int>> tori = torus(3, 5, 0), thick = torus(6, 7, 15);
+    tori.insert(tori.end(), thick.begin(), thick.end());
+    add("two tori", cage(15 + 42, tori));
+    add("two tagged tori", cage(15 + 42, tori)).corners = {{7, 2.0F}, {15 + 16, 2.0F}};
     return meshes;
 }
 
