@@ -24,19 +24,17 @@ template <class Op> void scalars(const float* x, const float* y, float* r, int n
     }
 }
 
-#define FUNCTION(name, call)                                                                                 \
-    {                                                                                                        \
-        name,                                                                                                \
-            [](const float* x, const float* y, float* r, int n) {                                            \
-                vectors(x, y, r, n, []([[maybe_unused]] const vfloat& a, [[maybe_unused]] const vfloat& b) { \
-                    return call;                                                                             \
-                });                                                                                          \
-            },                                                                                               \
-            [](const float* x, const float* y, float* r, int n) {                                            \
-                scalars(x, y, r, n, []([[maybe_unused]] const sfloat& a, [[maybe_unused]] const sfloat& b) { \
-                    return call;                                                                             \
-                });                                                                                          \
-            }                                                                                                \
+#define FUNCTION(name, call)                                                                                           \
+    {                                                                                                                  \
+        name,                                                                                                          \
+            [](const float* x, const float* y, float* r, int n) {                                                      \
+                vectors(x, y, r, n,                                                                                    \
+                        []([[maybe_unused]] const vfloat& a, [[maybe_unused]] const vfloat& b) { return call; });      \
+            },                                                                                                         \
+            [](const float* x, const float* y, float* r, int n) {                                                      \
+                scalars(x, y, r, n,                                                                                    \
+                        []([[maybe_unused]] const sfloat& a, [[maybe_unused]] const sfloat& b) { return call; });      \
+            }                                                                                                          \
     }
 
 constexpr math_function functions[] = {
@@ -46,9 +44,7 @@ constexpr math_function functions[] = {
 
 } // namespace
 
-std::span<const math_function> math_functions();
-std::span<const math_function> math_functions() {
-    return functions;
-}
+math_function_list math_functions();
+math_function_list math_functions() { return functions; }
 
 } // namespace isa_test::ISA_TARGET

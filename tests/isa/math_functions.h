@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace isa_test {
 
@@ -15,6 +14,12 @@ using array_function = void (*)(const float* x, const float* y, float* r, int n)
 struct math_function {
     const char* name;
     array_function vectors, scalars;
+};
+
+struct math_function_list {
+    const math_function *first, *last;
+    const math_function* begin() const { return first; }
+    const math_function* end() const { return last; }
 };
 
 struct math_bound {

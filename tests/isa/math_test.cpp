@@ -80,8 +80,7 @@ TEST_P(Math, PowWithinBound) {
 TEST_P(Math, SameBitsAsPlain) {
     if (std::string(GetParam().name) == "sse4")
         GTEST_SKIP() << "sse4 rounds fused operations twice";
-    std::vector<float> x = sample_of_all_floats(40960), y(x.rbegin(), x.rend()), r(x.size()), s(x.size()),
-                       p(x.size());
+    std::vector<float> x = sample_of_all_floats(40960), y(x.rbegin(), x.rend()), r(x.size()), s(x.size()), p(x.size());
     for (const math_function& f : plain::math_functions()) {
         f.vectors(x.data(), y.data(), p.data(), static_cast<int>(x.size()));
         function(GetParam(), f.name).vectors(x.data(), y.data(), r.data(), static_cast<int>(x.size()));
@@ -142,8 +141,7 @@ TEST_P(Math, SpecialValues) {
     EXPECT_TRUE(std::isnan(call("pow", 2.0F, nan)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, Math, testing::ValuesIn(math_targets),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Targets, Math, testing::ValuesIn(math_targets), [](const auto& p) { return p.param.name; });
 
 } // namespace
 } // namespace isa_test

@@ -4,43 +4,20 @@
 
 namespace isa::timing {
 
-stamp vector_op(operation, const stamp&) {
-    return {};
-}
-stamp vector_op(operation, const stamp&, const stamp&) {
-    return {};
-}
-stamp vector_op(operation, const stamp&, const stamp&, const stamp&) {
-    return {};
-}
-stamp cross_op(operation, const stamp&, const stamp&) {
-    return {};
-}
-stamp cross_to_scalar(operation, const stamp&, const stamp&) {
-    return {};
-}
-stamp scalar_op(operation, const stamp&) {
-    return {};
-}
-stamp scalar_op(operation, const stamp&, const stamp&) {
-    return {};
-}
-stamp scalar_op(operation, const stamp&, const stamp&, const stamp&) {
-    return {};
-}
+stamp vector_op(operation, const stamp&) { return {}; }
+stamp vector_op(operation, const stamp&, const stamp&) { return {}; }
+stamp vector_op(operation, const stamp&, const stamp&, const stamp&) { return {}; }
+stamp cross_op(operation, const stamp&, const stamp&) { return {}; }
+stamp cross_to_scalar(operation, const stamp&, const stamp&) { return {}; }
+stamp scalar_op(operation, const stamp&) { return {}; }
+stamp scalar_op(operation, const stamp&, const stamp&) { return {}; }
+stamp scalar_op(operation, const stamp&, const stamp&, const stamp&) { return {}; }
 void branch(site, const stamp&, bool) {}
 
-stamp load(site, const void*, std::uint32_t, const stamp&) {
-    return {};
-}
-stamp load_broadcast(site, const void*, std::uint32_t, const stamp&) {
-    return {};
-}
-stamp load_vector(site, const void*, std::uint64_t, const stamp&, const stamp&) {
-    return {};
-}
-stamp gather(site, const void*, const std::int32_t*, std::uint64_t, const stamp&, const stamp&,
-             const stamp&) {
+stamp load(site, const void*, std::uint32_t, const stamp&) { return {}; }
+stamp load_broadcast(site, const void*, std::uint32_t, const stamp&) { return {}; }
+stamp load_vector(site, const void*, std::uint64_t, const stamp&, const stamp&) { return {}; }
+stamp gather(site, const void*, const std::int32_t*, std::uint64_t, const stamp&, const stamp&, const stamp&) {
     return {};
 }
 void store(site, const void*, std::uint32_t, const stamp&, const stamp&) {}
@@ -51,9 +28,7 @@ void prefetch(site, const void*, const stamp&) {}
 void discard(site, const void*, std::uint32_t, const stamp&) {}
 
 void before_atomic(site, atomic, const void*, const stamp&, const stamp&) {}
-stamp after_atomic(site, atomic, const void*, bool) {
-    return {};
-}
+stamp after_atomic(site, atomic, const void*, bool) { return {}; }
 stamp wait_while(site, const std::int32_t* p, std::int32_t value, const stamp&, const stamp&) {
     while (__atomic_load_n(p, __ATOMIC_ACQUIRE) == value) {
     }

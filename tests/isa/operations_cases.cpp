@@ -11,15 +11,9 @@ namespace {
 
 using isa::width;
 
-pointer<const float> in(const float* p) {
-    return pointer<const float>(p);
-}
-pointer<const std::int32_t> in(const std::int32_t* p) {
-    return pointer<const std::int32_t>(p);
-}
-std::int32_t* words(result& r) {
-    return reinterpret_cast<std::int32_t*>(r.word);
-}
+pointer<const float> in(const float* p) { return pointer<const float>(p); }
+pointer<const std::int32_t> in(const std::int32_t* p) { return pointer<const std::int32_t>(p); }
+std::int32_t* words(result& r) { return reinterpret_cast<std::int32_t*>(r.word); }
 
 // The operands, loaded; what a case does not use costs nothing natively.
 struct loaded {
@@ -45,9 +39,7 @@ void put(result& r, const vfloat& x) {
     put(r, as_int(x));
     r.is = kind::floats;
 }
-void put(result& r, const vmask& x) {
-    put(r, select(x, vint(1), vint(0)));
-}
+void put(result& r, const vmask& x) { put(r, select(x, vint(1), vint(0))); }
 void put(result& r, const sint& x) {
     store(pointer<std::int32_t>(words(r)), x);
     r.count = 1;
@@ -57,9 +49,7 @@ void put(result& r, const sfloat& x) {
     put(r, as_int(x));
     r.is = kind::floats;
 }
-void put(result& r, const sbool& x) {
-    put(r, select(x, sint(1), sint(0)));
-}
+void put(result& r, const sbool& x) { put(r, select(x, sint(1), sint(0))); }
 
 // A copy of lanes that a case may write to: the operands j, and after them the words of a result.
 std::int32_t* copy_of_lanes(const operands& x, result& r) {
@@ -69,30 +59,28 @@ std::int32_t* copy_of_lanes(const operands& x, result& r) {
     r.is = kind::integers;
     return words(r);
 }
-float* copy_of_floats(const operands& x, result& r) {
-    return reinterpret_cast<float*>(copy_of_lanes(x, r));
-}
+float* copy_of_floats(const operands& x, result& r) { return reinterpret_cast<float*>(copy_of_lanes(x, r)); }
 
-#define CASE(takes, name, expression)                                                                        \
-    {                                                                                                        \
-        name, shape::takes, 0, 0, [](const operands& memory, result& r) {                                    \
-            [[maybe_unused]] loaded x(memory);                                                               \
-            put(r, expression);                                                                              \
-        }                                                                                                    \
+#define CASE(takes, name, expression)                                                                                  \
+    {                                                                                                                  \
+        name, shape::takes, 0, 0, [](const operands& memory, result& r) {                                              \
+            [[maybe_unused]] loaded x(memory);                                                                         \
+            put(r, expression);                                                                                        \
+        }                                                                                                              \
     }
-#define FUSED(name, sign, sign_c, expression)                                                                \
-    {                                                                                                        \
-        name, shape::floats_3, sign, sign_c, [](const operands& memory, result& r) {                         \
-            loaded x(memory);                                                                                \
-            put(r, expression);                                                                              \
-        }                                                                                                    \
+#define FUSED(name, sign, sign_c, expression)                                                                          \
+    {                                                                                                                  \
+        name, shape::floats_3, sign, sign_c, [](const operands& memory, result& r) {                                   \
+            loaded x(memory);                                                                                          \
+            put(r, expression);                                                                                        \
+        }                                                                                                              \
     }
-#define WRITES(name, statement)                                                                              \
-    {                                                                                                        \
-        name, shape::mixed, 0, 0, [](const operands& memory, result& r) {                                    \
-            loaded x(memory);                                                                                \
-            statement;                                                                                       \
-        }                                                                                                    \
+#define WRITES(name, statement)                                                                                        \
+    {                                                                                                                  \
+        name, shape::mixed, 0, 0, [](const operands& memory, result& r) {                                              \
+            loaded x(memory);                                                                                          \
+            statement;                                                                                                 \
+        }                                                                                                              \
     }
 
 const operation cases[] = {
@@ -267,33 +255,24 @@ const operation cases[] = {
     CASE(mixed, "load_vector int, masked", load_vector(in(memory.i) + 1, x.m)),
     CASE(mixed, "gather float", as_int(gather(in(memory.a), x.j& vint(width - 1), x.m))),
     CASE(mixed, "gather int", gather(in(memory.i), x.j& vint(width - 1), x.m)),
-    CASE(mixed, "gather, wild where masked off",
-         gather(in(memory.i), select(x.m, x.j& vint(width - 1), x.j), x.m)),
-    CASE(mixed, "gather, negative indices",
-         gather(in(memory.i) + width, (x.j & vint(width - 1)) - vint(width), x.m)),
+    CASE(mixed, "gather, wild where masked off", gather(in(memory.i), select(x.m, x.j& vint(width - 1), x.j), x.m)),
+    CASE(mixed, "gather, negative indices", gather(in(memory.i) + width, (x.j & vint(width - 1)) - vint(width), x.m)),
     WRITES("store float", store(pointer<float>(copy_of_floats(memory, r)) + 1, x.sa)),
     WRITES("store int", store(pointer<std::int32_t>(copy_of_lanes(memory, r)) + 1, x.si)),
     WRITES("store_vector float", store_vector(pointer<float>(copy_of_floats(memory, r)) + 1, x.a)),
     WRITES("store_vector int", store_vector(pointer<std::int32_t>(copy_of_lanes(memory, r)) + 1, x.i)),
-    WRITES("store_vector float, masked",
-           store_vector(pointer<float>(copy_of_floats(memory, r)) + 1, x.a, x.m)),
-    WRITES("store_vector int, masked",
-           store_vector(pointer<std::int32_t>(copy_of_lanes(memory, r)) + 1, x.i, x.m)),
-    WRITES("scatter float",
-           scatter(pointer<float>(copy_of_floats(memory, r)), x.j& vint(width - 1), x.a, x.m)),
-    WRITES("scatter int",
-           scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)), x.j& vint(width - 1), x.i, x.m)),
-    WRITES("scatter, equal indices",
-           scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)), x.j& vint(3), x.i, x.m)),
-    WRITES("scatter, wild where masked off", scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)),
-                                                     select(x.m, x.j& vint(width - 1), x.j), x.i, x.m)),
+    WRITES("store_vector float, masked", store_vector(pointer<float>(copy_of_floats(memory, r)) + 1, x.a, x.m)),
+    WRITES("store_vector int, masked", store_vector(pointer<std::int32_t>(copy_of_lanes(memory, r)) + 1, x.i, x.m)),
+    WRITES("scatter float", scatter(pointer<float>(copy_of_floats(memory, r)), x.j& vint(width - 1), x.a, x.m)),
+    WRITES("scatter int", scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)), x.j& vint(width - 1), x.i, x.m)),
+    WRITES("scatter, equal indices", scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)), x.j& vint(3), x.i, x.m)),
+    WRITES("scatter, wild where masked off",
+           scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)), select(x.m, x.j& vint(width - 1), x.j), x.i, x.m)),
 };
 
 } // namespace
 
 operation_list operations();
-operation_list operations() {
-    return {cases, static_cast<int>(sizeof(cases) / sizeof(cases[0])), width};
-}
+operation_list operations() { return {cases, static_cast<int>(sizeof(cases) / sizeof(cases[0])), width}; }
 
 } // namespace isa_test::ISA_TARGET

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#define ISA_TEST_DECLARE(target)                                                                             \
-    namespace isa_test::target {                                                                             \
-    operation_list operations();                                                                             \
+#define ISA_TEST_DECLARE(target)                                                                                       \
+    namespace isa_test::target {                                                                                       \
+    operation_list operations();                                                                                       \
     }
 ISA_TEST_TARGETS(ISA_TEST_DECLARE)
 
@@ -34,11 +34,10 @@ constexpr target targets[] = {ISA_TEST_TARGETS(ISA_TEST_ENTRY)};
 std::mt19937 random_bits(12345);
 
 const std::uint32_t special_floats[] = {
-    0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007fffff, 0x00800000, 0x80800000,
-    0x3f800000, 0xbf800000, 0x3f800001, 0x3f7fffff, 0x3f000000, 0xbf000000, 0x3fc00000,
-    0xbfc00000, 0x40200000, 0x3fb504f3, 0x3eaaaaab, 0x4b000000, 0x4b000001, 0xcaffffff,
-    0x4effffff, 0x4f000000, 0xcf000000, 0xcf000001, 0x5f000000, 0x7f7fffff, 0xff7fffff,
-    0x7f800000, 0xff800000, 0x7fc00000, 0xffc12345, 0x7f800001, 0x1f800000, 0x0f000000,
+    0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007fffff, 0x00800000, 0x80800000, 0x3f800000, 0xbf800000,
+    0x3f800001, 0x3f7fffff, 0x3f000000, 0xbf000000, 0x3fc00000, 0xbfc00000, 0x40200000, 0x3fb504f3, 0x3eaaaaab,
+    0x4b000000, 0x4b000001, 0xcaffffff, 0x4effffff, 0x4f000000, 0xcf000000, 0xcf000001, 0x5f000000, 0x7f7fffff,
+    0xff7fffff, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc12345, 0x7f800001, 0x1f800000, 0x0f000000,
 };
 const std::int32_t special_integers[] = {
     0,
@@ -87,11 +86,10 @@ public:
                 std::isnan(std::bit_cast<float>(expected.word[lane])))
                 continue;
             int in = lane % width_;
-            FAIL() << t_.name << ", width " << width_ << ", " << tested_.name << ", lane " << lane << ": "
-                   << std::hex << got.word[lane] << ", not " << expected.word[lane] << "; a "
-                   << std::bit_cast<std::uint32_t>(x.a[in]) << " b " << std::bit_cast<std::uint32_t>(x.b[in])
-                   << " c " << std::bit_cast<std::uint32_t>(x.c[in]) << " i " << x.i[in] << " j " << x.j[in]
-                   << " m " << x.m[in];
+            FAIL() << t_.name << ", width " << width_ << ", " << tested_.name << ", lane " << lane << ": " << std::hex
+                   << got.word[lane] << ", not " << expected.word[lane] << "; a "
+                   << std::bit_cast<std::uint32_t>(x.a[in]) << " b " << std::bit_cast<std::uint32_t>(x.b[in]) << " c "
+                   << std::bit_cast<std::uint32_t>(x.c[in]) << " i " << x.i[in] << " j " << x.j[in] << " m " << x.m[in];
         }
     }
 
@@ -106,8 +104,7 @@ private:
             float once = std::bit_cast<float>(r.word[lane]);
             if (std::isfinite(once) && std::isfinite(twice)) {
                 double ulp_product = std::ldexp(1.0, std::max(std::ilogb(product), -126) - 23);
-                double ulp_result =
-                    std::ldexp(1.0, std::max({std::ilogb(once), std::ilogb(twice), -126}) - 23);
+                double ulp_result = std::ldexp(1.0, std::max({std::ilogb(once), std::ilogb(twice), -126}) - 23);
                 double bound = (product == 0 ? 0x1p-150 : 0.5 * ulp_product) + ulp_result;
                 EXPECT_LE(std::abs(static_cast<double>(once) - static_cast<double>(twice)), bound);
             }
@@ -121,13 +118,10 @@ private:
     int width_;
 };
 
-float any_float() {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(random_bits()));
-}
+float any_float() { return std::bit_cast<float>(static_cast<std::uint32_t>(random_bits())); }
 /// Magnitudes near each other, so that sums cancel and roundings meet.
 float moderate_float() {
-    return std::ldexp(static_cast<float>(static_cast<std::int32_t>(random_bits())),
-                      -31 + int(random_bits() % 8));
+    return std::ldexp(static_cast<float>(static_cast<std::int32_t>(random_bits())), -31 + int(random_bits() % 8));
 }
 
 void fill_random(operands& x, bool moderate) {
@@ -242,8 +236,7 @@ TEST_P(Operations, EqualPlain) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, Operations, testing::ValuesIn(targets),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Targets, Operations, testing::ValuesIn(targets), [](const auto& p) { return p.param.name; });
 
 } // namespace
 } // namespace isa_test
