@@ -133,11 +133,10 @@ inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
     return {ends[0], ends[1], as_float((sint(127) - hang) << 23)};
 }
 
-/// The four vertices of a quad, and the functions of its edges: bottom 00-10, right 10-11, top 01-11, left
-/// 00-01, and the diagonal 00-11.
-struct Quad {
-    Projected p00, p10, p11, p01;
-    vfloat bottom, right, top, left, diagonal;
+/// The functions of a quad's sides, in the order of the block's sides: bottom 00-10, right 10-11, top 01-11,
+/// left 00-01.
+struct SideFunctions {
+    vfloat side[4];
 };
 
 /// On which sides of the block the quad lies.
@@ -151,15 +150,16 @@ inline Border border_of(const View& v, sint i, sint j) {
 }
 
 /// Replaces the functions of edges with hanging vertices by their flat ancestors', at the sub-edge's scale.
-inline void hang_edges(const Group& g, const View& v, sint i, sint j, Quad& q) {
+[[gnu::noinline]] inline SideFunctions hang_edges(const Group& g, const View& v, sint i, sint j,
+                                                  SideFunctions f) {
     Border border = border_of(v, i, j);
-    vfloat* functions[4] = {&q.bottom, &q.right, &q.top, &q.left};
     for (int s = 0; s < 4; ++s) {
         if (branch(border.side[s] & (v.hang[s] > 0))) {
             Edge e = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
-            *functions[s] = edge_function(e.p, e.q) * vfloat(e.scale);
+            f.side[s] = edge_function(e.p, e.q) * vfloat(e.scale);
         }
     }
+    return f;
 }
 
 /// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
@@ -213,11 +213,16 @@ template <Features F> inline vfloat exact_function(const Edge& e) {
 }
 
 /// For lanes that may hit the quad's triangles, (00, 10, 11) and (00, 11, 01): decides exactly, and takes the
-/// hits.
+/// hits. Seldom called and out of line, so that the inner loop keeps nothing for it: it projects the vertices
+/// again.
 template <Features F>
-[[gnu::noinline]] void hit_quad(const Group& g, const View& v, sint i, sint j, const Quad& q, vmask inside0,
-                                vmask inside1, Hits& hits) {
-    Edge edges[4] = {{q.p00, q.p10}, {q.p10, q.p11}, {q.p01, q.p11}, {q.p00, q.p01}};
+[[gnu::noinline]] void hit_quad(const Group& g, const View& v, sint i, sint j, sint low, sint high,
+                                vmask inside0, vmask inside1, Hits& hits) {
+    Projected p00 = project_vertex(g, v, low);
+    Projected p10 = project_vertex(g, v, low + 1);
+    Projected p11 = project_vertex(g, v, high + 1);
+    Projected p01 = project_vertex(g, v, high);
+    Edge edges[4] = {{p00, p10}, {p10, p11}, {p01, p11}, {p00, p01}};
     if constexpr (F.hanging) {
         Border border = border_of(v, i, j);
         for (int s = 0; s < 4; ++s) {
@@ -227,20 +232,20 @@ template <Features F>
     }
     sint quad = ((j << block_log2) + i) * 2;
     sint triangle = (v.number << 7) + quad;
-    vfloat diagonal = exact_edge_function(q.p00, q.p11);
+    vfloat diagonal = exact_edge_function(p00, p11);
     vfloat minus = -diagonal;
     if (branch(any(inside0))) {
         vfloat right = exact_function<F>(edges[1]);
         vfloat bottom = exact_function<F>(edges[0]);
         inside0 = inside0 & agree(right, minus, bottom);
-        accept(g, v, inside0, right, minus, bottom, q.p00, q.p10, q.p11, triangle, hits);
+        accept(g, v, inside0, right, minus, bottom, p00, p10, p11, triangle, hits);
     }
     sbool second = v.triangles > 1;
     if (branch(second & any(inside1))) {
         vfloat top = -exact_function<F>(edges[2]);
         vfloat left = -exact_function<F>(edges[3]);
         inside1 = inside1 & agree(top, left, diagonal);
-        accept(g, v, inside1, top, left, diagonal, q.p00, q.p11, q.p01, triangle + 1, hits);
+        accept(g, v, inside1, top, left, diagonal, p00, p11, p01, triangle + 1, hits);
     }
 }
 
@@ -293,33 +298,36 @@ inline void intersect_cell(const Context& c, const Group& g, const View& v, sint
         sint low = low_row + column;
         low_row = low_row + width;
         sint high = low_row + column;
-        Quad q;
-        q.p00 = project_vertex(g, v, low);
-        q.p01 = project_vertex(g, v, high);
-        q.left = edge_function(q.p00, q.p01);
+        Projected p00 = project_vertex(g, v, low);
+        Projected p01 = project_vertex(g, v, high);
+        vfloat left = edge_function(p00, p01);
         for (sint i = column; branch(i < end_u); ++i) {
             tally(c.counters->quad_tests, 1);
+            Projected p10 = project_vertex(g, v, low + 1);
+            Projected p11 = project_vertex(g, v, high + 1);
+            vfloat bottom = edge_function(p00, p10);
+            vfloat right = edge_function(p10, p11);
+            vfloat top = edge_function(p01, p11);
+            vfloat minus = edge_function(p11, p00); // of the diagonal, reversed
+            vfloat next_left = right;
+            if constexpr (F.hanging) {
+                if (branch(v.hangs != 0)) {
+                    SideFunctions f = hang_edges(g, v, i, j, {{bottom, right, top, left}});
+                    bottom = f.side[0];
+                    right = f.side[1];
+                    top = f.side[2];
+                    left = f.side[3];
+                }
+            }
+            vmask inside0 = agree(bottom, right, minus) & g.alive;
+            vmask inside1 = agree(minus, top, left) & g.alive;
+            if (branch(any(inside0 | inside1)))
+                hit_quad<F>(g, v, i, j, low, high, inside0, inside1, hits);
+            p00 = p10;
+            p01 = p11;
+            left = next_left;
             ++low;
             ++high;
-            q.p10 = project_vertex(g, v, low);
-            q.p11 = project_vertex(g, v, high);
-            q.bottom = edge_function(q.p00, q.p10);
-            q.right = edge_function(q.p10, q.p11);
-            q.top = edge_function(q.p01, q.p11);
-            q.diagonal = edge_function(q.p00, q.p11);
-            vfloat next_left = q.right;
-            if constexpr (F.hanging) {
-                if (branch(v.hangs != 0))
-                    hang_edges(g, v, i, j, q);
-            }
-            vfloat minus = -q.diagonal;
-            vmask inside0 = agree(q.bottom, q.right, minus) & g.alive;
-            vmask inside1 = agree(minus, q.top, q.left) & g.alive;
-            if (branch(any(inside0 | inside1)))
-                hit_quad<F>(g, v, i, j, q, inside0, inside1, hits);
-            q.p00 = q.p10;
-            q.p01 = q.p11;
-            q.left = next_left;
         }
     }
 }
