@@ -30,9 +30,10 @@ struct Topology {
     std::vector<CurveRecord> curves;  // cage edges first, then spokes
     std::vector<PatchRecord> patches; // ordered by (face, sub); mesh = 0
     std::vector<FaceClass> classes;
-    int max_exponent =
-        max_exponent_limit; // largest curve exponent for which the pages fit their address range
-    int undrawn_faces = 0;  // holes, and faces that boundary interpolation `none` leaves out
+    /// Largest curve exponent for which the pages fit their address range.
+    int max_exponent = max_exponent_limit;
+    /// Holes, and faces that boundary interpolation `none` leaves out.
+    int undrawn_faces = 0;
 };
 
 /// Throws UserError naming the mesh and face where the cage cannot be used (see razor/scene/scene.h for the
@@ -40,6 +41,8 @@ struct Topology {
 void validate_mesh(const Mesh& mesh);
 
 /// `mesh` must be valid. Throws UserError for cages that cannot be rendered (naming the face and the cause).
+/// A flat triangle's sides 0, 1 and 3 are its sides from corner 0 to 1, 1 to 2 and 0 to 2; side 2 has no
+/// length. A side that no cage edge runs along has curve -1.
 Topology analyse_topology(const Mesh& mesh);
 
 } // namespace razor
