@@ -88,7 +88,7 @@ inline Projected project(const Group& g, const View& v, const vfloat& x, const v
     p.y = fnma(g.shear_y, p.z, py);
     return p;
 }
-inline Projected project_vertex(const Group& g, const View& v, sint i) {
+[[gnu::always_inline]] inline Projected project_vertex(const Group& g, const View& v, sint i) {
     vfloat x = load_broadcast(v.x + i);
     vfloat y = load_broadcast(v.y + i);
     vfloat z = load_broadcast(v.z + i);
@@ -163,8 +163,9 @@ inline Border border_of(const View& v, sint i, sint j) {
 }
 
 /// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
-inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat V, vfloat W,
-                   const Projected& a, const Projected& b, const Projected& c, sint triangle, Hits& hits) {
+[[gnu::always_inline]] inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat V,
+                                          vfloat W, const Projected& a, const Projected& b,
+                                          const Projected& c, sint triangle, Hits& hits) {
     vfloat sum = U + V;
     vfloat det = sum + W;
     inside = inside & (det != vfloat(0.0F));
@@ -232,8 +233,7 @@ template <Features F>
     }
     sint quad = ((j << block_log2) + i) * 2;
     sint triangle = (v.number << 7) + quad;
-    vfloat diagonal = exact_edge_function(p00, p11);
-    vfloat minus = -diagonal;
+    vfloat minus = exact_edge_function(p11, p00);
     if (branch(any(inside0))) {
         vfloat right = exact_function<F>(edges[1]);
         vfloat bottom = exact_function<F>(edges[0]);
@@ -242,10 +242,11 @@ template <Features F>
     }
     sbool second = v.triangles > 1;
     if (branch(second & any(inside1))) {
-        vfloat top = -exact_function<F>(edges[2]);
-        vfloat left = -exact_function<F>(edges[3]);
-        inside1 = inside1 & agree(top, left, diagonal);
-        accept(g, v, inside1, top, left, diagonal, p00, p11, p01, triangle + 1, hits);
+        // All three the other way round: only their ratios count.
+        vfloat top = exact_function<F>(edges[2]);
+        vfloat left = exact_function<F>(edges[3]);
+        inside1 = inside1 & agree(top, left, minus);
+        accept(g, v, inside1, top, left, minus, p00, p11, p01, triangle + 1, hits);
     }
 }
 
