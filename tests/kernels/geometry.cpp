@@ -1,0 +1,256 @@
+// Tessellated blocks: vertices where the surface is, the same bits from every neighbour, no T-junction.
+#include "tests/kernels/cages.h"
+#include "tests/kernels/dump.h"
+#include "tests/kernels/reference_surface.h"
+#include "tests/kernels/targets.h"
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace razor::test {
+namespace {
+
+double distance(const Point& p, const glm::dvec3& q) {
+    return std::max({std::abs(p[0] - q.x), std::abs(p[1] - q.y), std::abs(p[2] - q.z)});
+}
+
+/// One patch's grid of vertices, and its blocks.
+struct Grid {
+    int nu = 0, nv = 0, columns = 1;
+    std::vector<BlockView> blocks;
+
+    const BlockView& block(int column, int row) const {
+        return blocks[static_cast<std::size_t>(row * columns + column)];
+    }
+    int length(int side) const { return 1 << (side % 2 == 0 ? nu : nv); }
+    /// Block at segment i of a side, and the segment in the block.
+    std::pair<const BlockView*, int> at_side(int side, int i) const {
+        int strip = std::min(i >> block_log2, std::max(length(side) >> block_log2, 1) - 1);
+        int rows = static_cast<int>(blocks.size()) / columns;
+        const BlockView* b = side == 0   ? &block(strip, 0)
+                             : side == 1 ? &block(columns - 1, strip)
+                             : side == 2 ? &block(strip, rows - 1)
+                                         : &block(0, strip);
+        return {b, i - strip * block_quads};
+    }
+};
+
+class Geometry : public testing::TestWithParam<std::string> {
+protected:
+    void SetUp() override {
+        scene_ = named_scene(GetParam());
+        if (!scene_)
+            GTEST_SKIP() << "the shared scenes are not there";
+        frame_ = std::make_unique<Frame>(scene_->scene, FrameOptions{});
+        frame_->build_all(*native_targets().back());
+        surface_ = std::make_unique<ReferenceSurface>(*frame_, scene_->scene.meshes.front());
+    }
+    int patch_count() const { return frame_->header().patch_count; }
+    const PatchRecord& patch(int i) const { return frame_->header().patches.get()[i]; }
+    Grid grid(int i) const {
+        Grid g;
+        std::array<int, 2> n = surface_->grid(patch(i));
+        g.nu = n[0];
+        g.nv = n[1];
+        g.columns = std::max(1 << g.nu >> block_log2, 1);
+        g.blocks = blocks_of(*frame_, i);
+        return g;
+    }
+
+    std::optional<NamedScene> scene_;
+    std::unique_ptr<Frame> frame_;
+    std::unique_ptr<ReferenceSurface> surface_;
+};
+
+TEST_P(Geometry, BlocksHaveTheirShape) {
+    for (int i = 0; i < patch_count(); ++i) {
+        Grid g = grid(i);
+        int rows = std::max(1 << g.nv >> block_log2, 1);
+        ASSERT_EQ(static_cast<int>(g.blocks.size()), g.columns * rows) << "patch " << i;
+        for (int b = 0; b < static_cast<int>(g.blocks.size()); ++b) {
+            const BlockHeader& h = *g.blocks[static_cast<std::size_t>(b)].header;
+            EXPECT_EQ(h.patch, i);
+            EXPECT_EQ(h.number, b);
+            EXPECT_EQ(h.quads_u, 1 << std::min(g.nu, block_log2));
+            EXPECT_EQ(h.quads_v, 1 << std::min(g.nv, block_log2));
+            EXPECT_EQ(h.triangles, patch(i).kind == PatchKind::flat_triangle ? 1 : 2);
+            EXPECT_EQ(h.stride, (h.quads_u + 1) * (h.quads_v + 1));
+        }
+    }
+}
+
+TEST_P(Geometry, InnerVerticesLieOnTheSurface) {
+    for (int i = 0; i < patch_count(); ++i) {
+        const PatchRecord& p = patch(i);
+        if (p.kind >= PatchKind::flat_quad)
+            continue;
+        Grid g = grid(i);
+        for (const BlockView& b : g.blocks) {
+            int column = b.header->number % g.columns * block_quads;
+            int row = b.header->number / g.columns * block_quads;
+            for (int v = 0; v < b.header->stride; ++v) {
+                int u_at = column + v % (b.header->quads_u + 1);
+                int v_at = row + v / (b.header->quads_u + 1);
+                bool border = u_at == 0 || u_at == 1 << g.nu || v_at == 0 || v_at == 1 << g.nv;
+                if (border)
+                    continue;
+                ASSERT_LE(distance(b.vertex(v), surface_->grid_point(p, u_at, v_at)), surface_->rounding())
+                    << "patch " << i << " vertex " << u_at << ' ' << v_at;
+            }
+        }
+    }
+}
+
+TEST_P(Geometry, FlatPatchesAreTheirCorners) {
+    for (int i = 0; i < patch_count(); ++i) {
+        if (patch(i).kind < PatchKind::flat_quad)
+            continue;
+        const float* points = frame_->header().points.get();
+        constexpr std::array<int, 4> corner_of_vertex{0, 1, 3, 2};
+        for (int v = 0; v < 4; ++v) {
+            const float* p = points + std::ptrdiff_t{3} * patch(i).corner[corner_of_vertex[static_cast<std::size_t>(v)]];
+            EXPECT_EQ(blocks_of(*frame_, i).front().vertex(v), (Point{p[0], p[1], p[2]}));
+        }
+    }
+}
+
+TEST_P(Geometry, BlocksOfAPatchShareTheirBorders) {
+    for (int i = 0; i < patch_count(); ++i) {
+        Grid g = grid(i);
+        for (const BlockView& b : g.blocks) {
+            int column = b.header->number % g.columns;
+            int row = b.header->number / g.columns;
+            int rows = static_cast<int>(g.blocks.size()) / g.columns;
+            if (column + 1 < g.columns) {
+                EXPECT_EQ(b.header->hang[1], 0);
+                for (int k = 0; k <= b.header->quads_v; ++k)
+                    ASSERT_EQ(b.along(1, k), g.block(column + 1, row).along(3, k)) << "patch " << i;
+            }
+            if (row + 1 < rows) {
+                EXPECT_EQ(b.header->hang[2], 0);
+                for (int k = 0; k <= b.header->quads_u; ++k)
+                    ASSERT_EQ(b.along(2, k), g.block(column, row + 1).along(0, k)) << "patch " << i;
+            }
+        }
+    }
+}
+
+/// Real vertices of a curve lie where its owner says and are the same bits in every patch; hanging ones lie on the
+/// flat edge between two real ones; and that very edge, bit for bit, decides about every sub-edge.
+TEST_P(Geometry, NeighboursAgreeBitForBit) {
+    std::map<std::pair<int, int>, Point> real;    // (curve, number)
+    std::map<std::pair<int, int>, Point> anywhere; // (curve, numerator over 2^20)
+    std::map<std::pair<int, int>, Point> corners; // (kind, number)
+    int hanging = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+        for (int i = 0; i < patch_count(); ++i) {
+            const PatchRecord& p = patch(i);
+            if (p.kind >= PatchKind::flat_quad)
+                continue;
+            Grid g = grid(i);
+            for (int s = 0; s < 4; ++s) {
+                int curve = p.side_curve[s];
+                bool reversed = (p.side_flags[s] & side_reversed) != 0;
+                int n = (s % 2 == 0 ? g.nu : g.nv) + ((p.side_flags[s] & side_half) != 0 ? 1 : 0);
+                int hang = n - surface_->flat_exponent(curve);
+                ASSERT_GE(hang, 0);
+                for (int k = 0; k <= g.length(s); ++k) {
+                    auto [b, in_block] = g.at_side(s, k);
+                    Point here = b->along(s, in_block);
+                    int along = reversed ? (1 << n) - k : k;
+                    if (pass == 0) {
+                        auto [same, first] = anywhere.try_emplace({curve, along << (20 - n)}, here);
+                        ASSERT_EQ(same->second, here) << "patch " << i << " side " << s << " vertex " << k;
+                        if (along % (1 << hang) == 0) {
+                            real[{curve, along >> hang}] = here;
+                            if (first) {
+                                ASSERT_LE(distance(here, surface_->curve_point(curve, along >> hang)),
+                                          2 * surface_->rounding());
+                            }
+                        }
+                        if (k == 0) {
+                            constexpr std::array<int, 4> start{0, 1, 3, 0};
+                            int corner = start[static_cast<std::size_t>(s)];
+                            bool part = (p.side_flags[0] & side_half) != 0;
+                            int kind = part ? corner % 2 + (corner == 2 ? 2 : 0) : 0;
+                            auto [other, is_new] = corners.try_emplace({kind, p.corner[corner]}, here);
+                            ASSERT_EQ(other->second, here) << "patch " << i << " corner " << corner;
+                        }
+                        continue;
+                    }
+                    if (along % (1 << hang) != 0) {
+                        ++hanging;
+                        const Point& a = real.at({curve, along >> hang});
+                        const Point& z = real.at({curve, (along >> hang) + 1});
+                        double f = std::ldexp(along % (1 << hang), -hang);
+                        glm::dvec3 on = glm::mix(glm::dvec3(a[0], a[1], a[2]), glm::dvec3(z[0], z[1], z[2]), f);
+                        ASSERT_LE(distance(here, on), 3 * 6e-8 * surface_->largest());
+                    }
+                    if (k == g.length(s))
+                        continue;
+                    auto [block, segment] = g.at_side(s, k);
+                    ASSERT_EQ(block->header->hang[s], hang);
+                    ASSERT_TRUE(hang == 0 || block->header->hangs != 0);
+                    FlatEdge e = block->ancestor(s, segment);
+                    int first = (reversed ? along - 1 : along) >> hang;
+                    Point from = real.at({curve, first});
+                    Point to = real.at({curve, first + 1});
+                    if (reversed)
+                        std::swap(from, to);
+                    ASSERT_EQ(e.from, from) << "patch " << i << " side " << s << " segment " << k;
+                    ASSERT_EQ(e.to, to) << "patch " << i << " side " << s << " segment " << k;
+                }
+            }
+        }
+    }
+    RecordProperty("hanging_vertices", hanging);
+}
+
+TEST_P(Geometry, BoxesHoldTheirContents) {
+    const FrameHeader& h = frame_->header();
+    const MeshRecord& mesh = h.meshes.get()[0];
+    for (int i = 0; i < patch_count(); ++i)
+        for (const BlockView& b : blocks_of(*frame_, i)) {
+            const BlockHeader& block = *b.header;
+            for (std::size_t k = 0; k < 3; ++k) {
+                float low = 3e38F;
+                float high = -3e38F;
+                for (int v = 0; v < block.stride; ++v) {
+                    float x = b.vertex(v)[k];
+                    ASSERT_TRUE(std::isfinite(x));
+                    low = std::min(low, x);
+                    high = std::max(high, x);
+                    if (block.cells_at == 0)
+                        continue;
+                    // The vertex may be in up to four cells: the one above and to the right of it will do.
+                    int cells_u = (block.quads_u + 1) / 2;
+                    int cells_v = (block.quads_v + 1) / 2;
+                    int column = std::min(v % (block.quads_u + 1) / 2, cells_u - 1);
+                    int row = std::min(v / (block.quads_u + 1) / 2, cells_v - 1);
+                    const float* cell = b.words + block.cells_at + row * cells_u + column;
+                    ASSERT_LE(cell[static_cast<int>(k) * cell_boxes], x);
+                    ASSERT_GE(cell[static_cast<int>(k + 3) * cell_boxes], x);
+                }
+                ASSERT_EQ(block.box_low[k], low);
+                ASSERT_EQ(block.box_high[k], high);
+                const float* bounds = h.bounds.get() + i + static_cast<std::ptrdiff_t>(k) * h.bounds_stride;
+                ASSERT_LE(bounds[0], low + mesh.origin[k]) << "patch " << i;
+                ASSERT_GE(bounds[std::ptrdiff_t{3} * h.bounds_stride], high + mesh.origin[k]) << "patch " << i;
+            }
+        }
+}
+
+std::vector<std::string> single_mesh_scenes() {
+    std::vector<std::string> names = scene_names();
+    std::erase(names, "default");
+    return names;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Geometry, testing::ValuesIn(single_mesh_scenes()),
+                         [](const auto& name) { return name.param; });
+
+} // namespace
+} // namespace razor::test
