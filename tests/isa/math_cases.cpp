@@ -45,6 +45,6 @@ constexpr math_function functions[] = {
 } // namespace
 
 math_function_list math_functions();
-math_function_list math_functions() { return functions; }
+math_function_list math_functions() { return {functions, functions + sizeof(functions) / sizeof(functions[0])}; }
 
 } // namespace isa_test::ISA_TARGET

@@ -41,7 +41,7 @@ template <class Exact> worst scan(array_function f, std::uint64_t stride, float 
 }
 
 int report(const char* name, const worst& w, double bound) {
-    std::printf("%-12s %8.4f ulp at %.9g (bound %.1f)%s\n", name, w.ulp, static_cast<double>(w.at), bound,
+    std::printf("%-12s %8.4f ulp at %.9g (bound %.2f)%s\n", name, w.ulp, static_cast<double>(w.at), bound,
                 w.ulp <= bound ? "" : "  EXCEEDED");
     std::fflush(stdout);
     return w.ulp <= bound ? 0 : 1;

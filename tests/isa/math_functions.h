@@ -30,13 +30,13 @@ struct math_bound {
 };
 inline constexpr math_bound math_bounds[] = {
     {"exp", [](double x) { return std::exp(x); }, 1.0, std::numeric_limits<float>::infinity()},
-    {"exp2", [](double x) { return std::exp2(x); }, 1.0, std::numeric_limits<float>::infinity()},
+    {"exp2", [](double x) { return std::exp2(x); }, 1.25, std::numeric_limits<float>::infinity()},
     {"log", [](double x) { return std::log(x); }, 1.0, std::numeric_limits<float>::infinity()},
     {"log2", [](double x) { return std::log2(x); }, 1.5, std::numeric_limits<float>::infinity()},
     {"sin", [](double x) { return std::sin(x); }, 1.0, 100000.0F},
     {"cos", [](double x) { return std::cos(x); }, 1.0, 100000.0F},
 };
-inline constexpr double pow_bound = 2.5;
+inline constexpr double pow_bound = 1.25;
 
 /// Distance from the exact value in units in the last place of the exact one; infinity where only one of them
 /// is a NaN. An infinite result counts as 2^128.
