@@ -335,8 +335,15 @@ void Frame::Impl::reset() {
     }
 }
 
-Frame::Frame(const Scene& scene, const FrameOptions& options)
-    : impl_(std::make_unique<Impl>(scene, options)) {}
+Frame::Frame(const Scene& scene, const FrameOptions& options) {
+    try {
+        impl_ = std::make_unique<Impl>(scene, options);
+    } catch (const UserError&) {
+        throw;
+    } catch (const std::runtime_error& e) { // no address space
+        throw UserError(fmt::format("{}: {}", scene.name, e.what()));
+    }
+}
 Frame::~Frame() = default;
 
 void Frame::reset() {

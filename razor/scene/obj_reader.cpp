@@ -162,32 +162,19 @@ private:
         return static_cast<int>(index - 1);
     }
 
+    /// A corner that repeats its neighbour is a mistake everywhere. Others may be meant (an outline that runs
+    /// along a bridge to a hole twice); validate_mesh refuses them where the scheme cannot take them.
     void check_distinct(std::size_t first, std::int64_t line) {
-        const auto corners = std::vector<int>::const_iterator(mesh_.face_vertices.begin()) +
-                             static_cast<std::ptrdiff_t>(first);
-        const std::ptrdiff_t count = mesh_.face_vertices.end() - corners;
-        auto repeated = mesh_.face_vertices.cend();
-        if (count <= 8) {
-            for (auto c = corners + 1; c != mesh_.face_vertices.end(); ++c) {
-                if (std::find(corners, c, *c) != c) {
-                    repeated = c;
-                    break;
-                }
+        const std::size_t end = mesh_.face_vertices.size();
+        int before = mesh_.face_vertices[end - 1];
+        for (std::size_t c = first; c < end; ++c) {
+            const int point = mesh_.face_vertices[c];
+            if (point == before) {
+                cursor_.fail_at(line, fmt::format("face names point {} twice in a row; name each corner once",
+                                                  point + 1));
             }
-            if (repeated == mesh_.face_vertices.cend()) {
-                return;
-            }
-        } else {
-            sorted_.assign(corners, mesh_.face_vertices.cend());
-            std::sort(sorted_.begin(), sorted_.end());
-            repeated = std::adjacent_find(sorted_.cbegin(), sorted_.cend());
-            if (repeated == sorted_.cend()) {
-                return;
-            }
+            before = point;
         }
-        cursor_.fail_at(
-            line, fmt::format("face names point {} more than once; name each corner once or split the face",
-                              *repeated + 1));
     }
 
     void check_count(std::size_t count, std::string_view what) const {
@@ -238,7 +225,6 @@ private:
     Mesh mesh_;
     ObjTags tags_;
     std::vector<std::int64_t> face_lines_;
-    std::vector<int> sorted_;
     bool any_textured_ = false, any_untextured_ = false;
 };
 
