@@ -1,0 +1,159 @@
+# Sourced by test.sh after setup.sh: the steps of a test run, and their summary.
+
+razor=razor/program/razor # within a build folder
+simulator=sim/program/razor-sim
+compare_images=$PWD/build/release/analysis/razor-image-compare
+scene=configs/scenes/default.toml
+machine=configs/machines/tiny.toml
+simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
+fuzz_seconds=10
+
+step_lines=()
+failed_steps=0
+test_reports=()
+
+rm -f build/*/tests.xml
+
+# step NAME COMMAND...: runs the command, notes how it ended; a failure fails the whole run at its end.
+step() {
+    local name=$1 begin=$SECONDS status before after
+    shift
+    say "$name"
+    before=$(children_seconds)
+    set +e
+    (
+        set -e
+        "$@"
+    )
+    status=$?
+    set -e
+    after=$(children_seconds)
+    if ((status == 0)); then
+        last_step=ok
+    else
+        last_step=FAILED
+        failed_steps=$((failed_steps + 1))
+    fi
+    step_lines+=("$(printf '%-6s %5d s %5d s of processors  %s' $last_step $((SECONDS - begin)) $((after - before)) "$name")")
+}
+
+# Processor time of all finished children, in seconds.
+children_seconds() {
+    awk '{ print int(($16 + $17) / 100) }' "/proc/$$/stat"
+}
+
+require_last_step() {
+    if [[ $last_step != ok ]]; then
+        summary
+    fi
+}
+
+summary() {
+    local line passed=0 failed=0 skipped=0 tests failures disabled skips
+    printf '\n'
+    for line in "${step_lines[@]}"; do
+        printf '%s\n' "$line"
+    done
+    printf 'in all %d s, %d s of processors\n' $SECONDS "$(children_seconds)"
+    for folder in release clang asan-ubsan; do
+        if [[ -e build/$folder/tests.xml ]]; then
+            read -r tests failures disabled skips < <(count_tests "build/$folder/tests.xml")
+            passed=$((passed + tests - failures - disabled - skips))
+            failed=$((failed + failures))
+            skipped=$((skipped + disabled + skips))
+        fi
+    done
+    if ((failed_steps > 0)); then
+        printf '%d of %d steps FAILED\n' $failed_steps ${#step_lines[@]}
+    else
+        printf 'all %d steps ok\n' ${#step_lines[@]}
+    fi
+    printf 'tests: %d passed, %d failed, %d skipped\n' $passed $failed $skipped
+    exit $((failed_steps > 0))
+}
+
+# count_tests FILE: tests, failures, disabled and skipped ones of ctest's JUnit report.
+count_tests() {
+    sed -n -E '0,/<testsuite /{/<testsuite /,/>/p}' "$1" | tr -d '\n' |
+        sed -E 's/.* tests="([0-9]+)".* failures="([0-9]+)".* disabled="([0-9]+)".* skipped="([0-9]+)".*/\1 \2 \3 \4\n/'
+}
+
+build() {
+    local preset=$1
+    shift
+    configure "$preset" "build/$preset" "$@"
+    compile "build/$preset"
+}
+
+# On a terminal ctest's own progress; elsewhere its output without the tests that passed.
+run_tests() {
+    local arguments=(--preset "$1" -j "$(nproc)" --no-tests=error --output-junit tests.xml)
+    if [[ -t 1 ]]; then
+        ctest "${arguments[@]}" --progress
+    else
+        ctest "${arguments[@]}" | grep --line-buffered -v -E '^ *[0-9]+/[0-9]+ Test +#[0-9]+: .* Passed |^ +Start +[0-9]+: '
+    fi
+}
+
+# The lint of kernels is among the tests.
+check_style() {
+    local files=(-name build -prune -o -name '.git' -prune -o)
+    find . "${files[@]}" \( -name '*.h' -o -name '*.cpp' \) -print0 | xargs -0 clang-format-14 --dry-run -Werror
+}
+
+# Every benchmark is a program that names its options; no time is asserted.
+start_benchmarks() {
+    local program count=0
+    while IFS= read -r -d '' program; do
+        "$program" --help >/dev/null || fail "$program does not start"
+        count=$((count + 1))
+    done < <(find build/release/tests/benchmarks -type f -executable -print0)
+    printf '%d programs\n' $count
+    ((count > 0))
+}
+
+compare_compilers() {
+    local compiler folder=build/compare
+    mkdir -p $folder
+    for compiler in release clang; do
+        "build/$compiler/$simulator" run --machine $machine --scene $scene "${simulated[@]}" \
+            -o $folder/$compiler.exr --json $folder/$compiler.json >$folder/$compiler.txt
+    done
+    tests/tools/compare_reports.py $folder/release.json $folder/clang.json
+    "$compare_images" $folder/release.exr $folder/clang.exr
+    if [[ -x tests/kernels/compare_compilers.sh ]]; then
+        tests/kernels/compare_compilers.sh build/release build/clang
+    fi
+}
+
+fuzz() {
+    mkdir -p build/fuzz
+    # Findings are left beside the corpus; the log only matters when there are some.
+    if ! build/clang/tests/scene/fuzz_obj -max_total_time=$fuzz_seconds -artifact_prefix=build/fuzz/ build/fuzz \
+        >build/fuzz.log 2>&1; then
+        tail -n 40 build/fuzz.log >&2
+        return 1
+    fi
+    tail -n 1 build/fuzz.log
+}
+
+# All workers on one tree, built while they render.
+render_shared_trees() {
+    local samples
+    for samples in 1 2; do
+        TSAN_OPTIONS=halt_on_error=1 "build/tsan/$razor" render $scene --size 96x96 --spp $samples --threads 5 --share chip \
+            --quiet -o build/tsan/picture.exr
+        "build/release/$razor" render $scene --size 96x96 --spp $samples --isa avx2 --quiet -o build/release/picture.exr
+        "$compare_images" build/release/picture.exr build/tsan/picture.exr
+    done
+}
+
+# A picture does not depend on the width.
+render_width() {
+    local folder=build/width-$1
+    configure release "$folder" -DRAZOR_WIDTH="$1" -DRAZOR_TARGETS=avx2 -DRAZOR_TESTS=OFF
+    compile "$folder" razor
+    "$folder/$razor" render $scene --size 256x192 --quiet -o "$folder/picture.exr"
+    "build/release/$razor" render $scene --size 256x192 --isa avx2 --quiet -o build/release/picture.exr
+    "$compare_images" build/release/picture.exr "$folder/picture.exr"
+}
