@@ -1,8 +1,8 @@
 // A packet of rays against a block. Watertight (Woop, Benthin & Wald, JCGT 2013): every vertex is sheared
 // into the ray's frame, edge functions of shared edges are the same bits with opposite signs, and an edge
-// function that rounds to zero is decided by its exact error terms. A sub-edge with hanging vertices uses, on
-// both sides of the edge, the edge function of its flat ancestor. Lanes are rays; vertices are broadcast.
-// Which cells to try is found with one lane a cell.
+// function that rounds to zero is decided by its exact error terms. What hanging vertices leave open beside
+// their flat ancestor edge is filled. Lanes are rays; vertices are broadcast. Which cells to try is found
+// with one lane a cell.
 #pragma once
 
 #include "razor/kernels/kd_build.h"
@@ -95,17 +95,24 @@ inline Projected project(const Group& g, const View& v, const vfloat& x, const v
     return project(g, v, x, y, z);
 }
 
-/// An edge of a triangle: its two ends, and the power of two by which the sub-edge is shorter.
 struct Edge {
     Projected p, q;
-    sfloat scale = 1.0F;
 };
+
+/// Number of vertex i along side s.
+inline sint side_vertex(const View& v, int s, sint i) {
+    sint width = v.quads_u + 1;
+    if (s == 1)
+        return i * width + v.quads_u;
+    if (s == 2)
+        return width * v.quads_v + i;
+    return s == 3 ? i * width : i;
+}
 
 /// The flat ancestor of the sub-edge from vertex number `i` to i+1 along side s.
 inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
     sint hang = v.hang[s];
     sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
-    sint width = v.quads_u + 1;
     Projected ends[2];
     if (branch((sint(1) << hang) > quads)) {
         pointer<float> end = v.words + v.ancestors_at + 6 * s;
@@ -120,24 +127,12 @@ inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
         sint first = (i >> hang) << hang;
         for (int k = 0; k < 2; ++k) {
             sint along = k == 0 ? first : first + (sint(1) << hang);
-            sint vertex = along; // side 0
-            if (s == 1)
-                vertex = along * width + v.quads_u;
-            if (s == 2)
-                vertex = width * v.quads_v + along;
-            if (s == 3)
-                vertex = along * width;
+            sint vertex = side_vertex(v, s, along);
             ends[k] = project_vertex(g, v, vertex);
         }
     }
-    return {ends[0], ends[1], as_float((sint(127) - hang) << 23)};
+    return {ends[0], ends[1]};
 }
-
-/// The functions of a quad's sides, in the order of the block's sides: bottom 00-10, right 10-11, top 01-11,
-/// left 00-01.
-struct SideFunctions {
-    vfloat side[4];
-};
 
 /// On which sides of the block the quad lies.
 struct Border {
@@ -149,17 +144,32 @@ inline Border border_of(const View& v, sint i, sint j) {
     return {{j == 0, i == last_u, j == last_v, i == 0}};
 }
 
-/// Replaces the functions of edges with hanging vertices by their flat ancestors', at the sub-edge's scale.
-[[gnu::noinline]] inline SideFunctions hang_edges(const Group& g, const View& v, sint i, sint j,
-                                                  SideFunctions f) {
-    Border border = border_of(v, i, j);
-    for (int s = 0; s < 4; ++s) {
-        if (branch(border.side[s] & (v.hang[s] > 0))) {
-            Edge e = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
-            f.side[s] = edge_function(e.p, e.q) * vfloat(e.scale);
-        }
+/// Of the lanes that meet triangle `number` at distance t, those for which it is the first hit so far.
+[[gnu::always_inline]] inline vmask nearer(const Group& g, const View& v, const vmask& inside,
+                                           const vfloat& t, const vint& number, const Hits& hits) {
+    vmask first = t < hits.t;
+    vmask equal = t == hits.t;
+    if (branch(any(inside & equal))) {
+        vint patch = vint(v.patch);
+        vmask lower = patch < hits.patch;
+        vmask same = patch == hits.patch;
+        same = same & (number < hits.triangle);
+        lower = lower | same;
+        lower = lower | (hits.patch < vint(0));
+        first = first | (equal & lower);
     }
-    return f;
+    vmask hit = inside & first;
+    return hit & (t >= g.t_min);
+}
+
+[[gnu::always_inline]] inline void record(const View& v, const vmask& hit, const vfloat& t, const vfloat& u,
+                                          const vfloat& w, const vint& number, Hits& hits) {
+    hits.t = select(hit, t, hits.t);
+    hits.u = select(hit, u, hits.u);
+    hits.v = select(hit, w, hits.v);
+    hits.patch = select(hit, vint(v.patch), hits.patch);
+    hits.triangle = select(hit, number, hits.triangle);
+    hits.block = select(hit, vint(v.line), hits.block);
 }
 
 /// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
@@ -172,27 +182,12 @@ inline Border border_of(const View& v, sint i, sint j) {
     vfloat inverse = reciprocal(det);
     vfloat depth = fma(U, a.z, fma(V, b.z, W * c.z));
     vfloat t = depth * g.scale_z * inverse;
-    vmask first = t < hits.t;
-    vmask equal = t == hits.t;
-    vint patch = vint(v.patch);
     vint number = vint(triangle);
-    if (branch(any(inside & equal))) {
-        vmask lower = patch < hits.patch;
-        vmask same = patch == hits.patch;
-        same = same & (number < hits.triangle);
-        lower = lower | same;
-        lower = lower | (hits.patch < vint(0));
-        first = first | (equal & lower);
-    }
-    vmask hit = inside & first;
-    hit = hit & (t >= g.t_min);
+    vmask hit = nearer(g, v, inside, t, number, hits);
     if (branch(any(hit))) {
-        hits.t = select(hit, t, hits.t);
-        hits.u = select(hit, V * inverse, hits.u);
-        hits.v = select(hit, W * inverse, hits.v);
-        hits.patch = select(hit, patch, hits.patch);
-        hits.triangle = select(hit, number, hits.triangle);
-        hits.block = select(hit, vint(v.line), hits.block);
+        vfloat u = V * inverse;
+        vfloat w = W * inverse;
+        record(v, hit, t, u, w, number, hits);
     }
 }
 
@@ -205,48 +200,95 @@ inline vmask agree(const vfloat& u, const vfloat& v, const vfloat& w) {
     return same | (most <= zero);
 }
 
-/// An edge's function, exact in sign and at the sub-edge's scale.
-template <Features F> inline vfloat exact_function(const Edge& e) {
-    vfloat value = exact_edge_function(e.p, e.q);
-    if constexpr (F.hanging)
-        value = value * vfloat(e.scale);
-    return value;
-}
-
 /// For lanes that may hit the quad's triangles, (00, 10, 11) and (00, 11, 01): decides exactly, and takes the
 /// hits. Seldom called and out of line, so that the inner loop keeps nothing for it: it projects the vertices
 /// again.
-template <Features F>
-[[gnu::noinline]] void hit_quad(const Group& g, const View& v, sint i, sint j, sint low, sint high,
-                                vmask inside0, vmask inside1, Hits& hits) {
+[[gnu::noinline]] inline void hit_quad(const Group& g, const View& v, sint i, sint j, sint low, sint high,
+                                       vmask inside0, vmask inside1, Hits& hits) {
     Projected p00 = project_vertex(g, v, low);
     Projected p10 = project_vertex(g, v, low + 1);
     Projected p11 = project_vertex(g, v, high + 1);
     Projected p01 = project_vertex(g, v, high);
-    Edge edges[4] = {{p00, p10}, {p10, p11}, {p01, p11}, {p00, p01}};
-    if constexpr (F.hanging) {
-        Border border = border_of(v, i, j);
-        for (int s = 0; s < 4; ++s) {
-            if (branch(border.side[s] & (v.hang[s] > 0)))
-                edges[s] = ancestor_edge(g, v, s, s % 2 == 0 ? i : j);
-        }
-    }
     sint quad = ((j << block_log2) + i) * 2;
     sint triangle = (v.number << 7) + quad;
     vfloat minus = exact_edge_function(p11, p00);
     if (branch(any(inside0))) {
-        vfloat right = exact_function<F>(edges[1]);
-        vfloat bottom = exact_function<F>(edges[0]);
+        vfloat right = exact_edge_function(p10, p11);
+        vfloat bottom = exact_edge_function(p00, p10);
         inside0 = inside0 & agree(right, minus, bottom);
         accept(g, v, inside0, right, minus, bottom, p00, p10, p11, triangle, hits);
     }
     sbool second = v.triangles > 1;
     if (branch(second & any(inside1))) {
         // All three the other way round: only their ratios count.
-        vfloat top = exact_function<F>(edges[2]);
-        vfloat left = exact_function<F>(edges[3]);
+        vfloat top = exact_edge_function(p01, p11);
+        vfloat left = exact_edge_function(p00, p01);
         inside1 = inside1 & agree(top, left, minus);
         accept(g, v, inside1, top, left, minus, p00, p11, p01, triangle + 1, hits);
+    }
+}
+
+/// Numbers on one line in a ray's plane: where two edges run, in the direction in which one of them is
+/// longest.
+struct Along {
+    vfloat begin, end;
+};
+inline Along along(const vmask& steep, const Edge& e) {
+    return {select(steep, e.p.y, e.p.x), select(steep, e.q.y, e.q.x)};
+}
+
+/// A side with hanging vertices leaves its flat ancestor edge, which is all that the neighbour knows of, by
+/// their rounding. What lies between the ancestor and sub-edge i, over the sub-edge's length, belongs to this
+/// block, and is hit as a point of the sub-edge. Lengths of sub-edges add up to the ancestor's exactly, so
+/// that modulo 2 every point is covered as if the gap were filled with triangles: the surface is closed in
+/// every projection, folded or not.
+inline void fill_gap(const Group& g, const View& v, int s, sint i, sint triangle, Hits& hits) {
+    Edge whole = ancestor_edge(g, v, s, i);
+    Edge part;
+    part.p = project_vertex(g, v, side_vertex(v, s, i));
+    part.q = project_vertex(g, v, side_vertex(v, s, i + 1));
+    vfloat dx = abs(whole.q.x - whole.p.x);
+    vfloat dy = abs(whole.q.y - whole.p.y);
+    vmask steep = dy > dx;
+    Along of_part = along(steep, part);
+    vfloat zero(0.0F);
+    vmask inside = g.alive & (min(of_part.begin, of_part.end) <= zero);
+    inside = inside & (max(of_part.begin, of_part.end) >= zero);
+    if (branch(none(inside)))
+        return;
+    Along of_whole = along(steep, whole);
+    vfloat part_side = exact_edge_function(part.p, part.q);
+    vfloat whole_side = exact_edge_function(whole.p, whole.q);
+    vmask backward = of_part.end < of_part.begin;
+    part_side = select(backward, -part_side, part_side);
+    backward = of_whole.end < of_whole.begin;
+    whole_side = select(backward, -whole_side, whole_side);
+    vmask point = of_whole.begin == of_whole.end;
+    whole_side = select(point, vfloat(1.0F), whole_side);
+    inside = inside & (min(part_side, whole_side) <= zero);
+    inside = inside & (max(part_side, whole_side) >= zero);
+    if (branch(none(inside)))
+        return;
+    vfloat length = of_part.begin - of_part.end;
+    point = length == zero;
+    vfloat place = of_part.begin / select(point, vfloat(1.0F), length);
+    vfloat depth = fma(place, part.q.z - part.p.z, part.p.z);
+    vfloat t = depth * g.scale_z;
+    vfloat rest = vfloat(1.0F) - place;
+    vint number = vint(triangle + (s >> 1));
+    vmask hit = nearer(g, v, inside, t, number, hits);
+    vfloat u = s == 3 ? zero : s == 1 ? rest : place;
+    vfloat w = s == 0 ? zero : s == 2 ? rest : place;
+    record(v, hit, t, u, w, number, hits);
+}
+
+[[gnu::noinline]] inline void fill_gaps(const Group& g, const View& v, sint i, sint j, Hits& hits) {
+    Border border = border_of(v, i, j);
+    sint quad = ((j << block_log2) + i) * 2;
+    sint triangle = (v.number << 7) + quad;
+    for (int s = 0; s < 4; ++s) {
+        if (branch(border.side[s] & (v.hang[s] > 0)))
+            fill_gap(g, v, s, s % 2 == 0 ? i : j, triangle, hits);
     }
 }
 
@@ -311,19 +353,14 @@ inline void intersect_cell(const Context& c, const Group& g, const View& v, sint
             vfloat top = edge_function(p01, p11);
             vfloat minus = edge_function(p11, p00); // of the diagonal, reversed
             vfloat next_left = right;
-            if constexpr (F.hanging) {
-                if (branch(v.hangs != 0)) {
-                    SideFunctions f = hang_edges(g, v, i, j, {{bottom, right, top, left}});
-                    bottom = f.side[0];
-                    right = f.side[1];
-                    top = f.side[2];
-                    left = f.side[3];
-                }
-            }
             vmask inside0 = agree(bottom, right, minus) & g.alive;
             vmask inside1 = agree(minus, top, left) & g.alive;
             if (branch(any(inside0 | inside1)))
-                hit_quad<F>(g, v, i, j, low, high, inside0, inside1, hits);
+                hit_quad(g, v, i, j, low, high, inside0, inside1, hits);
+            if constexpr (F.hanging) {
+                if (branch(v.hangs != 0))
+                    fill_gaps(g, v, i, j, hits);
+            }
             p00 = p10;
             p01 = p11;
             left = next_left;

@@ -1,7 +1,9 @@
 #include "tests/kernels/oracle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace razor::test {
 
@@ -67,6 +69,38 @@ template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const 
         return;
     Sheared s(ray);
     Arithmetic with{fused_};
+    auto take = [&](const Triangle& t, float distance, float u, float v) {
+        if (distance >= ray.t_min && distance <= ray.t_max)
+            visit(Hit{t.patch, t.number, distance, u, v});
+    };
+    // Edge k of a triangle, from p to q, lies on a longer flat edge but for its vertices' rounding: whatever
+    // is between the two, over the length of the shorter, is a hit on the shorter.
+    auto meet_gap = [&](const Triangle& t, std::size_t k, Projected p, Projected q, Projected from,
+                        Projected to) {
+        bool second = t.number % 2 != 0;
+        if (second && k != 0) { // the grid's sides run along its rows and columns
+            std::swap(p, q);
+            std::swap(from, to);
+        }
+        bool steep = std::abs(to.y - from.y) > std::abs(to.x - from.x);
+        float begin = steep ? p.y : p.x;
+        float end = steep ? q.y : q.x;
+        float whole = steep ? to.y - from.y : to.x - from.x;
+        if (std::min(begin, end) > 0 || std::max(begin, end) < 0)
+            return;
+        float a = edge_function(p, q) * (end < begin ? -1.0F : 1.0F);
+        float b = edge_function(from, to) * (whole < 0 ? -1.0F : 1.0F);
+        if (whole == 0)
+            b = 1;
+        if (!(std::min(a, b) <= 0 && std::max(a, b) >= 0))
+            return;
+        float place = begin == end ? 0 : begin / (begin - end);
+        float distance = with.multiply_add(place, q.z - p.z, p.z) * s.scale_z;
+        if (!second)
+            take(t, distance, k == 0 ? place : 1.0F - place, k == 0 ? 0 : place);
+        else
+            take(t, distance, k == 2 ? 0 : place, k == 2 ? place : 1.0F - place);
+    };
     for (const Triangle& t : triangles_) {
         const Point& m = origins_[static_cast<std::size_t>(t.mesh)];
         float ox = s.origin[0] - m[s.kx];
@@ -81,26 +115,19 @@ template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const 
         };
         Projected p[3] = {project(t.vertex[0]), project(t.vertex[1]), project(t.vertex[2])};
         float f[3]; // opposite vertex 0, 1, 2
-        for (std::size_t k = 0; k < 3; ++k) {
-            const FlatEdge& e = t.edge[(k + 1) % 3];
-            if (e.hang == 0) {
-                f[k] = edge_function(p[(k + 1) % 3], p[(k + 2) % 3]);
-            } else {
-                f[k] = edge_function(project(e.from), project(e.to)) * std::ldexp(1.0F, -e.hang);
-            }
-        }
+        for (std::size_t k = 0; k < 3; ++k)
+            f[k] = edge_function(p[(k + 1) % 3], p[(k + 2) % 3]);
         bool positive = f[0] >= 0 && f[1] >= 0 && f[2] >= 0;
         bool negative = f[0] <= 0 && f[1] <= 0 && f[2] <= 0;
-        if (!positive && !negative)
-            continue;
         float determinant = f[0] + f[1] + f[2];
-        if (determinant == 0)
-            continue;
-        float inverse = 1.0F / determinant;
-        float depth = with.multiply_add(f[0], p[0].z, with.multiply_add(f[1], p[1].z, f[2] * p[2].z));
-        float distance = depth * s.scale_z * inverse;
-        if (distance >= ray.t_min && distance <= ray.t_max)
-            visit(Hit{t.patch, t.number, distance, f[1] * inverse, f[2] * inverse});
+        if ((positive || negative) && determinant != 0) {
+            float inverse = 1.0F / determinant;
+            float depth = with.multiply_add(f[0], p[0].z, with.multiply_add(f[1], p[1].z, f[2] * p[2].z));
+            take(t, depth * s.scale_z * inverse, f[1] * inverse, f[2] * inverse);
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            if (t.edge[k].hang > 0)
+                meet_gap(t, k, p[k], p[(k + 1) % 3], project(t.edge[k].from), project(t.edge[k].to));
     }
 }
 
