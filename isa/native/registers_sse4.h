@@ -142,8 +142,16 @@ template <class T, class R> inline void scatter_lanes(T* p, I index, R a, M m) {
         p[to[i]] = from[i];
     }
 }
-inline void store(float* p, F a, M m) { scatter_lanes(p, iota(), a, m); }
-inline void store(std::int32_t* p, I a, M m) { scatter_lanes(p, iota(), a, m); }
+template <class T, class R> inline void store_lanes(T* p, R a, M m) {
+    alignas(16) T from[lanes];
+    store(from, a);
+    for (std::uint32_t b = bits(m); b != 0; b &= b - 1) {
+        int i = __builtin_ctz(b);
+        p[i] = from[i];
+    }
+}
+inline void store(float* p, F a, M m) { store_lanes(p, a, m); }
+inline void store(std::int32_t* p, I a, M m) { store_lanes(p, a, m); }
 inline void scatter(float* p, I index, F a, M m) { scatter_lanes(p, index, a, m); }
 inline void scatter(std::int32_t* p, I index, I a, M m) { scatter_lanes(p, index, a, m); }
 

@@ -73,7 +73,7 @@ struct vmask {
 };
 
 namespace detail {
-template <class R, class Op, class... A> inline R map(Op op, const A&... a) {
+template <class R, class Op, class... A> [[gnu::always_inline]] inline R map(Op op, const A&... a) {
     R r;
     each_register([&](int i) { r.r[i] = op(a.r[i]...); });
     return r;
