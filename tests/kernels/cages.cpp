@@ -42,7 +42,9 @@ Mesh shape(const char* name) {
     std::vector<double> values;
     for (const ShapeParameter& p : kind->parameters)
         values.push_back(p.preset);
-    return kind->make(values);
+    Mesh mesh = kind->make(values);
+    mesh.name = name;
+    return mesh;
 }
 
 } // namespace

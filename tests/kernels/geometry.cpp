@@ -112,7 +112,8 @@ TEST_P(Geometry, FlatPatchesAreTheirCorners) {
         const float* points = frame_->header().points.get();
         constexpr std::array<int, 4> corner_of_vertex{0, 1, 3, 2};
         for (int v = 0; v < 4; ++v) {
-            const float* p = points + std::ptrdiff_t{3} * patch(i).corner[corner_of_vertex[static_cast<std::size_t>(v)]];
+            const float* p =
+                points + std::ptrdiff_t{3} * patch(i).corner[corner_of_vertex[static_cast<std::size_t>(v)]];
             EXPECT_EQ(blocks_of(*frame_, i).front().vertex(v), (Point{p[0], p[1], p[2]}));
         }
     }
@@ -139,12 +140,12 @@ TEST_P(Geometry, BlocksOfAPatchShareTheirBorders) {
     }
 }
 
-/// Real vertices of a curve lie where its owner says and are the same bits in every patch; hanging ones lie on the
-/// flat edge between two real ones; and that very edge, bit for bit, decides about every sub-edge.
+/// Real vertices of a curve lie where its owner says and are the same bits in every patch; hanging ones lie
+/// on the flat edge between two real ones; and that very edge, bit for bit, decides about every sub-edge.
 TEST_P(Geometry, NeighboursAgreeBitForBit) {
-    std::map<std::pair<int, int>, Point> real;    // (curve, number)
+    std::map<std::pair<int, int>, Point> real;     // (curve, number)
     std::map<std::pair<int, int>, Point> anywhere; // (curve, numerator over 2^20)
-    std::map<std::pair<int, int>, Point> corners; // (kind, number)
+    std::map<std::pair<int, int>, Point> corners;  // (kind, number)
     int hanging = 0;
     for (int pass = 0; pass < 2; ++pass) {
         for (int i = 0; i < patch_count(); ++i) {
@@ -187,7 +188,8 @@ TEST_P(Geometry, NeighboursAgreeBitForBit) {
                         const Point& a = real.at({curve, along >> hang});
                         const Point& z = real.at({curve, (along >> hang) + 1});
                         double f = std::ldexp(along % (1 << hang), -hang);
-                        glm::dvec3 on = glm::mix(glm::dvec3(a[0], a[1], a[2]), glm::dvec3(z[0], z[1], z[2]), f);
+                        glm::dvec3 on =
+                            glm::mix(glm::dvec3(a[0], a[1], a[2]), glm::dvec3(z[0], z[1], z[2]), f);
                         ASSERT_LE(distance(here, on), 3 * 6e-8 * surface_->largest());
                     }
                     if (k == g.length(s))
@@ -239,7 +241,8 @@ TEST_P(Geometry, BoxesHoldTheirContents) {
                 ASSERT_EQ(block.box_high[k], high);
                 const float* bounds = h.bounds.get() + i + static_cast<std::ptrdiff_t>(k) * h.bounds_stride;
                 ASSERT_LE(bounds[0], low + mesh.origin[k]) << "patch " << i;
-                ASSERT_GE(bounds[std::ptrdiff_t{3} * h.bounds_stride], high + mesh.origin[k]) << "patch " << i;
+                ASSERT_GE(bounds[std::ptrdiff_t{3} * h.bounds_stride], high + mesh.origin[k])
+                    << "patch " << i;
             }
         }
 }

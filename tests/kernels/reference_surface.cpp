@@ -33,8 +33,8 @@ glm::dvec3 ReferenceSurface::point(int i) const {
 int ReferenceSurface::edge_exponent(int curve) const {
     const CurveRecord& c = topology_.curves[at(curve)];
     double length = glm::length(point(c.end1) - point(c.end0)) / edge_length_;
-    return static_cast<int>(std::clamp(std::floor(std::log2(length) + 0.5), 0.0,
-                                       static_cast<double>(topology_.max_exponent)));
+    return static_cast<int>(
+        std::clamp(std::floor(std::log2(length) + 0.5), 0.0, static_cast<double>(topology_.max_exponent)));
 }
 
 int ReferenceSurface::exponent(int curve) const {
@@ -58,8 +58,9 @@ std::array<int, 2> ReferenceSurface::grid(const PatchRecord& patch) const {
 }
 
 const std::vector<float>& ReferenceSurface::page(const PageKey& k, int control_count) const {
-    Key key{k.face_class, static_cast<int>(k.kind), k.local,      k.reversed,
-            k.exponent_u, k.strip_u,                k.exponent_v, k.strip_v};
+    Key key{
+        k.face_class, static_cast<int>(k.kind), k.local, k.reversed, k.exponent_u, k.strip_u, k.exponent_v,
+        k.strip_v};
     std::vector<float>& weights = pages_[key];
     if (weights.empty()) {
         weights.resize(page_floats(k, control_count));

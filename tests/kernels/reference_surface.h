@@ -1,5 +1,5 @@
-// Where the vertices of a single-mesh frame belong, in double precision: pages made afresh (razor/surface) times
-// the frame's control points, grid exponents worked out again from the cage.
+// Where the vertices of a single-mesh frame belong, in double precision: pages made afresh (razor/surface)
+// times the frame's control points, grid exponents worked out again from the cage.
 #pragma once
 
 #include "razor/frame/frame.h"
@@ -20,7 +20,8 @@ public:
     /// `mesh` is the frame's only one. Keeps a reference to the frame.
     ReferenceSurface(Frame& frame, const Mesh& mesh);
 
-    /// Segments on a curve: 2^exponent. Straight curves of bilinear meshes still have the exponent of their length.
+    /// Segments on a curve: 2^exponent. Straight curves of bilinear meshes still have the exponent of their
+    /// length.
     int exponent(int curve) const;
     /// Of a patch's grid.
     std::array<int, 2> grid(const PatchRecord& patch) const;

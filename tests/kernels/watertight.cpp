@@ -54,9 +54,10 @@ TEST_P(Watertight, NoRayEscapes) {
                     continue;
                 ++escapes;
                 if (escapes <= 3)
-                    ADD_FAILURE() << target->name << ": " << (oracle.closest(rays[i]).patch >= 0
-                                                                  ? "the tree misses what brute force hits"
-                                                                  : "there is a hole");
+                    ADD_FAILURE() << target->name << ": "
+                                  << (oracle.closest(rays[i]).patch >= 0
+                                          ? "the tree misses what brute force hits"
+                                          : "there is a hole");
             }
         }
         EXPECT_EQ(escapes, 0U) << target->name;

@@ -1,0 +1,40 @@
+#!/bin/sh
+# What the simulated kernels do, and in which order, must not depend on the compiler: builds op_stream with g++ and
+# with clang++ and compares every event. Usage: compare_compilers.sh [BUILD_FOLDER]. Exit code 1: they differ, and the
+# first events that do are printed.
+set -eu
+source=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1:-${TMPDIR:-/tmp}/razor-compare-compilers}
+gxx=${GXX:-g++}
+clangxx=${CLANGXX:-$(command -v clang++ || command -v clang++-14)}
+launcher=$(command -v ccache || true)
+
+for compiler in "$gxx" "$clangxx"; do
+    name=$(basename "$compiler")
+    cmake -S "$source" -B "$build/$name" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DRAZOR_BENCHMARKS=OFF \
+        -DRAZOR_TARGETS=simulated ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"} ${CMAKE_ARGUMENTS:-} >/dev/null
+    cmake --build "$build/$name" --target op_stream -- ${NINJA_ARGUMENTS:-} >"$build/$name/log" || {
+        cat "$build/$name/log"
+        exit 1
+    }
+    "$build/$name/tests/kernels/op_stream" >"$build/$name/hashes"
+done
+
+one=$build/$(basename "$gxx")
+other=$build/$(basename "$clangxx")
+if cmp -s "$one/hashes" "$other/hashes"; then
+    echo "$(basename "$gxx") and $(basename "$clangxx"): the same events, $(wc -l <"$one/hashes") hashes"
+    exit 0
+fi
+# The scene and the last event at which both agreed.
+line=$(cmp "$one/hashes" "$other/hashes" | sed 's/.*line //')
+scene=$(head -n "$line" "$one/hashes" | grep -v ' ' | tail -n 1)
+before=$(head -n $((line - 1)) "$one/hashes" | tail -n 1 | sed 's/ .*//')
+case $before in *[!0-9]* | '') before=0 ;; esac
+for folder in "$one" "$other"; do
+    "$folder/tests/kernels/op_stream" "$before" $((before + 4097)) |
+        awk -v scene="$scene" '!/ /{ in_scene = ($0 == scene) } in_scene' >"$folder/events"
+done
+echo "$(basename "$gxx") and $(basename "$clangxx") differ in $scene, after event $before:"
+diff -U 30 "$one/events" "$other/events" | head -n "${LINES_SHOWN:-80}"
+exit 1

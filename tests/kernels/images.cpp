@@ -1,0 +1,107 @@
+// Pictures are the same bits, in every plane, whatever target, number of workers and sharing of trees made
+// them.
+#include "tests/kernels/cages.h"
+#include "tests/kernels/targets.h"
+
+#include "razor/native/render.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+
+namespace razor::test {
+namespace {
+
+std::vector<float> film_of(Frame& frame) {
+    const FrameHeader& h = frame.header();
+    const float* film = h.film.get();
+    return {film, film + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes};
+}
+
+std::vector<float> rendered(const Scene& scene, const KernelTable& kernels, int workers, int share) {
+    Frame frame(scene, {.workers = workers, .share = share});
+    run_workers(frame, kernels);
+    return film_of(frame);
+}
+
+std::string differences(const std::vector<float>& a, const std::vector<float>& b) {
+    if (a.size() != b.size())
+        return "sizes differ";
+    std::size_t n = 0;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (std::memcmp(&a[i], &b[i], sizeof(float)) != 0 && n++ == 0)
+            first = i;
+    return n == 0 ? "" : std::to_string(n) + " values differ, the first at " + std::to_string(first);
+}
+
+std::vector<Scene> scenes() {
+    std::vector<Scene> all{small_default_scene(48, 35)};
+    all.back().settings.samples = 2;
+    for (const char* name : {"urchin_stretched", "torus_bilinear"})
+        all.push_back(named_scene(name)->scene);
+    all.push_back(scene_of(bilinear(cube_cage()), 10)); // flat patches only
+    return all;
+}
+
+TEST(Images, AreTheSameOnEveryTarget) {
+    for (const Scene& scene : scenes()) {
+        std::vector<const KernelTable*> targets = targets_with(true);
+        ASSERT_FALSE(targets.empty());
+        std::vector<float> expected = rendered(scene, *targets.front(), 1, 0);
+        int hits = 0;
+        auto pixels = static_cast<std::size_t>(scene.settings.width * scene.settings.height);
+        for (std::size_t i = 0; i < pixels; ++i) {
+            EXPECT_TRUE(std::isfinite(expected[i]));
+            hits += std::isfinite(expected[film_depth * pixels + i]) ? 1 : 0;
+        }
+        EXPECT_GT(hits, static_cast<int>(pixels) / 20) << scene.name;
+        for (const KernelTable* target : targets)
+            EXPECT_EQ(differences(rendered(scene, *target, 1, 0), expected), "")
+                << scene.name << ", " << target->name;
+    }
+}
+
+TEST(Images, DoNotDependOnWorkersAndSharing) {
+    for (const Scene& scene : scenes())
+        for (const KernelTable* target : native_targets()) {
+            std::vector<float> expected = rendered(scene, *target, 1, 0);
+            for (int workers : {2, 5})
+                for (int share : {1, 2, 0})
+                    EXPECT_EQ(differences(rendered(scene, *target, workers, share), expected), "")
+                        << scene.name << ", " << target->name << ", " << workers << " workers, share "
+                        << share;
+        }
+}
+
+TEST(Images, DoNotDependOnTheFrameBefore) {
+    for (const Scene& scene : scenes()) {
+        const KernelTable& target = *native_targets().back();
+        Frame frame(scene, {.workers = 2, .share = 1});
+        run_workers(frame, target);
+        std::vector<float> first = film_of(frame);
+        frame.reset();
+        run_workers(frame, target);
+        EXPECT_EQ(differences(film_of(frame), first), "") << scene.name;
+    }
+}
+
+/// sse4 rounds twice where the others fuse: a picture of the same scene, not of the same bits.
+TEST(Images, OfUnfusedTargetsAreNear) {
+    for (const KernelTable* target : targets_with(false)) {
+        Scene scene = scenes().front();
+        std::vector<float> expected = rendered(scene, *targets_with(true).front(), 1, 0);
+        std::vector<float> got = rendered(scene, *target, 1, 0);
+        auto pixels = static_cast<std::size_t>(scene.settings.width * scene.settings.height);
+        std::size_t far = 0;
+        for (std::size_t i = 0; i < pixels; ++i)
+            if (std::abs(got[i] - expected[i]) > 1e-3F)
+                ++far;
+        EXPECT_LT(far, pixels / 50) << target->name;
+    }
+}
+
+} // namespace
+} // namespace razor::test
