@@ -41,6 +41,9 @@ struct operation_list {
     const operation* begin;
     int count;
     int width;
+    /// One masked load from p, or store to it, of the lanes whose m is not 0.
+    void (*masked_load)(const float* p, const std::int32_t* m, float* to);
+    void (*masked_store)(float* p, const std::int32_t* m, const float* from);
 };
 
 } // namespace isa_test

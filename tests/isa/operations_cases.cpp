@@ -270,9 +270,22 @@ const operation cases[] = {
            scatter(pointer<std::int32_t>(copy_of_lanes(memory, r)), select(x.m, x.j& vint(width - 1), x.j), x.i, x.m)),
 };
 
+void masked_load(const float* p, const std::int32_t* m, float* to) {
+    vmask mask = load_vector(in(m)) != vint(0);
+    vfloat x = load_vector(in(p), mask);
+    store_vector(pointer<float>(to), x);
+}
+void masked_store(float* p, const std::int32_t* m, const float* from) {
+    vmask mask = load_vector(in(m)) != vint(0);
+    vfloat x = load_vector(in(from));
+    store_vector(pointer<float>(p), x, mask);
+}
+
 } // namespace
 
 operation_list operations();
-operation_list operations() { return {cases, static_cast<int>(sizeof(cases) / sizeof(cases[0])), width}; }
+operation_list operations() {
+    return {cases, static_cast<int>(sizeof(cases) / sizeof(cases[0])), width, &masked_load, &masked_store};
+}
 
 } // namespace isa_test::ISA_TARGET

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/mman.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -233,6 +235,56 @@ TEST_P(Operations, EqualPlain) {
             run_masks(o, tested.width, check);
         if (HasFatalFailure())
             return;
+    }
+}
+
+/// One page that may be touched between two that may not.
+class guarded_page {
+public:
+    guarded_page() : all_(mmap(nullptr, 3 * size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)) {
+        mprotect(begin(), size, PROT_READ | PROT_WRITE);
+    }
+    guarded_page(const guarded_page&) = delete;
+    guarded_page& operator=(const guarded_page&) = delete;
+    ~guarded_page() { munmap(all_, 3 * size); }
+    float* begin() const { return reinterpret_cast<float*>(static_cast<char*>(all_) + size); }
+    float* end() const { return begin() + size / sizeof(float); }
+
+private:
+    static constexpr std::size_t size = 4096;
+    void* all_;
+};
+
+TEST_P(Operations, MaskedOffLanesAreNotTouched) {
+    const target& t = GetParam();
+    if (!isa::cpu_runs(t.name))
+        GTEST_SKIP() << "this processor does not run " << t.name;
+    operation_list o = t.operations();
+    guarded_page page;
+    for (float* p = page.begin(); p != page.end(); ++p)
+        *p = 1.0F + static_cast<float>(p - page.begin());
+    operands x{};
+    for (int lane = 0; lane < o.width; ++lane)
+        x.b[lane] = -1.0F - static_cast<float>(lane);
+    for (int round = 0; round < 4096; ++round) {
+        std::uint64_t bits =
+            round < 256 ? static_cast<std::uint64_t>(round) : random_bits() | std::uint64_t{random_bits()} << 32U;
+        if (o.width < 64)
+            bits &= (1ULL << o.width) - 1;
+        if (bits == 0)
+            continue;
+        set_mask(x.m, bits);
+        int lowest = std::countr_zero(bits), highest = 63 - std::countl_zero(bits);
+        for (float* p : {page.begin() - lowest, page.end() - highest - 1}) { // the other lanes lie beyond the page
+            o.masked_load(p, x.m, x.a);
+            for (int lane = 0; lane < o.width; ++lane)
+                ASSERT_EQ(x.a[lane], x.m[lane] != 0 ? p[lane] : 0.0F) << t.name;
+            o.masked_store(p, x.m, x.b);
+            for (int lane = lowest; lane <= highest; ++lane) {
+                ASSERT_EQ(p[lane], x.m[lane] != 0 ? x.b[lane] : 1.0F + static_cast<float>(p + lane - page.begin()));
+                p[lane] = 1.0F + static_cast<float>(p + lane - page.begin());
+            }
+        }
     }
 }
 
