@@ -21,7 +21,8 @@ struct stamp {
     cycle first = 0;          // its first sub-vector
     cycle last = 0;           // its last sub-vector
     std::uint32_t value = 0;  // names the value, for finite registers; 0: a constant
-    std::uint32_t ticket = 0; // 0: the cycles are known; else an open request of the machine
+    std::uint16_t ticket = 0; // 0: the cycles are known; else an open request of the core that the value lives on
+    std::uint8_t cause = 0;   // the machine's own note of what the value waited for
 };
 
 /// Where in the source an access or branch stands. Both compilers give the line a call begins on.

@@ -1,0 +1,79 @@
+// A machine, as its file describes it: plain values, in the units that the parameter table (parameters.cpp)
+// states.
+#pragma once
+
+#include "isa/simulated/port.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace sim {
+
+using integer = std::int64_t;
+
+struct ChipConfig {
+    integer clock_ps = 0, cores = 0, threads = 0;
+    std::string placement;
+};
+
+struct CoreConfig {
+    integer issue_width = 0, lanes = 0, window = 0;
+    integer vector_registers = 0, spill_slots = 0;
+    double scalar_overhead = 0;
+    std::string predictor;
+    integer predictor_history = 0, mispredict_cycles = 0;
+    std::string switch_policy;
+    integer switch_cycles = 0;
+    std::string gather;
+    integer spin_period = 0;
+};
+
+/// Per operation class, indexed by isa::timing::operation; the last entry is the branch.
+inline constexpr int class_count = isa::timing::operation_kinds + 1;
+inline constexpr int branch_class = isa::timing::operation_kinds;
+extern const std::array<const char*, class_count> class_names;
+
+struct L1Config {
+    integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, ports = 0, port_bytes = 0;
+    integer mshrs = 0, write_back_buffer = 0;
+};
+
+struct L2Config {
+    integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, banks = 0, bank_bytes = 0;
+    integer mshrs = 0, write_back_buffer = 0;
+};
+
+struct CoherenceConfig {
+    integer visibility_cycles = 0, atomic_cycles = 0;
+};
+
+struct MemoryConfig {
+    integer clock_ps = 0, channels = 0, banks = 0, row_bytes = 0, bus_bytes = 0, burst_length = 0;
+    integer tRCD = 0, tCL = 0, tCWL = 0, tRP = 0, tRAS = 0, tCCD = 0, tRTP = 0, tWR = 0, tREFI = 0, tRFC = 0;
+    integer controller_cycles = 0;
+    std::string mapping;
+};
+
+struct SimulationConfig {
+    integer quantum = 0, stack_kib = 0;
+};
+
+struct Config {
+    ChipConfig chip;
+    CoreConfig core;
+    std::array<integer, class_count> latency{}, interval{};
+    L1Config l1;
+    L2Config l2;
+    CoherenceConfig coherence;
+    MemoryConfig memory;
+    SimulationConfig sim;
+
+    /// Every parameter at its default.
+    Config();
+};
+
+/// Throws ConfigError where parameters do not fit each other; `what` names the machine in the message.
+void check_consistency(const Config& config, const std::string& what);
+
+} // namespace sim

@@ -1,0 +1,297 @@
+#include "sim/config/parameters.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace sim {
+
+const std::array<const char*, class_count> class_names = {
+    "integer",        "integer_multiply", "add",    "multiply", "fused",     "divide",  "square_root",
+    "compare",        "convert",          "select", "mask",     "broadcast", "shuffle", "reduce",
+    "mask_to_scalar", "address",          "branch"};
+
+namespace {
+
+constexpr integer kibi = 1024;
+
+struct Table {
+    std::vector<Parameter> rows;
+
+    template <class Section>
+    void add(std::string key, Section Config::*section, integer Section::*member, std::string unit,
+             integer preset, integer least, integer most, std::string meaning, bool power_of_two = false) {
+        auto at = [section, member](Config& c) -> integer& { return (c.*section).*member; };
+        rows.push_back({std::move(key), std::move(unit), std::move(meaning),
+                        IntegerKind{at, least, most, power_of_two, preset}});
+    }
+    template <class Section>
+    void add(std::string key, Section Config::*section, double Section::*member, std::string unit,
+             double preset, double least, double most, std::string meaning) {
+        auto at = [section, member](Config& c) -> double& { return (c.*section).*member; };
+        rows.push_back(
+            {std::move(key), std::move(unit), std::move(meaning), RealKind{at, least, most, preset}});
+    }
+    template <class Section>
+    void add(std::string key, Section Config::*section, std::string Section::*member,
+             std::vector<std::string> choices, std::string meaning) {
+        auto at = [section, member](Config& c) -> std::string& { return (c.*section).*member; };
+        rows.push_back({std::move(key), "", std::move(meaning), ChoiceKind{at, std::move(choices)}});
+    }
+    void add_class(const char* table, std::array<integer, class_count> Config::*values, int index,
+                   integer preset, integer least, std::string meaning) {
+        auto i = static_cast<std::size_t>(index);
+        auto at = [values, i](Config& c) -> integer& { return (c.*values)[i]; };
+        rows.push_back({fmt::format("{}.{}", table, class_names[i]), "cycles", std::move(meaning),
+                        IntegerKind{at, least, 1000, false, preset}});
+    }
+};
+
+void add_chip(Table& t) {
+    using C = ChipConfig;
+    auto s = &Config::chip;
+    t.add("chip.clock_ps", s, &C::clock_ps, "ps", 1000, 50, 1000000, "period of the cores' clock");
+    t.add("chip.cores", s, &C::cores, "", 4, 1, 1024, "cores, each with its own L1");
+    t.add("chip.threads", s, &C::threads, "", 2, 1, 64, "hardware threads of a core");
+    t.add("chip.placement", s, &C::placement, {"spread", "pack"},
+          "spread: consecutive workers on different cores; pack: a core's threads filled first");
+}
+
+void add_core(Table& t) {
+    using C = CoreConfig;
+    auto s = &Config::core;
+    t.add("core.issue_width", s, &C::issue_width, "instructions/cycle", 1, 1, 16,
+          "issue slots, shared by the threads");
+    t.add("core.lanes", s, &C::lanes, "lanes", 4, 1, 64,
+          "32-bit lanes of the SIMD unit; wider operations are split", true);
+    t.add("core.window", s, &C::window, "operations", 1, 1, 1024,
+          "operation i issues no earlier than operation i - window; 1: source order");
+    t.add("core.vector_registers", s, &C::vector_registers, "values", 0, 0, 512,
+          "vector values of full logical width that a thread's registers hold; 0: unlimited");
+    t.add("core.spill_slots", s, &C::spill_slots, "values", 32, 1, 4096,
+          "stack slots that spilled values share");
+    t.add("core.scalar_overhead", s, &C::scalar_overhead, "instructions", 0, 0, 100,
+          "integer and call overhead charged with every load and branch");
+    t.add("core.predictor", s, &C::predictor, {"counters", "none", "perfect"},
+          "counters: two bits a branch site and history; none: branches wait; perfect: never wrong");
+    t.add("core.predictor_history", s, &C::predictor_history, "branches", 0, 0, 10,
+          "outcomes of the thread's last branches that choose the counter");
+    t.add("core.mispredict_cycles", s, &C::mispredict_cycles, "cycles", 5, 0, 1000,
+          "from a branch's outcome to the first operation after a wrong prediction");
+    t.add("core.switch_policy", s, &C::switch_policy, {"fine", "stall"},
+          "fine: any thread takes any free slot; stall: a thread keeps the core until it stalls");
+    t.add("core.switch_cycles", s, &C::switch_cycles, "cycles", 0, 0, 1000,
+          "lost when another thread takes the core (policy stall)");
+    t.add("core.gather", s, &C::gather, {"line", "lane"},
+          "line: one L1 access a distinct line of a sub-vector; lane: a load instruction for every active "
+          "lane");
+    t.add("core.spin_period", s, &C::spin_period, "cycles", 16, 1, 100000,
+          "between two looks of a waiting thread");
+}
+
+void add_classes(Table& t) {
+    constexpr std::array<integer, class_count> latency = {1, 3, 4, 4, 4, 16, 16, 2, 4,
+                                                          1, 1, 2, 2, 6, 2,  1,  1};
+    constexpr std::array<integer, class_count> interval = {1, 1, 1, 1, 1, 8, 8, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    for (int i = 0; i < class_count; ++i)
+        t.add_class("latency", &Config::latency, i, latency[static_cast<std::size_t>(i)], 0,
+                    "from a sub-vector's issue to its result");
+    for (int i = 0; i < class_count; ++i)
+        t.add_class("interval", &Config::interval, i, interval[static_cast<std::size_t>(i)], 1,
+                    "a sub-vector keeps the core's one unit of this class; 1: pipelined, as many as issue");
+}
+
+void add_caches(Table& t) {
+    using A = L1Config;
+    auto a = &Config::l1;
+    t.add("l1.size_bytes", a, &A::size_bytes, "bytes", 8 * kibi, 16, 64 * kibi * kibi,
+          "data cache of a core");
+    t.add("l1.ways", a, &A::ways, "", 4, 1, 64, "associativity; replacement is least recently used");
+    t.add("l1.line_bytes", a, &A::line_bytes, "bytes", 64, 16, 1024, "line; write-back, write-allocate",
+          true);
+    t.add("l1.latency", a, &A::latency, "cycles", 2, 1, 1000,
+          "from access to data, and to the request of a miss");
+    t.add("l1.ports", a, &A::ports, "accesses/cycle", 1, 1, 16, "accesses that start in a cycle");
+    t.add("l1.port_bytes", a, &A::port_bytes, "bytes", 16, 4, 1024,
+          "bytes of one access; wider ones take more", true);
+    t.add("l1.mshrs", a, &A::mshrs, "lines", 8, 1, 1024, "misses outstanding");
+    t.add("l1.write_back_buffer", a, &A::write_back_buffer, "lines", 4, 1, 1024,
+          "evicted dirty lines on their way");
+    using B = L2Config;
+    auto b = &Config::l2;
+    t.add("l2.size_bytes", b, &B::size_bytes, "bytes", 128 * kibi, 64, kibi * kibi * kibi,
+          "cache shared by the cores");
+    t.add("l2.ways", b, &B::ways, "", 8, 1, 64, "associativity; replacement is least recently used");
+    t.add("l2.line_bytes", b, &B::line_bytes, "bytes", 64, 16, 1024, "line; write-back, write-allocate",
+          true);
+    t.add("l2.latency", b, &B::latency, "cycles", 12, 1, 1000,
+          "from access to data, and to the request of a miss");
+    t.add("l2.banks", b, &B::banks, "", 4, 1, 256, "banks, interleaved by line", true);
+    t.add("l2.bank_bytes", b, &B::bank_bytes, "bytes/cycle", 32, 1, 1024,
+          "what a bank moves; a line keeps it busy", true);
+    t.add("l2.mshrs", b, &B::mshrs, "lines", 16, 1, 4096, "misses outstanding");
+    t.add("l2.write_back_buffer", b, &B::write_back_buffer, "lines", 8, 1, 4096,
+          "evicted dirty lines on their way");
+    using C = CoherenceConfig;
+    auto c = &Config::coherence;
+    t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,
+          "from a write of a shared word until others see it");
+    t.add("coherence.atomic_cycles", c, &C::atomic_cycles, "cycles", 2, 0, 1000,
+          "that a read-modify-write adds to its access of the L2, where it acts");
+}
+
+void add_memory(Table& t) {
+    using C = MemoryConfig;
+    auto s = &Config::memory;
+    t.add("memory.clock_ps", s, &C::clock_ps, "ps", 1250, 50, 1000000,
+          "period of the command clock; data moves at twice its rate");
+    t.add("memory.channels", s, &C::channels, "", 1, 1, 64, "independent channels", true);
+    t.add("memory.banks", s, &C::banks, "", 8, 1, 1024, "banks of a channel", true);
+    t.add("memory.row_bytes", s, &C::row_bytes, "bytes", 2048, 64, 64 * kibi, "row of a bank; stays open",
+          true);
+    t.add("memory.bus_bytes", s, &C::bus_bytes, "bytes", 8, 1, 256, "width of a channel's data bus", true);
+    t.add("memory.burst_length", s, &C::burst_length, "transfers", 8, 2, 64, "transfers of one access", true);
+    t.add("memory.tRCD", s, &C::tRCD, "clocks", 11, 1, 1000, "activate to column command");
+    t.add("memory.tCL", s, &C::tCL, "clocks", 11, 1, 1000, "read command to first data");
+    t.add("memory.tCWL", s, &C::tCWL, "clocks", 8, 1, 1000, "write command to first data");
+    t.add("memory.tRP", s, &C::tRP, "clocks", 11, 1, 1000, "precharge to activate");
+    t.add("memory.tRAS", s, &C::tRAS, "clocks", 28, 1, 1000, "activate to precharge, at least");
+    t.add("memory.tCCD", s, &C::tCCD, "clocks", 4, 1, 1000, "column command to column command of one bank");
+    t.add("memory.tRTP", s, &C::tRTP, "clocks", 6, 1, 1000, "read command to precharge");
+    t.add("memory.tWR", s, &C::tWR, "clocks", 12, 1, 1000, "last written data to precharge");
+    t.add("memory.tREFI", s, &C::tREFI, "clocks", 0, 0, 1000000,
+          "between refreshes, which close all rows; 0: none");
+    t.add("memory.tRFC", s, &C::tRFC, "clocks", 0, 0, 100000, "a refresh blocks a channel");
+    t.add("memory.controller_cycles", s, &C::controller_cycles, "core cycles", 10, 0, 100000,
+          "from the L2 to the memory's command bus and back, together");
+    t.add("memory.mapping", s, &C::mapping,
+          {"row:bank:column:channel", "row:column:bank:channel", "row:bank:channel:column",
+           "row:channel:bank:column", "row:column:channel:bank", "row:channel:column:bank"},
+          "fields of an address, most significant first, above the bytes of a burst");
+}
+
+void add_simulation(Table& t) {
+    using C = SimulationConfig;
+    auto s = &Config::sim;
+    t.add("sim.quantum", s, &C::quantum, "cycles", 1, 0, 100000,
+          "threads run ahead of each other inside windows this long; 0 or 1: ordered operation by operation");
+    t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 256, 32, 65536, "host stack of a simulated thread");
+}
+
+std::vector<Parameter> make_table() {
+    Table t;
+    add_chip(t);
+    add_core(t);
+    add_classes(t);
+    add_caches(t);
+    add_memory(t);
+    add_simulation(t);
+    return std::move(t.rows);
+}
+
+const std::vector<Parameter>& table() {
+    static const std::vector<Parameter> rows = make_table();
+    return rows;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j)
+        row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+std::string with_unit(const Parameter& p) {
+    return p.unit.empty() ? "" : " " + p.unit;
+}
+
+} // namespace
+
+Config::Config() {
+    for (const Parameter& p : table()) {
+        if (const auto* k = std::get_if<IntegerKind>(&p.kind))
+            k->at(*this) = k->preset;
+        else if (const auto* r = std::get_if<RealKind>(&p.kind))
+            r->at(*this) = r->preset;
+        else if (const auto* c = std::get_if<ChoiceKind>(&p.kind))
+            c->at(*this) = c->choices.front();
+    }
+}
+
+std::span<const Parameter> parameters() {
+    return table();
+}
+
+const Parameter* find_parameter(std::string_view key) {
+    for (const Parameter& p : table())
+        if (p.key == key)
+            return &p;
+    return nullptr;
+}
+
+const std::string& nearest_key(std::string_view key) {
+    auto by_distance = [&](const Parameter& a, const Parameter& b) {
+        return edit_distance(a.key, key) < edit_distance(b.key, key);
+    };
+    return std::min_element(table().begin(), table().end(), by_distance)->key;
+}
+
+std::string print_value(const Parameter& p, const Config& config) {
+    auto& c = const_cast<Config&>(config); // accessors serve reading and writing; nothing is written here
+    if (const auto* k = std::get_if<IntegerKind>(&p.kind))
+        return fmt::format("{}", k->at(c));
+    if (const auto* r = std::get_if<RealKind>(&p.kind))
+        return fmt::format("{:#}", r->at(c));
+    return fmt::format("\"{}\"", std::get<ChoiceKind>(p.kind).at(c));
+}
+
+std::string set_integer(const Parameter& p, Config& config, integer value) {
+    if (std::holds_alternative<RealKind>(p.kind))
+        return set_real(p, config, static_cast<double>(value));
+    const auto* k = std::get_if<IntegerKind>(&p.kind);
+    if (k == nullptr)
+        return fmt::format("{} is one of \"{}\", not a number", p.key,
+                           fmt::join(std::get<ChoiceKind>(p.kind).choices, "\", \""));
+    if (value < k->least || value > k->most)
+        return fmt::format("{} is {}; it must be from {} to {}{}", p.key, value, k->least, k->most,
+                           with_unit(p));
+    if (k->power_of_two && (value & (value - 1)) != 0)
+        return fmt::format("{} is {}; it must be a power of two", p.key, value);
+    k->at(config) = value;
+    return "";
+}
+
+std::string set_real(const Parameter& p, Config& config, double value) {
+    const auto* r = std::get_if<RealKind>(&p.kind);
+    if (r == nullptr)
+        return fmt::format("{} is {}; it must be a {}", p.key, value,
+                           std::holds_alternative<IntegerKind>(p.kind) ? "whole number" : "word");
+    if (!(value >= r->least && value <= r->most))
+        return fmt::format("{} is {}; it must be from {} to {}{}", p.key, value, r->least, r->most,
+                           with_unit(p));
+    r->at(config) = value;
+    return "";
+}
+
+std::string set_text(const Parameter& p, Config& config, const std::string& value) {
+    const auto* c = std::get_if<ChoiceKind>(&p.kind);
+    if (c == nullptr)
+        return fmt::format("{} is \"{}\"; it must be a number", p.key, value);
+    if (std::find(c->choices.begin(), c->choices.end(), value) == c->choices.end())
+        return fmt::format("{} is \"{}\"; it must be one of \"{}\"", p.key, value,
+                           fmt::join(c->choices, "\", \""));
+    c->at(config) = value;
+    return "";
+}
+
+} // namespace sim

@@ -1,0 +1,52 @@
+// The one table of everything a machine file may set.
+#pragma once
+
+#include "sim/config/config.h"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace sim {
+
+struct IntegerKind {
+    std::function<integer&(Config&)> at;
+    integer least, most;
+    bool power_of_two = false;
+    integer preset = 0;
+};
+struct RealKind {
+    std::function<double&(Config&)> at;
+    double least, most;
+    double preset = 0;
+};
+struct ChoiceKind {
+    std::function<std::string&(Config&)> at;
+    std::vector<std::string> choices; // the first is the default
+};
+
+struct Parameter {
+    std::string key;  // section.name
+    std::string unit; // empty: a number without one
+    std::string meaning;
+    std::variant<IntegerKind, RealKind, ChoiceKind> kind;
+};
+
+/// In the order in which they are printed.
+std::span<const Parameter> parameters();
+/// nullptr where no parameter has this key.
+const Parameter* find_parameter(std::string_view key);
+/// The known key most like this one.
+const std::string& nearest_key(std::string_view key);
+
+/// The value of a parameter, as TOML writes it.
+std::string print_value(const Parameter& p, const Config& config);
+/// Sets a parameter from a number or a word; returns what is wrong, or an empty string.
+std::string set_integer(const Parameter& p, Config& config, integer value);
+std::string set_real(const Parameter& p, Config& config, double value);
+std::string set_text(const Parameter& p, Config& config, const std::string& value);
+
+} // namespace sim

@@ -1,0 +1,57 @@
+// Where a thread's cycles go: the terms of the CPI stack.
+#pragma once
+
+#include "isa/simulated/port.h"
+
+#include <array>
+#include <cstdint>
+
+namespace sim {
+
+using cycle = isa::timing::cycle;
+
+enum class Cause : std::uint8_t {
+    busy,
+    slots,
+    compute,
+    l1,
+    l2,
+    memory,
+    mshrs,
+    branch,
+    spill,
+    synchronise,
+    idle,
+};
+inline constexpr std::size_t cause_count = 11;
+struct CauseName {
+    const char *name, *meaning;
+};
+inline constexpr std::array<CauseName, cause_count> causes = {{
+    {"busy", "issuing its own instructions"},
+    {"slots", "ready, but issue slots or units were taken, or the core was another thread's"},
+    {"compute", "waiting for the result of an operation"},
+    {"l1", "waiting for data that the L1 held"},
+    {"l2", "waiting for data that came from the L2"},
+    {"memory", "waiting for data that came from memory"},
+    {"mshrs", "a miss waited for a free MSHR or write-back entry"},
+    {"branch", "restarting after a mispredicted (or waiting on an unpredicted) branch"},
+    {"spill", "waiting for a spilled register"},
+    {"synchronise", "waiting for a shared word"},
+    {"idle", "without work: no worker, or the worker had returned"},
+}};
+
+/// A cycle and why it is not earlier. Ordered by cycle.
+class Due {
+public:
+    Due() = default;
+    Due(cycle at, Cause why) : packed_(at << 4U | static_cast<std::uint64_t>(why)) {}
+    cycle at() const { return packed_ >> 4U; }
+    Cause why() const { return static_cast<Cause>(packed_ & 15U); }
+    void later(Due other) { packed_ = other.packed_ > packed_ ? other.packed_ : packed_; }
+
+private:
+    std::uint64_t packed_ = 0;
+};
+
+} // namespace sim

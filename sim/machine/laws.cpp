@@ -1,0 +1,118 @@
+// What must hold of every run's numbers.
+#include "sim/machine/report.h"
+
+#include <fmt/core.h>
+
+#include <numeric>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+void equal(const char* law, std::uint64_t left, std::uint64_t right) {
+    if (left != right)
+        throw std::logic_error(
+            fmt::format("a law of the machine is broken: {}: {} is not {}", law, left, right));
+}
+void at_most(const char* law, std::uint64_t left, std::uint64_t right) {
+    if (left > right)
+        throw std::logic_error(
+            fmt::format("a law of the machine is broken: {}: {} exceeds {}", law, left, right));
+}
+
+std::uint64_t total(const Report& r, std::uint64_t Traffic::*count) {
+    return std::accumulate(r.traffic.begin(), r.traffic.end(), std::uint64_t{0},
+                           [count](std::uint64_t sum, const Traffic& t) { return sum + t.*count; });
+}
+
+void check_traffic(const Report& r, const CacheCounters& l1) {
+    equal("L1 reads = sum over structures and phases", l1.reads, total(r, &Traffic::l1_reads));
+    equal("L1 writes = sum over structures and phases", l1.writes, total(r, &Traffic::l1_writes));
+    equal("L1 misses = sum over structures and phases", l1.misses, total(r, &Traffic::l1_misses));
+    equal("L1 write-backs = sum over structures and phases", l1.write_backs,
+          total(r, &Traffic::l1_write_backs));
+    equal("L2 reads = sum over structures and phases", r.l2.reads, total(r, &Traffic::l2_reads));
+    equal("L2 writes = sum over structures and phases", r.l2.writes, total(r, &Traffic::l2_writes));
+    equal("L2 misses = sum over structures and phases", r.l2.misses, total(r, &Traffic::l2_misses));
+    equal("L2 write-backs = sum over structures and phases", r.l2.write_backs,
+          total(r, &Traffic::l2_write_backs));
+    equal("memory reads = sum over structures and phases", r.memory.reads, total(r, &Traffic::memory_reads));
+    equal("memory writes = sum over structures and phases", r.memory.writes,
+          total(r, &Traffic::memory_writes));
+}
+
+void check_levels(const Report& r, const CacheCounters& l1) {
+    equal("L1 hits + misses = accesses", l1.hits + l1.misses, l1.reads + l1.writes);
+    equal("L2 hits + misses = accesses", r.l2.hits + r.l2.misses, r.l2.reads + r.l2.writes);
+    equal("L1 fills = misses + prefetches", l1.fills, l1.misses + l1.prefetches);
+    equal("L2 reads = L1 fills + read-modify-writes", r.l2.reads, l1.fills + r.core.modifications);
+    equal("L2 writes = L1 write-backs + releases", r.l2.writes, l1.write_backs + r.core.releases);
+    equal("memory reads = L2 fills", r.memory.reads, r.l2.fills);
+    equal("memory writes = L2 write-backs", r.memory.writes, r.l2.write_backs);
+    at_most("L2 fills <= misses", r.l2.fills, r.l2.misses);
+    at_most("L1 hits in flight <= hits", l1.hits_in_flight, l1.hits);
+    equal("row hits + empties + conflicts = bursts",
+          r.memory.row_hits + r.memory.row_empties + r.memory.row_conflicts, r.memory.bursts);
+    auto burst = static_cast<std::uint64_t>(r.config.memory.bus_bytes * r.config.memory.burst_length);
+    equal("burst bytes = line bytes read and written", r.memory.bursts * burst,
+          (r.memory.reads + r.memory.writes) * static_cast<std::uint64_t>(r.config.l2.line_bytes));
+}
+
+void check_use(const Report& r, const CacheCounters& l1) {
+    auto cores = static_cast<std::uint64_t>(r.config.chip.cores);
+    at_most("issue slots used <= slots", r.core.instructions,
+            r.cycles * cores * static_cast<std::uint64_t>(r.config.core.issue_width));
+    at_most("L1 port cycles used <= port cycles", l1.busy_cycles,
+            r.drained * cores * static_cast<std::uint64_t>(r.config.l1.ports));
+    at_most("memory bus clocks used <= clocks", r.memory.busy_clocks,
+            r.memory.last_clock * static_cast<std::uint64_t>(r.config.memory.channels));
+}
+
+void check_stacks(const Report& r) {
+    for (const ThreadReport& t : r.threads) {
+        std::uint64_t sum = 0;
+        for (const Stack& s : t.stacks)
+            sum = std::accumulate(s.begin(), s.end(), sum);
+        equal("a thread's CPI stack = cycles", sum, r.cycles);
+    }
+    auto sum_of = [](const std::vector<std::uint64_t>& v) {
+        return std::accumulate(v.begin(), v.end(), std::uint64_t{0});
+    };
+    equal("operations = sum over phases", r.core.vops, sum_of(r.phase_vops));
+    equal("instructions = sum over phases", r.core.instructions, sum_of(r.phase_instructions));
+}
+
+} // namespace
+
+void check_laws(const Report& r) {
+    CacheCounters l1 = r.l1_total();
+    check_levels(r, l1);
+    check_traffic(r, l1);
+    check_use(r, l1);
+    check_stacks(r);
+    if (r.config.sim.quantum <= 1)
+        equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
+}
+
+double Report::seconds() const {
+    return static_cast<double>(cycles) * static_cast<double>(config.chip.clock_ps) * 1e-12;
+}
+
+CacheCounters Report::l1_total() const {
+    CacheCounters sum;
+    for (const CacheCounters& c : l1)
+        for (const auto& row : cache_counters)
+            sum.*row.count += c.*row.count;
+    return sum;
+}
+
+Stack Report::stack() const {
+    Stack sum{};
+    for (const ThreadReport& t : threads)
+        for (const Stack& s : t.stacks)
+            for (std::size_t i = 0; i < sum.size(); ++i)
+                sum[i] += s[i];
+    return sum;
+}
+
+} // namespace sim

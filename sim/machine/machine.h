@@ -1,0 +1,40 @@
+// The machine as programs use it: a configuration, and runs of workers on it.
+#pragma once
+
+#include "isa/address_space.h"
+#include "sim/config/config.h"
+#include "sim/machine/report.h"
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// Every worker waits for a word that nobody will write. what() is one line.
+class Deadlock : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+class Machine {
+public:
+    explicit Machine(Config config) : config_(std::move(config)) {}
+
+    /// Hardware threads: the most workers that can run.
+    int threads() const { return static_cast<int>(config_.chip.cores * config_.chip.threads); }
+    const Config& config() const { return config_; }
+    /// Calls worker(0 .. workers-1), each on a hardware thread of its own (chip.placement), with caches cold
+    /// and time at 0. The workers' code is compiled for the target `simulated` and touches memory of `space`
+    /// alone. Rethrows what a worker or a page service throws, after all other workers have been unwound;
+    /// throws Deadlock. Checks all laws. One run at a time in a process. `phases` are the names of what
+    /// set_phase is given; a worker begins in phase 0.
+    Report run(const isa::address_space& space, int workers, const std::vector<std::string>& phases,
+               const std::function<void(int worker)>& worker) const;
+
+private:
+    Config config_;
+};
+
+} // namespace sim

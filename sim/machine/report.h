@@ -1,0 +1,85 @@
+// What a run says: plain numbers, printed by text.cpp and json.cpp, checked by laws.cpp.
+#pragma once
+
+#include "sim/config/config.h"
+#include "sim/core/stalls.h"
+#include "sim/memory/counters.h"
+#include "sim/memory/traffic.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+struct CoreCounters {
+    std::uint64_t vops = 0, vector_vops = 0, instructions = 0, lane_slots = 0, loads = 0, stores = 0,
+                  gathers = 0;
+    std::uint64_t scatters = 0, branches = 0, mispredicts = 0, atomics = 0, releases = 0, modifications = 0,
+                  waits = 0, spins = 0, causality_waits = 0;
+    std::uint64_t spill_stores = 0, spill_loads = 0, overhead_instructions = 0, switches = 0, pages = 0;
+};
+inline constexpr std::array<CounterRow<CoreCounters>, 21> core_counters = {{
+    {"vops", &CoreCounters::vops,
+     "vocabulary operations: one operation of full logical width, or one scalar one"},
+    {"vector_vops", &CoreCounters::vector_vops, "of these, vector operations"},
+    {"instructions", &CoreCounters::instructions, "machine instructions: issue slots used"},
+    {"lane_slots", &CoreCounters::lane_slots, "SIMD lanes of the vector instructions among them"},
+    {"loads", &CoreCounters::loads, "load operations, gathers included"},
+    {"stores", &CoreCounters::stores, "store operations, scatters included"},
+    {"gathers", &CoreCounters::gathers, "gather operations"},
+    {"scatters", &CoreCounters::scatters, "scatter operations"},
+    {"branches", &CoreCounters::branches, "branches"},
+    {"mispredicts", &CoreCounters::mispredicts, "branches that were predicted wrongly"},
+    {"atomics", &CoreCounters::atomics, "operations on shared words"},
+    {"releases", &CoreCounters::releases, "of these, releases: written to the L2"},
+    {"modifications", &CoreCounters::modifications, "of these, read-modify-writes: act at the L2"},
+    {"waits", &CoreCounters::waits, "waits for a shared word that parked the thread"},
+    {"spins", &CoreCounters::spins, "looks at a shared word while waiting, two instructions each"},
+    {"causality_waits", &CoreCounters::causality_waits,
+     "reads of a shared word before the time at which it was written: 0 where threads are ordered exactly"},
+    {"spill_stores", &CoreCounters::spill_stores, "vector values stored because registers ran out"},
+    {"spill_loads", &CoreCounters::spill_loads, "vector values that came back"},
+    {"overhead_instructions", &CoreCounters::overhead_instructions,
+     "instructions charged by core.scalar_overhead"},
+    {"switches", &CoreCounters::switches, "changes of the thread that holds a core (policy stall)"},
+    {"pages", &CoreCounters::pages, "requests for topology pages"},
+}};
+
+using Stack = std::array<std::uint64_t, cause_count>;
+
+struct ThreadReport {
+    int worker = -1; // -1: none ran here
+    int core = 0, thread = 0;
+    cycle finish = 0;
+    std::vector<Stack> stacks; // by phase; sums to the run's cycles
+};
+
+struct Report {
+    Config config;
+    std::vector<std::string> phases, structures;
+    int workers = 0;
+    cycle cycles = 0;  // until the last worker has returned and its last result is there
+    cycle drained = 0; // until memory is quiet as well
+    CoreCounters core;
+    std::vector<std::uint64_t> phase_vops, phase_instructions;
+    std::vector<ThreadReport> threads;
+    std::vector<CacheCounters> l1; // by core
+    CacheCounters l2;
+    MemoryCounters memory;
+    std::vector<Traffic> traffic; // [structure * phases + phase]
+    double host_seconds = 0;      // apart from everything else in JSON
+
+    double seconds() const;
+    CacheCounters l1_total() const;
+    Stack stack() const; // of all threads and phases
+};
+
+/// Throws std::logic_error naming the first law that the numbers break.
+void check_laws(const Report& report);
+/// For people.
+std::string print_text(const Report& report);
+/// Two runs of one machine on one input give the same text, apart from the object "host", which comes last.
+std::string print_json(const Report& report, bool with_host = true);
+
+} // namespace sim

@@ -1,0 +1,120 @@
+// The report for people.
+#include "sim/machine/derived.h"
+
+#include <fmt/core.h>
+
+namespace sim {
+namespace {
+
+void overview(std::string& out, const Report& r) {
+    auto cores = static_cast<std::uint64_t>(r.config.chip.cores);
+    out += fmt::format("cycles                {:>14}   ({:.6f} s at {:.3f} GHz)\n", r.cycles, r.seconds(),
+                       1e3 / static_cast<double>(r.config.chip.clock_ps));
+    out += fmt::format("workers               {:>14}   on {} cores x {} threads\n", r.workers,
+                       r.config.chip.cores, r.config.chip.threads);
+    out += fmt::format("order of threads      {:>14}   {}\n", r.config.sim.quantum,
+                       r.config.sim.quantum <= 1 ? "(exact, operation by operation)" : "(cycles a window)");
+    out += fmt::format("instructions          {:>14}   {:.3f} a cycle and core\n", r.core.instructions,
+                       ratio(r.core.instructions, r.cycles * cores));
+    for (const auto& row : core_counters)
+        if (r.core.*row.count != 0 && row.count != &CoreCounters::instructions)
+            out += fmt::format("{:<21} {:>14}\n", row.name, r.core.*row.count);
+    out += "coherence of plain data is not modelled; shared words are kept coherent by invalidation\n";
+}
+
+void stack(std::string& out, const Report& r) {
+    Stack s = r.stack();
+    std::uint64_t all = r.cycles * r.threads.size();
+    out += "\nwhere the threads' cycles went\n";
+    for (std::size_t i = 0; i < cause_count; ++i)
+        if (s[i] != 0)
+            out += fmt::format("  {:<12} {:>14} {:>6.1f} %   {}\n", causes[i].name, s[i],
+                               100 * ratio(s[i], all), causes[i].meaning);
+}
+
+void level(std::string& out, const char* name, const CacheCounters& c) {
+    out += fmt::format("  {:<8} {:>12} {:>12} {:>12} {:>12} {:>8.2f} % {:>12}\n", name, c.reads, c.writes,
+                       c.hits, c.misses, 100 * ratio(c.misses, c.reads + c.writes), c.write_backs);
+}
+
+void levels(std::string& out, const Report& r) {
+    out += "\ncaches          reads       writes         hits       misses  miss rate  write-backs\n";
+    level(out, "L1", r.l1_total());
+    level(out, "L2", r.l2);
+    out += fmt::format("memory: {} lines read, {} written; rows: {} hits, {} empty, {} conflicts\n",
+                       r.memory.reads, r.memory.writes, r.memory.row_hits, r.memory.row_empties,
+                       r.memory.row_conflicts);
+    out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";
+    for (const Bandwidth& b : bandwidths(r))
+        out += fmt::format("  {:<12} {:>13.3f} {:>11.3f} {:>11.1f} %\n", b.level, b.achieved, b.peak,
+                           100 * b.utilisation());
+}
+
+template <class Name>
+void table(std::string& out, const Report& r, const char* what, std::size_t rows, Name name_and_sum) {
+    out += fmt::format("\n{:<16}", what);
+    for (const char* head :
+         {"L1 accesses", "L1 misses", "L1 w-backs", "L2 misses", "DRAM reads", "DRAM writes", "KiB DRAM"})
+        out += fmt::format(" {:>12}", head);
+    out += '\n';
+    for (std::size_t i = 0; i < rows; ++i) {
+        auto [name, t] = name_and_sum(i);
+        if (t.l1_reads + t.l1_writes + t.l2_reads + t.l2_writes == 0)
+            continue;
+        std::uint64_t lines = t.memory_reads + t.memory_writes;
+        out +=
+            fmt::format("{:<16} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name,
+                        t.l1_reads + t.l1_writes, t.l1_misses, t.l1_write_backs, t.l2_misses, t.memory_reads,
+                        t.memory_writes, lines * static_cast<std::uint64_t>(r.config.l2.line_bytes) / 1024);
+    }
+}
+
+void add(Traffic& sum, const Traffic& t) {
+    for (const auto& column : traffic_columns)
+        sum.*column.count += t.*column.count;
+}
+
+void traffic(std::string& out, const Report& r) {
+    std::size_t phases = r.phases.size();
+    table(out, r, "by structure", r.structures.size(), [&](std::size_t s) {
+        Traffic sum;
+        for (std::size_t p = 0; p < phases; ++p)
+            add(sum, r.traffic[s * phases + p]);
+        return std::pair(r.structures[s], sum);
+    });
+    table(out, r, "by phase", phases, [&](std::size_t p) {
+        Traffic sum;
+        for (std::size_t s = 0; s < r.structures.size(); ++s)
+            add(sum, r.traffic[s * phases + p]);
+        return std::pair(r.phases[p], sum);
+    });
+    out += "\nKiB to and from memory, structure by phase\n                ";
+    for (const std::string& name : r.phases)
+        out += fmt::format(" {:>10}", name);
+    out += '\n';
+    for (std::size_t s = 0; s < r.structures.size(); ++s) {
+        out += fmt::format("{:<16}", r.structures[s]);
+        for (std::size_t p = 0; p < phases; ++p) {
+            const Traffic& t = r.traffic[s * phases + p];
+            out += fmt::format(" {:>10}", (t.memory_reads + t.memory_writes) *
+                                              static_cast<std::uint64_t>(r.config.l2.line_bytes) / 1024);
+        }
+        out += '\n';
+    }
+}
+
+} // namespace
+
+std::string print_text(const Report& r) {
+    std::string out;
+    overview(out, r);
+    stack(out, r);
+    levels(out, r);
+    traffic(out, r);
+    out += fmt::format("\nhost: {:.3f} s, {:.2f} million operations/s, {:.2f} million instructions/s\n",
+                       r.host_seconds, static_cast<double>(r.core.vops) / r.host_seconds * 1e-6,
+                       static_cast<double>(r.core.instructions) / r.host_seconds * 1e-6);
+    return out;
+}
+
+} // namespace sim

@@ -1,0 +1,35 @@
+// Traffic by data structure and phase: one cell of plain counters for each pair.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace sim {
+
+/// A level counts what arrives at it. Bytes are counts times the line of the level above (L2) or of the L2
+/// (memory).
+struct Traffic {
+    std::uint64_t l1_reads = 0, l1_writes = 0, l1_misses = 0, l1_write_backs = 0;
+    std::uint64_t l2_reads = 0, l2_writes = 0, l2_misses = 0, l2_write_backs = 0;
+    std::uint64_t memory_reads = 0, memory_writes = 0;
+};
+
+struct TrafficColumn {
+    const char* name;
+    std::uint64_t Traffic::*count;
+    const char* meaning;
+};
+inline constexpr std::array<TrafficColumn, 10> traffic_columns = {{
+    {"l1_reads", &Traffic::l1_reads, "L1 read accesses: one a machine load and line it touches"},
+    {"l1_writes", &Traffic::l1_writes, "L1 write accesses"},
+    {"l1_misses", &Traffic::l1_misses, "L1 accesses that began a fill from the L2"},
+    {"l1_write_backs", &Traffic::l1_write_backs, "dirty lines that left an L1"},
+    {"l2_reads", &Traffic::l2_reads, "lines asked of the L2, read-modify-writes included"},
+    {"l2_writes", &Traffic::l2_writes, "lines written back to the L2, and released words"},
+    {"l2_misses", &Traffic::l2_misses, "L2 reads and writes that did not find their line"},
+    {"l2_write_backs", &Traffic::l2_write_backs, "dirty lines that left the L2"},
+    {"memory_reads", &Traffic::memory_reads, "lines read from memory"},
+    {"memory_writes", &Traffic::memory_writes, "lines written to memory"},
+}};
+
+} // namespace sim
