@@ -21,7 +21,7 @@ struct worst {
 };
 
 template <class Exact> worst scan(array_function f, std::uint64_t stride, float domain, float y, Exact exact) {
-    constexpr int block = 4096;
+    constexpr std::size_t block = 4096;
     std::vector<float> x(block), ys(block, y), r(block);
     worst w;
     for (std::uint64_t next = 0; next < 1ULL << 32;) {
@@ -29,8 +29,8 @@ template <class Exact> worst scan(array_function f, std::uint64_t stride, float 
             v = std::bit_cast<float>(static_cast<std::uint32_t>(next));
             next += stride;
         }
-        f(x.data(), ys.data(), r.data(), block);
-        for (int i = 0; i < block; ++i) {
+        f(x.data(), ys.data(), r.data(), int{block});
+        for (std::size_t i = 0; i < block; ++i) {
             double e = std::abs(x[i]) <= domain ? exact(static_cast<double>(x[i])) : std::nan("");
             double error = ulp_error(r[i], e);
             if (error > w.ulp)
