@@ -450,7 +450,8 @@ inline void intersect_block(const Context& c, const Group& g, sint line, Hits& h
     }
     svec origin = load_svec(origin_at);
     sint cells_u = (v.quads_u + 1) >> 1;
-    sint shift = select(cells_u > 2, sint(2), cells_u - 1);
+    sbool wide = cells_u > 2;
+    sint shift = select(wide, sint(2), cells_u - 1);
     sint cells = ((v.quads_v + 1) >> 1) << shift;
     vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
     sfloat last_t = reduce_max(furthest);

@@ -81,8 +81,10 @@ inline void make_normals(const Context& c, sint line, pointer<BlockHeader> heade
         vertex_place(b.quads_u, vertex, column, row);
         column = column + vint(column0);
         row = row + vint(row0);
-        vfloat u = to_float(column) * vfloat(step_u);
-        vfloat v = to_float(row) * vfloat(step_v);
+        vfloat u = to_float(column);
+        u = u * vfloat(step_u);
+        vfloat v = to_float(row);
+        v = v * vfloat(step_v);
         vvec du = madd(v, top_more, bottom);
         vvec dv = madd(u, right_more, left);
         store_normals(out + from, b.stride, du, dv, m);

@@ -112,7 +112,8 @@ template <Features F> inline void render_tile(const Context& c, sint tile) {
     sint samples = load(field(c.frame, &FrameHeader::samples));
     sint tiles_x = load(field(c.frame, &FrameHeader::tiles_x));
     Camera camera = load_camera(c);
-    vfloat exact = (to_float(vint(tile)) + 0.5F) / to_float(vint(tiles_x));
+    vfloat exact = to_float(vint(tile)) + 0.5F;
+    exact = exact / to_float(vint(tiles_x));
     sint tile_row = extract(to_int(exact), 0);
     sint tile_column = tile - tile_row * tiles_x;
     sint x0 = tile_column * tile_side;

@@ -70,8 +70,8 @@ inline vvec blend(const vvec& a, const vvec& b, const vvec& c, const Hits& h) {
 /// Bound on the error of a point computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the reach
 /// of a ray that leaves it (pbrt's gamma(n) style: 16 half-ulp roundings of the largest terms).
 inline vfloat position_error(const vvec& p, const vvec& origin) {
-    vfloat size = max(abs(p.x), max(abs(p.y), abs(p.z)));
-    vfloat shift = max(abs(origin.x), max(abs(origin.y), abs(origin.z)));
+    vfloat size = largest(abs(p));
+    vfloat shift = largest(abs(origin));
     return max(size, shift) * (16.0F / 16777216.0F);
 }
 

@@ -200,7 +200,8 @@ inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> cu
         sint end = load(field(curve, &CurveRecord::end0));
         put_point(points, 0, vertex_position<Straight>(c, g, end));
     }
-    sint last = (sint(1) << exponent) - chunk * block_quads;
+    sint last = sint(1) << exponent;
+    last = last - chunk * block_quads;
     if (branch(last <= block_quads)) {
         sint end = load(field(curve, &CurveRecord::end1));
         put_point(points, last, vertex_position<Straight>(c, g, end));
@@ -241,7 +242,8 @@ inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<Curv
         sint edge = load(field(curve, &CurveRecord::end0));
         put_point(points, 0, edge_middle<Straight>(c, g, g.curves + edge));
     }
-    sint last = (sint(1) << exponent) - chunk * block_quads;
+    sint last = sint(1) << exponent;
+    last = last - chunk * block_quads;
     if (branch(last <= block_quads)) {
         sint face = load(field(curve, &CurveRecord::end1));
         put_point(points, last, face_centre<Straight>(c, g, g.faces + face));

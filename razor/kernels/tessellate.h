@@ -111,7 +111,8 @@ inline void place_side(const Context& c, const Cage& g, const Block& b, const Si
         vint from = real - vint(chunk_begin);
         vint rest = along & vint(below);
         vmask between = rest > vint(0);
-        vfloat f = to_float(rest) * vfloat(per_segment);
+        vfloat f = to_float(rest);
+        f = f * vfloat(per_segment);
         vfloat g0 = vfloat(1.0F) - f;
         vmask next = m & between;
         vvec p;
@@ -125,7 +126,8 @@ inline void place_side(const Context& c, const Cage& g, const Block& b, const Si
         }
         vint back = vint(quads) - i;
         vint place = select(vmask(reversed != 0), back, i);
-        vint at = vint(first) + place * vint(step);
+        vint at = place * vint(step);
+        at = at + vint(first);
         scatter_vec(b.x, b.stride, at, p, m);
     }
     if (branch((sint(1) << side.hang) > quads)) {
@@ -252,8 +254,10 @@ inline void place_bilinear(const Context& c, const Cage& g, const Dicing& d, con
         vertex_place(b.quads_u, vertex, column, row);
         column = column + vint(column0);
         row = row + vint(row0);
-        vfloat u = to_float(column) * vfloat(du);
-        vfloat v = to_float(row) * vfloat(dv);
+        vfloat u = to_float(column);
+        u = u * vfloat(du);
+        vfloat v = to_float(row);
+        v = v * vfloat(dv);
         vfloat u0 = vfloat(1.0F) - u;
         vfloat v0 = vfloat(1.0F) - v;
         vvec low = madd(u, corner[1], corner[0] * u0);
@@ -297,7 +301,8 @@ inline void bound_block(const Block& b, sint cells_at) {
     sint cells_u = (b.quads_u + 1) >> 1;
     sint cells_v = (b.quads_v + 1) >> 1;
     sint cells = cells_u * cells_v;
-    sint shift = select(cells_u > 2, sint(2), cells_u - 1); // log2(cells_u) of 1, 2, 4
+    sbool wide = cells_u > 2;
+    sint shift = select(wide, sint(2), cells_u - 1); // log2(cells_u) of 1, 2, 4
     svec low{sfloat(3.0e38F), sfloat(3.0e38F), sfloat(3.0e38F)};
     svec high{sfloat(-3.0e38F), sfloat(-3.0e38F), sfloat(-3.0e38F)};
     sint width = b.quads_u + 1;
@@ -309,10 +314,12 @@ inline void bound_block(const Block& b, sint cells_at) {
         vvec lo{vfloat(3.0e38F), vfloat(3.0e38F), vfloat(3.0e38F)};
         vvec hi{vfloat(-3.0e38F), vfloat(-3.0e38F), vfloat(-3.0e38F)};
         for (int j = 0; j < 3; ++j) {
-            vint vertex_row = min((row << 1) + vint(j), vint(b.quads_v));
+            vint vertex_row = (row << 1) + vint(j);
+            vertex_row = min(vertex_row, vint(b.quads_v));
             vint row_begin = vertex_row * vint(width);
             for (int i = 0; i < 3; ++i) {
-                vint vertex_column = min((column << 1) + vint(i), vint(b.quads_u));
+                vint vertex_column = (column << 1) + vint(i);
+                vertex_column = min(vertex_column, vint(b.quads_u));
                 vint at = row_begin + vertex_column;
                 vfloat x = gather(b.x, at, m);
                 vfloat y = gather(b.x + b.stride, at, m);

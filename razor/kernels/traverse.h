@@ -52,8 +52,10 @@ inline Group make_group(const Context& c, const Rays& r, vmask alive, sint large
     Group g;
     g.alive = alive;
     g.kz = largest;
-    g.kx = select(g.kz == 2, sint(0), g.kz + 1);
-    g.ky = select(g.kx == 2, sint(0), g.kx + 1);
+    sbool last = g.kz == 2;
+    g.kx = select(last, sint(0), g.kz + 1);
+    last = g.kx == 2;
+    g.ky = select(last, sint(0), g.kx + 1);
     vfloat dx = r.direction.y;
     vfloat dy = r.direction.z;
     vfloat dz = r.direction.x;
@@ -160,7 +162,8 @@ inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
             vfloat early = t - error;
             vfloat late = t + error;
             vmask inside = enter <= leave;
-            sint sign = select(axis == 0, g.sign[0], select(axis == 1, g.sign[1], g.sign[2]));
+            sint sign = select(axis == 1, g.sign[1], g.sign[2]);
+            sign = select(axis == 0, g.sign[0], sign);
             sint near = link + sign;
             sint far = link + (sint(1) - sign);
             // What is near for the first ray comes first; for rays that run the other way the two are

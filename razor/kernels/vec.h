@@ -46,6 +46,9 @@ inline vvec normalise(const vvec& a, const vvec& fallback) {
     return select(good, unit, fallback);
 }
 
+inline vvec abs(const vvec& a) {
+    return {abs(a.x), abs(a.y), abs(a.z)};
+}
 inline vfloat largest(const vvec& a) {
     return max(a.x, max(a.y, a.z));
 }
