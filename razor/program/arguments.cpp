@@ -109,6 +109,20 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
     return static_cast<std::size_t>(found - words.begin());
 }
 
+int parse_share(std::string_view text) {
+    if (text == "worker") {
+        return 1;
+    }
+    if (text == "chip") {
+        return 0;
+    }
+    if (text.find_first_not_of("0123456789") != std::string_view::npos) {
+        throw UserError(
+            fmt::format("--share '{}' is unknown; give worker, chip or a number of workers a tree", text));
+    }
+    return parse_whole("--share", text, Range{1, 1 << 20});
+}
+
 int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action) {
     try {
         app.parse(argc, argv);

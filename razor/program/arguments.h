@@ -25,6 +25,9 @@ std::pair<int, int> parse_size(std::string_view option, std::string_view text, R
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words);
 
+/// Workers that share a kd-tree: "worker" is 1, "chip" 0 (all of them), or a number.
+int parse_share(std::string_view text);
+
 /// Parses the command line, then runs `action`, whose result is the exit code. --help and --version end with
 /// 0. A mistake of the user prints one line "PROGRAM: ..." to the error stream and ends with 2, anything
 /// unforeseen likewise with 1.

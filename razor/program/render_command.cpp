@@ -22,21 +22,6 @@ namespace {
 constexpr Range threads_range{1, 1024};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
 
-/// Workers a tree: "worker" 1, "chip" 0 (all), or a number.
-int parse_share(std::string_view text) {
-    if (text == "worker") {
-        return 1;
-    }
-    if (text == "chip") {
-        return 0;
-    }
-    if (text.find_first_not_of("0123456789") != std::string_view::npos) {
-        throw UserError(
-            fmt::format("--share '{}' is unknown; give worker, chip or a number of workers a tree", text));
-    }
-    return parse_whole("--share", text, threads_range);
-}
-
 } // namespace
 
 void RenderCommand::add_to(CLI::App& app) {

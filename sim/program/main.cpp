@@ -1,0 +1,38 @@
+// razor-sim: the program of the simulated machine.
+#include "razor/program/arguments.h"
+#include "razor/scene/error.h"
+#include "sim/config/error.h"
+#include "sim/config/machine_file.h"
+#include "sim/machine/machine.h"
+#include "sim/program/run_command.h"
+
+#include <fmt/format.h>
+
+namespace {
+
+int print_config(const sim::MachineOptions& options) {
+    fmt::print("{}", sim::print_machine(sim::read_machine(options.file, options.settings)));
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Renders on a simulated many-core machine and says where its time and traffic go.",
+                 "razor-sim");
+    app.set_version_flag("--version", "razor-sim " + std::string(razor::version()));
+    app.require_subcommand(1);
+    sim::RunCommand run;
+    run.add_to(app);
+    sim::MachineOptions machine;
+    CLI::App& print =
+        *app.add_subcommand("print-config", "print a machine's complete, resolved configuration");
+    machine.add_to(print);
+    return razor::run_program(app, argc, argv, [&] {
+        try {
+            return print.parsed() ? print_config(machine) : run.run();
+        } catch (const sim::ConfigError& e) {
+            throw razor::UserError(e.what());
+        }
+    });
+}

@@ -1,0 +1,148 @@
+#include "sim/program/run_command.h"
+
+#include "razor/frame/frame.h"
+#include "razor/frame/phases.h"
+#include "razor/image/output.h"
+#include "razor/image/output_file.h"
+#include "razor/program/arguments.h"
+#include "razor/program/interrupt.h"
+#include "razor/program/progress.h"
+#include "razor/scene/error.h"
+#include "sim/config/machine_file.h"
+#include "sim/machine/machine.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <thread>
+
+namespace sim {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// Looks at the frame from a host thread of its own: progress on a terminal, and an interrupt ends the
+/// workers early.
+class Watch {
+public:
+    Watch(razor::Frame& frame, razor::Progress& progress, const std::atomic<bool>& interrupted)
+        : thread_([&](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  if (interrupted.load())
+                      frame.stop();
+                  progress.show(frame.progress());
+                  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+              }
+          }) {}
+
+private:
+    std::jthread thread_;
+};
+
+json renderer(const razor::FrameStatistics& s) {
+    json out;
+    out["plan"] = s.plan;
+    out["trees"] = s.trees;
+    razor::for_each_counter(s.counters,
+                            [&](const char* name, std::int64_t value) { out["counters"][name] = value; });
+    out["built"] = {{"inner_nodes", s.inner_nodes},
+                    {"leaves", s.leaves},
+                    {"grid_bytes", s.grid_bytes},
+                    {"node_bytes", s.node_bytes},
+                    {"list_bytes", s.list_bytes}};
+    out["topology_page_bytes"] = s.page_bytes;
+    return out;
+}
+
+} // namespace
+
+void MachineOptions::add_to(CLI::App& app) {
+    app.add_option("--machine", file, "the machine, such as configs/machines/tiny.toml")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-g", settings, "overrides a setting of the machine; may be given more than once")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all();
+}
+
+void RunCommand::add_to(CLI::App& app) {
+    CLI::App& run = *app.add_subcommand("run", "render a frame on a simulated machine");
+    machine_.add_to(run);
+    scene_.add_to(run, "--scene");
+    run.add_option("-o,--output", outputs_,
+                   "the picture: .exr (all layers) or .png; may be given more than once")
+        ->type_name("FILE")
+        ->expected(1)
+        ->take_all();
+    run.add_option("--json", json_, "write the report for programs, with the resolved configuration")
+        ->type_name("FILE.json");
+    run.add_option("--report", report_, "write the readable report here instead of printing it")
+        ->type_name("FILE.txt");
+    run.add_option("--workers", workers_, "workers; without it, one a hardware thread")->type_name("N");
+    run.add_option("--share", share_,
+                   "who shares a kd-tree: worker (nobody), chip (all), or N workers a tree")
+        ->type_name("WHO");
+    run.add_flag("--quiet", quiet_, "show no progress");
+}
+
+int RunCommand::run() const {
+    const Machine machine(read_machine(machine_.file, machine_.settings));
+    const double most = machine.threads();
+    const int workers =
+        workers_.empty() ? machine.threads() : razor::parse_whole("--workers", workers_, {1, most});
+    const int share = razor::parse_share(share_);
+    const razor::SceneDescription description = scene_.describe();
+    const std::string scene = razor::to_toml(description);
+    for (const std::string& output : outputs_)
+        razor::check_output(output);
+    for (const std::string& file : {json_, report_})
+        if (!file.empty())
+            razor::check_writable(file);
+
+    const std::atomic<bool>& interrupted = razor::watch_interrupts();
+    razor::Frame frame(razor::build_scene(description), {.workers = workers, .share = share});
+    const std::vector<std::string> phases(std::begin(razor::phase_names), std::end(razor::phase_names));
+    Report report;
+    {
+        razor::Progress progress(!quiet_);
+        const Watch watch(frame, progress, interrupted);
+        report = machine.run(frame.memory(), workers, phases,
+                             [&](int worker) { frame.render(razor::simulated::kernels, worker); });
+    }
+    if (interrupted.load()) {
+        fmt::print(stderr, "razor-sim: interrupted; nothing written\n");
+        return razor::interrupted_exit;
+    }
+
+    const razor::FrameStatistics statistics = frame.statistics();
+    const razor::OutputGuard guard;
+    const razor::ImageAttributes attributes{{"razor.version", std::string(razor::version())},
+                                            {"razor.scene", scene},
+                                            {"razor.isa", razor::simulated::kernels.name}};
+    for (const std::string& output : outputs_)
+        razor::write_image(output, frame.film(), attributes);
+    if (!json_.empty()) {
+        json out{{"program", "razor-sim"},
+                 {"version", razor::version()},
+                 {"options", {{"workers", workers}, {"workers_a_tree", share}}},
+                 {"scene", scene}};
+        json run = json::parse(print_json(report));
+        json host = run["host"];
+        run.erase("host");
+        out.update(run);
+        out["renderer"] = renderer(statistics);
+        host["topology_page_seconds"] = statistics.page_seconds;
+        out["host"] = host;
+        razor::write_text_file(json_, out.dump(2) + "\n");
+    }
+    const std::string text = print_text(report);
+    if (report_.empty())
+        fmt::print("{}", text);
+    else
+        razor::write_text_file(report_, text);
+    return 0;
+}
+
+} // namespace sim

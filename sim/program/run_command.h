@@ -1,0 +1,36 @@
+// razor-sim run: a frame on a machine, to a picture and reports.
+#pragma once
+
+#include "razor/program/scene_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// The options that choose a machine.
+class MachineOptions {
+public:
+    void add_to(CLI::App& app);
+    std::string file;
+    std::vector<std::string> settings;
+};
+
+class RunCommand {
+public:
+    /// Adds the subcommand to `app`. The object must outlive the parsing.
+    void add_to(CLI::App& app);
+    /// Returns the exit code. Throws razor::UserError and ConfigError.
+    int run() const;
+
+private:
+    MachineOptions machine_;
+    razor::SceneOptions scene_;
+    std::vector<std::string> outputs_;
+    std::string json_, report_, workers_, share_ = "worker";
+    bool quiet_ = false;
+};
+
+} // namespace sim
