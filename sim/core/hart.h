@@ -27,6 +27,7 @@ struct Hart {
     std::size_t position = 0;
     Due complete;     // when everything begun so far is done
     cycle stored = 0; // when all stores so far are in the L1
+    cycle now = 0;    // the latest cycle to which it let the other threads come
 
     // --- the CPI stack: all cycles before `accounted` have a cause
     cycle accounted = 0;

@@ -53,26 +53,31 @@ std::uint64_t to_core_cycles(const Config& c, integer memory_clocks) {
     return wide((memory_clocks * c.memory.clock_ps + c.chip.clock_ps - 1) / c.chip.clock_ps);
 }
 
-/// The longest that a request can wait behind all that can be outstanding at once, all for one bank.
+/// The longest that a request can wait behind all that can be outstanding at once (what MSHRs and buffers
+/// hold, and one gather or scatter of every thread, each line of which evicts another), all for one bank.
 std::uint64_t longest_wait(const Config& c) {
-    integer outstanding =
-        c.chip.cores * (c.l1.mshrs + 2 * c.l1.write_back_buffer) + c.l2.mshrs + 2 * c.l2.write_back_buffer;
+    integer outstanding = c.chip.cores * (c.l1.mshrs + c.l1.write_back_buffer) + c.l2.mshrs +
+                          c.l2.write_back_buffer + 2 * c.chip.cores * c.chip.threads * integer{width};
     integer bursts = c.l2.line_bytes / (c.memory.bus_bytes * c.memory.burst_length);
     integer service = c.memory.tRAS + c.memory.tRP + c.memory.tRCD + c.memory.tWR + c.memory.tCL +
                       bursts * (c.memory.burst_length / 2 + c.memory.tCCD);
-    return wide(outstanding + c.chip.cores * c.chip.threads) * to_core_cycles(c, service) +
-           to_core_cycles(c, 2 * c.memory.tRFC) +
-           wide(c.l1.latency + c.l2.latency + c.memory.controller_cycles + c.core.mispredict_cycles +
-                c.coherence.visibility_cycles) +
-           wide(outstanding * (c.l1.line_bytes / c.l2.bank_bytes + 1));
+    integer on_chip =
+        c.l1.latency + c.l2.latency + c.memory.controller_cycles + c.coherence.visibility_cycles;
+    return wide(outstanding) * to_core_cycles(c, service) + to_core_cycles(c, 2 * c.memory.tRFC) +
+           wide(on_chip) + wide(outstanding * (c.l1.line_bytes / c.l2.bank_bytes + 1));
 }
 
-/// The cycles between the operation that acts now and the farthest booking. With a window, operations that
-/// wait delay younger ones that could have issued before them.
+/// How far behind its latest turn an operation may issue: younger operations of a window are simulated after
+/// older ones that had to wait. What the window would let issue earlier still issues then.
+std::uint64_t reach_cycles(const Config& c) {
+    return c.core.window == 1 ? 0 : std::min<std::uint64_t>(65536, wide(c.core.window) * longest_wait(c));
+}
+
+/// The cycles between the operation that acts now and the farthest booking of a core's resources.
 std::uint64_t ring_cycles(const Config& c) {
-    std::uint64_t own = wide(c.chip.threads) * 64 * wide(std::max<integer>(8, c.interval[4])) + 4096;
-    std::uint64_t lag = c.core.window > 1 ? longest_wait(c) + wide(c.core.window) * 1000 : longest_wait(c);
-    return wide(c.sim.quantum) + own + lag;
+    std::uint64_t own =
+        wide(c.chip.threads) * 64 * wide(*std::max_element(c.interval.begin(), c.interval.end())) + 4096;
+    return wide(c.sim.quantum) + own + reach_cycles(c);
 }
 
 } // namespace
@@ -91,8 +96,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       prediction_(config.core.predictor == "none"      ? Prediction::none
                   : config.core.predictor == "perfect" ? Prediction::perfect
                                                        : Prediction::counters),
-      base_(space.base()), ring_(ring_cycles(config)), space_(space),
-      attribution_(space, std::max<std::size_t>(1, phases.size())),
+      base_(space.base()), reach_(config.core.window == 1 ? ~std::uint64_t{0} : reach_cycles(config)),
+      ring_(ring_cycles(config)), space_(space), attribution_(space, std::max<std::size_t>(1, phases.size())),
       memory_(config,
               ring_ * wide(config.chip.clock_ps) / wide(config.memory.clock_ps) + longest_wait(config)),
       l2_(config, ring_ + longest_wait(config), memory_, attribution_),
@@ -162,7 +167,10 @@ inline cycle Engine::turn(Hart& h, cycle t) {
     if (k > scheduler_.horizon()) {
         Away away;
         scheduler_.yield(k);
+        if (t > reach_)
+            h.bound.later(Due(t - reach_, Cause::slots));
     }
+    h.now = std::max(h.now, t);
     return t;
 }
 
@@ -227,7 +235,9 @@ inline Issued Engine::issue(Hart& h, int kind, std::uint32_t instructions, Due r
 inline void Engine::finish_issue(Hart& h, Issued at, cycle granted) {
     Due& slot = h.window[h.position];
     h.bound.later(slot);
-    slot = granted > at.last ? Due(granted, Cause::mshrs) : Due(at.last, Cause::busy);
+    if (granted > at.last)
+        h.bound.later(Due(granted, Cause::mshrs));
+    slot = Due(at.last, Cause::busy);
     if (++h.position == h.window.size())
         h.position = 0;
 }
@@ -515,12 +525,16 @@ void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
 // --- shared words
 // -----------------------------------------------------------------------------------------------------
 
+/// Shared words are not reordered: they act after everything that the thread let happen before, at their
+/// issue, when no other thread is earlier. Only a load under a quantum does not wait for the others.
 void Engine::before_atomic(Hart& h, isa::timing::atomic kind, Due ready) {
+    ready.later(Due(h.now, Cause::synchronise));
+    Issued at = issue(h, 0, 1, ready);
+    h.now = at.last;
     if (scheduler_.exact() || kind != isa::timing::atomic::load_acquire) {
         Away away;
-        scheduler_.wait_turn(Scheduler::key(ready.at(), h.number));
+        scheduler_.wait_turn(Scheduler::key(at.last, h.number));
     }
-    Issued at = issue(h, 0, 1, ready);
     finish_issue(h, at, 0);
     count(h, 1, false);
     ++h.counters.atomics;
@@ -612,6 +626,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         }
         h.counters.spins += (woken - since) / wide(config_.core.spin_period);
         h.bound.later(Due(woken, Cause::synchronise));
+        h.now = std::max(h.now, woken);
     }
     return after_atomic(h, isa::timing::atomic::load_acquire, p, false);
 }

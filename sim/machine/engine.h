@@ -123,7 +123,8 @@ private:
     enum class Prediction { counters, none, perfect } prediction_;
 
     const std::byte* base_;
-    std::uint64_t ring_; // cycles by which one thread's operations may lie behind another's bookings
+    std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
+    std::uint64_t ring_;  // cycles by which one thread's operations may lie behind another's bookings
     const isa::address_space& space_;
     Attribution attribution_;
     Memory memory_;

@@ -1,0 +1,234 @@
+// Closed forms of the core: exact cycles.
+#include "tests/sim/machines.h"
+
+namespace sim::test {
+namespace {
+
+constexpr int n = 1000;
+constexpr auto add_class = static_cast<std::size_t>(operation::add);
+
+TEST(Core, DependentChainTakesItsLatencies) {
+    for (integer latency : {1, 4, 7}) {
+        Config c = simple();
+        c.latency[add_class] = latency;
+        Report r = run(c, [](int) {
+            stamp s;
+            for (int i = 0; i < n; ++i)
+                s = scalar_op(operation::add, s);
+        });
+        EXPECT_EQ(r.cycles, u(n * latency));
+        EXPECT_EQ(r.core.instructions, u(n));
+        EXPECT_EQ(cause(r, Cause::busy), u(n));
+        EXPECT_EQ(cause(r, Cause::compute), u(n * (latency - 1)));
+    }
+}
+
+TEST(Core, IndependentOperationsIssueAtTheWidth) {
+    for (integer width : {1, 2, 3, 4}) {
+        Config c = simple();
+        c.core.issue_width = width;
+        Report r = run(c, [](int) {
+            for (int i = 0; i < n; ++i)
+                scalar_op(operation::add, stamp{});
+        });
+        EXPECT_EQ(r.cycles, u((n + width - 1) / width - 1 + c.latency[add_class])) << width;
+    }
+}
+
+TEST(Core, VectorOperationsTakeASlotForEachPiece) {
+    for (integer lanes : {1, 2, 4, 8, 64}) {
+        Config c = simple();
+        c.core.lanes = lanes;
+        integer pieces = std::max<integer>(1, ISA_WIDTH / lanes);
+        Report r = run(c, [](int) {
+            for (int i = 0; i < n; ++i)
+                vector_op(operation::multiply, stamp{});
+        });
+        EXPECT_EQ(r.cycles, u(n * pieces - 1 + 4)) << lanes;
+        EXPECT_EQ(r.core.instructions, u(n * pieces));
+        EXPECT_EQ(r.core.lane_slots, u(n) * ISA_WIDTH);
+    }
+}
+
+// A consumer follows its producer piece by piece; a dependent chain is as long as the longer of latency and
+// pieces.
+TEST(Core, VectorChainsFollowPieceByPiece) {
+    for (integer lanes : {1, 2, 4, 8, 64}) {
+        Config c = simple();
+        c.core.lanes = lanes;
+        integer pieces = std::max<integer>(1, ISA_WIDTH / lanes);
+        Report r = run(c, [](int) {
+            stamp s;
+            for (int i = 0; i < n; ++i)
+                s = vector_op(operation::add, s);
+        });
+        EXPECT_EQ(r.cycles, u((n - 1) * std::max<integer>(4, pieces) + pieces - 1 + 4)) << lanes;
+    }
+}
+
+TEST(Core, ReductionsWaitForTheLastPiece) {
+    Config c = simple();
+    c.core.lanes = 4;
+    auto pieces = u(ISA_WIDTH / 4);
+    stamp vector, scalar;
+    run(c, [&](int) {
+        vector = vector_op(operation::add, stamp{});
+        scalar = cross_to_scalar(operation::reduce, vector, stamp{});
+    });
+    EXPECT_EQ(vector.first, 4U);
+    EXPECT_EQ(vector.last, pieces - 1 + 4);
+    EXPECT_EQ(scalar.last, vector.last + pieces - 1 + 6);
+    EXPECT_EQ(scalar.first, scalar.last);
+}
+
+// A load far away, used at once, then independent work: a window lets that work pass.
+TEST(Core, WindowLetsYoungerOperationsPass) {
+    for (integer window : {1, 2, 8, 64}) {
+        Config c = simple();
+        c.core.window = window;
+        c.latency[add_class] = 100;
+        Report r = run(c, [](int) {
+            stamp slow = scalar_op(operation::add, stamp{});
+            scalar_op(operation::integer, slow); // issues at 100
+            for (int i = 0; i < 50; ++i)
+                scalar_op(operation::integer, stamp{});
+        });
+        // The stalled operation is number 1; number 1 + window waits for it.
+        integer after = std::max<integer>(0, 51 - window);
+        EXPECT_EQ(r.cycles, window > 50 ? 101U : u(100 + after + 1)) << window;
+    }
+}
+
+TEST(Core, UnpipelinedUnitsSerialise) {
+    Config c = simple();
+    Report r = run(c, [](int) {
+        for (int i = 0; i < n; ++i)
+            scalar_op(operation::divide, stamp{});
+    });
+    EXPECT_EQ(r.cycles, u((n - 1) * 8 + 16));
+}
+
+TEST(Core, ThreadsShareTheSlotsAndHideLatency) {
+    for (integer threads : {1, 2, 3, 4, 8}) {
+        Config c = simple();
+        c.chip.threads = threads;
+        Report r = run(
+            c,
+            [](int) {
+                stamp s;
+                for (int i = 0; i < n; ++i)
+                    s = scalar_op(operation::add, s);
+            },
+            static_cast<int>(threads));
+        // Up to 4 threads each fill a slot of the latency of 4; more share the issue slots.
+        cycle expected = threads <= 4 ? u((n - 1) * 4 + threads - 1 + 4) : u(n * threads - 1 + 4);
+        EXPECT_NEAR(static_cast<double>(r.cycles), static_cast<double>(expected), 8.0) << threads;
+        EXPECT_EQ(r.core.instructions, u(n * threads));
+    }
+}
+
+TEST(Core, PolicyStallKeepsTheCoreAndChargesSwitches) {
+    Config c = simple();
+    c.chip.threads = 2;
+    c.core.switch_policy = "stall";
+    c.core.switch_cycles = 3;
+    auto busy = [](int) {
+        for (int i = 0; i < n; ++i)
+            scalar_op(operation::integer, stamp{});
+    };
+    Report r = run(c, busy, 2);
+    EXPECT_EQ(r.core.switches, 1U); // nobody stalls: one after the other
+    EXPECT_NEAR(static_cast<double>(r.cycles), 2.0 * n + 4, 4.0);
+    Report stalling = run(
+        c,
+        [](int) {
+            stamp s;
+            for (int i = 0; i < n; ++i)
+                s = scalar_op(operation::divide, s);
+        },
+        2);
+    EXPECT_GT(stalling.core.switches, u(n));
+}
+
+TEST(Core, RegistersSpillThroughTheL1) {
+    Config c = simple();
+    c.core.vector_registers = 2;
+    Report r = run(c, [](int) {
+        stamp a = vector_op(operation::add, stamp{});
+        stamp b = vector_op(operation::add, stamp{});
+        stamp d = vector_op(operation::add, stamp{}); // a is out
+        vector_op(operation::add, b, d);              // both there; the result pushes b out
+        vector_op(operation::add, a);                 // stored and reloaded
+        vector_op(operation::add, b);                 // stored and reloaded
+        vector_op(operation::add, a);                 // the result of the last two and b: reloaded only
+    });
+    EXPECT_EQ(r.core.spill_stores, 2U);
+    EXPECT_EQ(r.core.spill_loads, 3U);
+    std::size_t spill = r.structures.size() - 1;
+    EXPECT_EQ(r.structures[spill], "spill");
+    auto lines = u(std::max(1, ISA_WIDTH * 4 / 64));
+    EXPECT_EQ(r.traffic[spill].l1_reads, 3 * lines);
+    EXPECT_EQ(r.traffic[spill].l1_writes, 2 * lines);
+    EXPECT_EQ(r.core.vops, 7U);
+    c.core.vector_registers = 3;
+    Report enough = run(c, [](int) {
+        stamp a = vector_op(operation::add, stamp{});
+        stamp b = vector_op(operation::add, stamp{});
+        stamp d = vector_op(operation::add, a, b);
+        vector_op(operation::add, d, a);
+    });
+    EXPECT_EQ(enough.core.spill_loads, 0U);
+}
+
+TEST(Core, MispredictsCostTheirPenalty) {
+    Config c = simple();
+    c.core.predictor = "counters";
+    c.core.mispredict_cycles = 20;
+    auto loop = [](int) {
+        for (int i = 0; i < n; ++i)
+            isa::timing::branch(here, stamp{}, i + 1 < n);
+    };
+    Report r = run(c, loop);
+    EXPECT_EQ(r.core.mispredicts, 1U);
+    EXPECT_EQ(r.cycles, u(n)); // nothing follows the wrong one
+    // Alternating: a two-bit counter that begins at weakly taken is wrong every other time, one bit of
+    // history is not.
+    auto alternate = [](int) {
+        for (int i = 0; i < n; ++i)
+            isa::timing::branch(here, stamp{}, i % 2 == 0);
+    };
+    Report wrong = run(c, alternate);
+    EXPECT_EQ(wrong.core.mispredicts, u(n / 2));
+    // Each pair: right, wrong; the next branch issues at the outcome (1 cycle) and the penalty.
+    EXPECT_EQ(wrong.cycles, u(n / 2 * 2 + (n / 2 - 1) * 20));
+    c.core.predictor_history = 1;
+    EXPECT_LE(run(c, alternate).core.mispredicts, 2U);
+    c.core.predictor = "none";
+    c.latency[branch_class] = 3;
+    EXPECT_EQ(run(c, loop).cycles, u(3 * n));
+}
+
+TEST(Core, SitesDoNotShareCounters) {
+    Config c = simple();
+    c.core.predictor = "counters";
+    Report r = run(c, [](int) {
+        for (int i = 0; i < 100; ++i)
+            for (std::uint32_t line = 0; line < 5000; ++line)
+                isa::timing::branch({"many", line}, stamp{}, line % 2 == 0);
+    });
+    EXPECT_EQ(r.core.mispredicts, 2500U); // the first look at each site that is never taken
+}
+
+TEST(Core, ScalarOverheadAddsInstructions) {
+    Config c = simple();
+    c.core.scalar_overhead = 1.5;
+    Report r = run(c, [](int) {
+        for (int i = 0; i < n; ++i)
+            isa::timing::branch(here, stamp{}, true);
+    });
+    EXPECT_EQ(r.core.overhead_instructions, u(n * 3 / 2));
+    EXPECT_EQ(r.core.instructions, u(n + n * 3 / 2));
+}
+
+} // namespace
+} // namespace sim::test

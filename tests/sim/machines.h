@@ -1,0 +1,52 @@
+// Machines and shorthands of the tests. Most tests speak to the timing port directly: what a kernel does, one
+// operation at a time.
+#pragma once
+
+#include "isa/address_space.h"
+#include "isa/services.h"
+#include "isa/simulated/port.h"
+#include "sim/config/error.h"
+#include "sim/config/machine_file.h"
+#include "sim/machine/machine.h"
+
+#include <gtest/gtest.h>
+
+namespace sim::test {
+
+using namespace isa::timing;
+
+inline constexpr std::uint64_t all_lanes = ~std::uint64_t{0} >> (64 - ISA_WIDTH);
+inline constexpr site here{"test", 1};
+
+/// One core, one thread, one lane for each logical lane, nothing in the way.
+inline Config simple() {
+    Config c;
+    c.chip.cores = c.chip.threads = 1;
+    c.core.lanes = 64;
+    c.l1.port_bytes = 1024;
+    c.core.predictor = "perfect";
+    return c;
+}
+/// A frame memory of one region of 64 MiB.
+struct Memory {
+    isa::address_space space{std::uint64_t{1} << 26};
+    std::byte* data = space.add("data", -1, std::uint64_t{1} << 24);
+    std::byte* more = space.add("more", -1, std::uint64_t{1} << 24);
+};
+inline Report run(const Config& c, const std::function<void(int)>& worker, int workers = 1) {
+    Memory memory;
+    return Machine(c).run(memory.space, workers, {"work"}, worker);
+}
+/// With memory: worker(base).
+inline Report run_on(const Config& c, const std::function<void(std::byte*, int)>& worker, int workers = 1) {
+    Memory memory;
+    return Machine(c).run(memory.space, workers, {"work"}, [&](int w) { worker(memory.data, w); });
+}
+inline cycle u(integer x) {
+    return static_cast<cycle>(x);
+}
+inline std::uint64_t cause(const Report& r, Cause c) {
+    return r.stack()[static_cast<std::size_t>(c)];
+}
+
+} // namespace sim::test

@@ -1,0 +1,102 @@
+// Random valid machines keep every law (Machine::run checks them), and change nothing that a program
+// computes.
+#include "tests/sim/kernels.h"
+#include "tests/sim/machines.h"
+
+#include <bit>
+#include <random>
+
+namespace sim::test {
+namespace {
+
+Config random_machine(std::mt19937& random) {
+    auto pick = [&](integer low, integer high) {
+        return low + static_cast<integer>(random() % u(high - low + 1));
+    };
+    auto power = [&](integer low, integer high) { return integer{1} << pick(low, high); };
+    Config c;
+    c.chip.clock_ps = pick(100, 3000);
+    c.chip.cores = pick(1, 6);
+    c.chip.threads = pick(1, 4);
+    c.core.issue_width = pick(1, 6);
+    c.core.lanes = power(0, 6);
+    c.core.window = pick(0, 1) == 0 ? 1 : pick(2, 200);
+    c.core.vector_registers = pick(0, 8);
+    c.core.scalar_overhead = static_cast<double>(pick(0, 30)) / 10;
+    c.core.predictor = std::array{"counters", "none", "perfect"}[random() % 3];
+    c.core.predictor_history = pick(0, 6);
+    c.core.switch_policy = pick(0, 3) == 0 ? "stall" : "fine";
+    c.core.switch_cycles = pick(0, 8);
+    c.core.gather = pick(0, 1) == 0 ? "line" : "lane";
+    for (auto& l : c.latency)
+        l = pick(0, 12);
+    for (auto& i : c.interval)
+        i = pick(0, 2) == 0 ? pick(1, 9) : 1;
+    c.l1.line_bytes = power(4, 7);
+    c.l1.ways = pick(1, 8);
+    c.l1.size_bytes = c.l1.line_bytes * c.l1.ways * power(0, 6);
+    c.l1.ports = pick(1, 3);
+    c.l1.port_bytes = power(2, 7);
+    c.l1.mshrs = pick(1, 12);
+    c.l1.write_back_buffer = pick(1, 6);
+    c.l2.line_bytes = c.l1.line_bytes * power(0, 2);
+    c.l2.ways = pick(1, 16);
+    c.l2.size_bytes = c.l2.line_bytes * c.l2.ways * power(0, 9);
+    c.l2.banks = power(0, 4);
+    c.l2.bank_bytes = power(0, 7);
+    c.l2.mshrs = pick(1, 32);
+    c.l2.write_back_buffer = pick(1, 8);
+    c.memory.clock_ps = pick(200, 3000);
+    c.memory.channels = power(0, 3);
+    c.memory.banks = power(0, 5);
+    c.memory.row_bytes = std::max(c.l2.line_bytes, power(9, 13));
+    c.memory.bus_bytes = power(0, 3);
+    c.memory.burst_length = power(1, 3);
+    while (c.memory.bus_bytes * c.memory.burst_length > c.l2.line_bytes)
+        c.memory.burst_length /= 2;
+    if (c.memory.burst_length < 2)
+        c.memory.bus_bytes = 2, c.memory.burst_length = 2;
+    c.memory.tREFI = pick(0, 1) == 0 ? 0 : pick(1000, 9000);
+    c.memory.tRFC = pick(0, 300);
+    c.sim.quantum = std::array<integer, 5>{0, 1, 10, 100, 5000}[random() % 5];
+    return c;
+}
+
+TEST(Properties, RandomMachinesKeepTheLaws) {
+    std::mt19937 random(2026);
+    for (int trial = 0; trial < 150; ++trial) {
+        Config c = random_machine(random);
+        SCOPED_TRACE(print_machine(c));
+        Memory memory;
+        int workers = 1 + static_cast<int>(random() % u(c.chip.cores * c.chip.threads));
+        auto* counter = reinterpret_cast<word*>(memory.data);
+        auto* data = reinterpret_cast<std::int32_t*>(memory.more);
+        Machine machine(c);
+        Report r;
+        ASSERT_NO_THROW(r = machine.run(memory.space, workers, {"work"},
+                                        [&](int w) { mixed_work(data, counter, w, 12); }));
+        EXPECT_EQ(counter->word, workers * 12);
+        EXPECT_GT(r.cycles, 0U);
+        EXPECT_FALSE(print_text(r).empty());
+    }
+}
+
+TEST(Properties, BrokenNumbersAreNoticed) {
+    Report good = run(simple(), [](int) { scalar_op(operation::add, stamp{}); });
+    EXPECT_NO_THROW(check_laws(good));
+    Report r = good;
+    ++r.l2.reads;
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    r = good;
+    ++r.threads[0].stacks[0][0];
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    r = good;
+    ++r.core.vops;
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    r = good;
+    ++r.core.causality_waits;
+    EXPECT_THROW(check_laws(r), std::logic_error);
+}
+
+} // namespace
+} // namespace sim::test
