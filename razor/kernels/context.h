@@ -7,11 +7,15 @@
 #include "razor/frame/layout.h"
 #include "razor/frame/phases.h"
 
+#include <limits>
+
 namespace razor::ISA_TARGET {
 
 using namespace isa::ISA_TARGET;
 
 using shared_int = isa::shared<std::int32_t>;
+
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 struct Context {
     pointer<FrameHeader> frame;

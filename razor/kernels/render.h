@@ -93,7 +93,7 @@ inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel, 
     vfloat share = reciprocal(vfloat(to_float(samples)));
     vmask hit = sums.hits > vfloat(0.0F);
     vfloat depth = sums.depth / select(hit, sums.hits, vfloat(1.0F));
-    depth = select(hit, depth, vfloat(std::numeric_limits<float>::infinity()));
+    depth = select(hit, depth, vfloat(infinity));
     vfloat zero(0.0F);
     vvec normal = normalise(sums.normal, {zero, zero, zero});
     vvec beauty = sums.beauty * share;

@@ -6,8 +6,6 @@
 
 #include "razor/kernels/intersect.h"
 
-#include <limits>
-
 namespace razor::ISA_TARGET {
 
 inline constexpr float infinite =
@@ -136,7 +134,7 @@ inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
     tally(c.counters->groups, 1);
     vfloat enter, leave;
     clip_to_tree(c, r, enter, leave);
-    vfloat never(std::numeric_limits<float>::infinity());
+    vfloat never(infinity);
     enter = select(g.alive, enter, never);
     pointer<std::int32_t> mailbox = as<std::int32_t>(c.stack + scratch_mailbox);
     for (int i = 0; i < mailbox_slots; i += isa::width)
