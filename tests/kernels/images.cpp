@@ -88,18 +88,26 @@ TEST(Images, DoNotDependOnTheFrameBefore) {
     }
 }
 
-/// sse4 rounds twice where the others fuse: a picture of the same scene, not of the same bits.
+/// sse4 rounds twice where the others fuse: the same surfaces, but shadow rays at edges may go the other way.
 TEST(Images, OfUnfusedTargetsAreNear) {
     for (const KernelTable* target : targets_with(false)) {
         Scene scene = scenes().front();
         std::vector<float> expected = rendered(scene, *targets_with(true).front(), 1, 0);
         std::vector<float> got = rendered(scene, *target, 1, 0);
         auto pixels = static_cast<std::size_t>(scene.settings.width * scene.settings.height);
-        std::size_t far = 0;
-        for (std::size_t i = 0; i < pixels; ++i)
-            if (std::abs(got[i] - expected[i]) > 1e-3F)
-                ++far;
-        EXPECT_LT(far, pixels / 50) << target->name;
+        double sum = 0;
+        double difference = 0;
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            sum += expected[i];
+            difference += got[i] - expected[i];
+            float depth = expected[film_depth * pixels + i];
+            float here = got[film_depth * pixels + i];
+            if (here != depth && !(std::abs(here - depth) <= 1e-4F * depth))
+                ++moved;
+        }
+        EXPECT_LT(moved, pixels / 100) << target->name;
+        EXPECT_LT(std::abs(difference), 0.01 * sum) << target->name;
     }
 }
 
