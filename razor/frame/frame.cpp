@@ -2,7 +2,7 @@
 
 #include "razor/frame/page_store.h"
 #include "razor/frame/scene_geometry.h"
-#include "razor/kernels/scratch.h"
+#include "razor/frame/scratch.h"
 #include "razor/scene/error.h"
 #include "razor/surface/topology.h"
 

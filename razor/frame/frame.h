@@ -5,9 +5,9 @@
 #include "isa/address_space.h"
 #include "isa/services.h"
 #include "razor/frame/counters.h"
+#include "razor/frame/kernel_table.h"
 #include "razor/frame/layout.h"
 #include "razor/image/image.h"
-#include "razor/kernels/table.h"
 #include "razor/scene/scene.h"
 
 #include <memory>

@@ -1,5 +1,5 @@
+#include "razor/frame/kernel_table.h"
 #include "razor/kernels/render.h"
-#include "razor/kernels/table.h"
 
 namespace razor::ISA_TARGET {
 

@@ -3,7 +3,7 @@
 // bit.
 #pragma once
 
-#include "razor/kernels/scratch.h"
+#include "razor/frame/scratch.h"
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {

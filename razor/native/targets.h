@@ -1,7 +1,7 @@
 // Native targets of this build and of this machine.
 #pragma once
 
-#include "razor/kernels/table.h"
+#include "razor/frame/kernel_table.h"
 
 #include <string>
 #include <vector>
