@@ -176,7 +176,7 @@ void add_simulation(Table& t) {
     auto s = &Config::sim;
     t.add("sim.quantum", s, &C::quantum, "cycles", 1, 0, 100000,
           "threads run ahead of each other inside windows this long; 0 or 1: ordered operation by operation");
-    t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 256, 32, 65536, "host stack of a simulated thread");
+    t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 64, 65536, "host stack of a simulated thread");
 }
 
 std::vector<Parameter> make_table() {
@@ -211,6 +211,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row[b.size()];
 }
 
+/// How unlike two keys are; a shortened key is nearly as good as a misspelt one.
+std::size_t unlikeness(std::string_view known, std::string_view key) {
+    return std::min(edit_distance(known, key), 1 + edit_distance(known.substr(0, key.size() + 1), key));
+}
+
 std::string with_unit(const Parameter& p) {
     return p.unit.empty() ? "" : " " + p.unit;
 }
@@ -241,7 +246,7 @@ const Parameter* find_parameter(std::string_view key) {
 
 const std::string& nearest_key(std::string_view key) {
     auto by_distance = [&](const Parameter& a, const Parameter& b) {
-        return edit_distance(a.key, key) < edit_distance(b.key, key);
+        return unlikeness(a.key, key) < unlikeness(b.key, key);
     };
     return std::min_element(table().begin(), table().end(), by_distance)->key;
 }

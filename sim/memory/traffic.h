@@ -1,4 +1,5 @@
-// Traffic by data structure and phase: one cell of plain counters for each pair.
+// Traffic by data structure and phase: one cell of plain counters for each pair. A line written back counts
+// for the structure it belongs to and the phase that evicted it.
 #pragma once
 
 #include <array>

@@ -29,6 +29,7 @@ TEST(MachineFile, MistakesAreOneClearLine) {
         {"[chip]\ncores = true\n", "m.toml:2:9:", "must be a number or a word"},
         {"[chip]\ncores = [1]\n", "m.toml:2:9:", "must be a number or a word"},
         {"[chip]\ncors = 4\n", "m.toml:2:1:", "nearest known one is chip.cores"},
+        {"[l1]\nsze = 4\n", "m.toml:2:1:", "nearest known one is l1.size_bytes"},
         {"[chipp]\ncores = 4\n", "m.toml:2:1:", "nearest known one is chip.cores"},
         {"cores = 4\n", "m.toml:1:1:", "keys stand in sections"},
         {"[core]\nlanes = 3\n", "m.toml:2:9:", "power of two"},
