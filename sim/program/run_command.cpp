@@ -55,6 +55,21 @@ json renderer(const razor::FrameStatistics& s) {
     return out;
 }
 
+/// What was rendered and what it took, above the machine's own report.
+std::string frame_text(const razor::Settings& s, int workers, const razor::FrameStatistics& f,
+                       const Report& r) {
+    auto rays = static_cast<double>(f.counters.camera_rays + f.counters.shadow_rays);
+    return fmt::format(
+        "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{}\n"
+        "rays                   {} camera, {} shadow; {:.3f} million a second of simulated time\n"
+        "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
+        "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
+        s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", f.counters.camera_rays,
+        f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
+        f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
+        f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
+}
+
 } // namespace
 
 void MachineOptions::add_to(CLI::App& app) {
@@ -137,7 +152,8 @@ int RunCommand::run() const {
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");
     }
-    const std::string text = print_text(report);
+    const std::string text =
+        frame_text(description.settings, workers, statistics, report) + print_text(report);
     if (report_.empty())
         fmt::print("{}", text);
     else
