@@ -180,6 +180,20 @@ TEST(Core, RegistersSpillThroughTheL1) {
     EXPECT_EQ(enough.core.spill_loads, 0U);
 }
 
+TEST(Core, RegistersKeepTheLastUsed) {
+    Config c = simple();
+    c.core.vector_registers = 2;
+    Report r = run(c, [](int) {
+        stamp a = vector_op(operation::add, stamp{});
+        stamp b = vector_op(operation::add, stamp{});
+        cross_to_scalar(operation::reduce, a, stamp{}); // a is younger than b now
+        vector_op(operation::add, stamp{});             // pushes b out
+        cross_to_scalar(operation::reduce, a, stamp{});
+        EXPECT_NE(b.value, 0U);
+    });
+    EXPECT_EQ(r.core.spill_loads, 0U);
+}
+
 TEST(Core, MispredictsCostTheirPenalty) {
     Config c = simple();
     c.core.predictor = "counters";

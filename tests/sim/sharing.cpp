@@ -98,6 +98,29 @@ TEST(Sharing, NobodyReadsTheFuture) {
     }
 }
 
+// A write of a shared word takes its line from all L1s; what was dirty there reaches the L2 first.
+TEST(Sharing, WritesInvalidateOtherCopies) {
+    Shared s;
+    Report r = s.run(several(2, 1), 2, [&](int w) {
+        auto look = [&](stamp after) {
+            before_atomic(here, atomic::load_acquire, s.word(0), after, stamp{});
+            return after_atomic(here, atomic::load_acquire, s.word(0), false);
+        };
+        if (w == 0) {
+            stamp seen = look(stamp{});
+            isa::timing::store(here, &s.word(0)[1], 4, seen, stamp{}); // the same line
+            EXPECT_EQ(look(stamp{1000, 1000}).last, 1002U);            // still there
+            EXPECT_GT(look(stamp{3000, 3000}).last, 3002U);            // gone
+        } else {
+            before_atomic(here, atomic::store_release, s.word(0), stamp{2000, 2000}, stamp{});
+            after_atomic(here, atomic::store_release, s.word(0), true);
+        }
+    });
+    EXPECT_EQ(r.l1[0].invalidations, 1U);
+    EXPECT_EQ(r.l1[0].write_backs, 1U);
+    EXPECT_EQ(r.l1[0].misses, 2U);
+}
+
 TEST(Sharing, PublishedDataIsSeen) {
     for (integer quantum : {1, 100}) {
         Config c = several(4, 2);
