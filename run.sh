@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 . tests/tools/setup.sh
 
-simulated_size=64x64 # under a minute on one core
+simulated_size=128x96 # some 20 s on one core
 simulated_samples=1
 picture_size=1024x768
 scene=configs/scenes/default.toml
@@ -17,7 +17,7 @@ if (($# > 0)); then
 fi
 
 install_missing "${packages_to_run[@]}"
-say "building in build/release"
+say "building in build/release (the first time some minutes)"
 if [[ ! -e build/release/build.ninja ]]; then
     configure release build/release -DRAZOR_TESTS=OFF
 fi
@@ -37,10 +37,11 @@ fi
 say "native picture, $picture_size: out/default.exr, out/default.png"
 "$razor" render "$scene" --size "$picture_size" -o out/default.exr -o out/default.png
 
-say "simulated picture, $simulated_size, $simulated_samples sample(s) a pixel, on $machine: out/simulated.exr"
+say "simulated picture, $simulated_size, $simulated_samples sample(s) a pixel, on $machine: out/simulated.exr, out/simulated.png"
 "$simulator" run --machine "$machine" --scene "$scene" --size "$simulated_size" --spp "$simulated_samples" \
-    -o out/simulated.exr --json out/report.json | tee out/report.txt
+    -o out/simulated.exr -o out/simulated.png --json out/report.json | tee out/report.txt
 
-say "the same picture natively: out/native.exr; bit for bit?"
+say "the same picture natively: out/native.exr; are both the same, bit for bit?"
 "$razor" render "$scene" --size "$simulated_size" --spp "$simulated_samples" --isa "$isa" --quiet -o out/native.exr
 "$compare" out/native.exr out/simulated.exr
+say "done: pictures, report.txt and report.json are in out/"
