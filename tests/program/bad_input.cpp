@@ -120,7 +120,9 @@ TEST_F(Razor, LoadsOrRefusesEveryOddFile) {
         const std::string name = entry.path().filename().string();
         ++files;
         if (refused.contains(name)) {
-            expect_refused("render " + entry.path().string() + " -o picture.exr", name);
+            // Faces that a cage cannot have are refused by mesh and face, all else by file and line.
+            expect_refused("render " + entry.path().string() + " -o picture.exr",
+                           entry.path().stem().string());
         } else {
             const Outcome result =
                 razor("render " + entry.path().string() + " -o p.exr --size 24x16 --spp 1");
