@@ -87,4 +87,22 @@ private:
     bool published_ = false;
 };
 
+/// Returns once `state` is ready: by `build`, if nobody else has built or is building.
+template <class Build> inline void build_once(pointer<shared_int> state, Build build) {
+    sint seen = load_acquire(state);
+    while (branch(seen != ready)) {
+        if (branch(seen == absent)) {
+            seen = compare_exchange(state, absent, busy);
+            if (branch(seen == absent)) {
+                BusyGuard guard(state, absent);
+                build();
+                guard.publish(ready);
+                return;
+            }
+        } else {
+            seen = wait_while(state, busy);
+        }
+    }
+}
+
 } // namespace razor::ISA_TARGET

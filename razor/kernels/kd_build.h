@@ -244,21 +244,7 @@ inline void build_root(const Context& c) {
 
 /// Returns once the worker's tree has a root, making it if nobody else does.
 inline void ensure_root(const Context& c) {
-    pointer<shared_int> state = field(c.tree, &TreeRecord::root_state);
-    sint seen = load_acquire(state);
-    while (branch(seen != ready)) {
-        if (branch(seen == absent)) {
-            seen = compare_exchange(state, absent, busy);
-            if (branch(seen == absent)) {
-                BusyGuard guard(state, absent);
-                build_root(c);
-                guard.publish(ready);
-                return;
-            }
-        } else {
-            seen = wait_while(state, busy);
-        }
-    }
+    build_once(field(c.tree, &TreeRecord::root_state), [&] { build_root(c); });
 }
 
 } // namespace razor::ISA_TARGET

@@ -34,6 +34,7 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
 
 inline void make_normals(const Context& c, sint line, pointer<BlockHeader> header, sint normals_at) {
     phase_scope phase(phase_shade);
+    tally(c.counters->normal_blocks, 1);
     sint patch = load(field(header, &BlockHeader::patch));
     sint mesh = load(field(header, &BlockHeader::mesh));
     sint number = load(field(header, &BlockHeader::number));
@@ -95,24 +96,8 @@ inline void make_normals(const Context& c, sint line, pointer<BlockHeader> heade
 inline sint ensure_normals(const Context& c, sint line) {
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
     sint normals_at = load(field(header, &BlockHeader::normals_at));
-    if (branch(normals_at == 0))
-        return normals_at;
-    pointer<shared_int> state = field(header, &BlockHeader::normals);
-    sint seen = load_acquire(state);
-    while (branch(seen != ready)) {
-        if (branch(seen == absent)) {
-            seen = compare_exchange(state, absent, busy);
-            if (branch(seen == absent)) {
-                BusyGuard guard(state, absent);
-                make_normals(c, line, header, normals_at);
-                tally(c.counters->normal_blocks, 1);
-                guard.publish(ready);
-                return normals_at;
-            }
-        } else {
-            seen = wait_while(state, busy);
-        }
-    }
+    if (branch(normals_at != 0))
+        build_once(field(header, &BlockHeader::normals), [&] { make_normals(c, line, header, normals_at); });
     return normals_at;
 }
 

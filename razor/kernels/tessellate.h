@@ -460,21 +460,7 @@ inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
 /// Returns once the patch is open in the worker's tree, opening it if nobody else does.
 inline pointer<OpenPatch> open_patch(const Context& c, sint patch) {
     pointer<OpenPatch> entry = c.open + patch;
-    pointer<shared_int> state = field(entry, &OpenPatch::state);
-    sint seen = load_acquire(state);
-    while (branch(seen != ready)) {
-        if (branch(seen == absent)) {
-            seen = compare_exchange(state, absent, busy);
-            if (branch(seen == absent)) {
-                BusyGuard guard(state, absent);
-                dice_patch(c, patch, entry);
-                guard.publish(ready);
-                return entry;
-            }
-        } else {
-            seen = wait_while(state, busy);
-        }
-    }
+    build_once(field(entry, &OpenPatch::state), [&] { dice_patch(c, patch, entry); });
     return entry;
 }
 
