@@ -1,0 +1,83 @@
+// Builds end, and stay bounded, however the boxes lie.
+#include "tests/kernels/cages.h"
+#include "tests/kernels/rays.h"
+#include "tests/kernels/targets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace razor::test {
+namespace {
+
+constexpr int faces = 20000;
+
+/// Separate quads, each of its own four points.
+Mesh quads(const std::function<glm::dvec3(int face, int corner)>& point) {
+    Mesh m;
+    m.name = "quads";
+    m.scheme = Scheme::bilinear;
+    for (int f = 0; f < faces; ++f) {
+        m.face_sizes.push_back(4);
+        for (int c = 0; c < 4; ++c) {
+            m.face_vertices.push_back(static_cast<int>(m.points.size()));
+            m.points.push_back(point(f, c));
+        }
+    }
+    return m;
+}
+
+glm::dvec3 unit_square(int corner) {
+    return {corner == 1 || corner == 2 ? 1 : 0, corner >= 2 ? 1 : 0, 0};
+}
+
+void expect_bounded(const Mesh& mesh, double items_a_face, const std::vector<Ray>& rays,
+                    const std::vector<int>& patches) {
+    for (const KernelTable* target : native_targets()) {
+        Frame frame(scene_of(mesh, 1), {});
+        Tracer tracer(frame, 64);
+        frame.build_all(*target);
+        FrameStatistics s = frame.statistics();
+        EXPECT_LT(static_cast<double>(s.list_bytes), items_a_face * faces * 7 * 4) << target->name;
+        EXPECT_LT(s.inner_nodes, 20 * faces) << target->name;
+        std::vector<Hit> hits = tracer.closest(*target, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            EXPECT_EQ(hits[i].patch, patches[i]) << target->name;
+    }
+}
+
+TEST(KdTree, CoincidentQuads) {
+    Mesh mesh = quads([](int, int corner) { return unit_square(corner); });
+    // The first of all that lie there is hit.
+    // No plane separates them, but trimming empty space may go on to the depth limit.
+    expect_bounded(mesh, kd_depth_limit + 10, {{{0.1F, 0.2F, 1}, {0, 0, -1}}, {{2, 0, 1}, {0, 0, -1}}},
+                   {0, -1});
+}
+
+TEST(KdTree, EverythingInOnePlane) {
+    Mesh mesh = quads([](int face, int corner) {
+        return unit_square(corner) + glm::dvec3(1.5 * (face % 200), 1.5 * (face / 200), 0);
+    });
+    Frame frame(scene_of(mesh, 1), {});
+    std::vector<Ray> rays;
+    std::vector<int> patches;
+    for (int f = 0; f < faces; f += 797) {
+        auto x = static_cast<float>(1.5 * (f % 200) + 0.3 - frame.origin().x);
+        auto y = static_cast<float>(1.5 * (f / 200) + 0.6 - frame.origin().y);
+        rays.push_back({{x, y, 5}, {0, 0, -1}});
+        patches.push_back(f);
+    }
+    expect_bounded(mesh, 60, rays, patches);
+}
+
+TEST(KdTree, PointsAndLines) {
+    Mesh mesh = quads([](int face, int corner) {
+        glm::dvec3 at(std::sin(face), std::cos(1.3 * face), std::sin(0.7 * face));
+        return at + glm::dvec3(0, 0, face % 2 == 0 && corner >= 2 ? 0.5 : 0);
+    });
+    expect_bounded(mesh, 400, {{{0, 0, 5}, {0, 0, -1}}}, {-1});
+}
+
+} // namespace
+} // namespace razor::test

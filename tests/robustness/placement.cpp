@@ -1,0 +1,87 @@
+// Where a scene lies and how large it is: rays from inside closed meshes never escape.
+#include "tests/kernels/cages.h"
+#include "tests/kernels/oracle.h"
+#include "tests/kernels/targets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace razor::test {
+namespace {
+
+/// Rays that escape, of `count` from points inside the mesh `mesh` of the scene.
+int escapes(const Scene& scene, int mesh, const KernelTable& target, int count) {
+    Frame frame(scene, {});
+    Tracer tracer(frame, count);
+    frame.build_all(target);
+    Oracle oracle(frame, std::strcmp(target.name, "sse4") != 0);
+    std::vector<Triangle> around;
+    for (const Triangle& t : oracle.triangles())
+        if (t.mesh == mesh)
+            around.push_back(t);
+    RayMaker make(around, oracle.origins(), 11);
+    std::vector<Point> starts;
+    for (int tries = 0; starts.size() < 8 && tries < 3000; ++tries) {
+        Point p = make.random_point();
+        if (oracle.inside(p))
+            starts.push_back(p);
+    }
+    if (starts.empty())
+        return count;
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) {
+        const Point& from = starts[static_cast<std::size_t>(i / 32) % starts.size()];
+        rays.push_back({from, i % 4 != 0 ? make.direction_at_feature(from) : make.random_direction()});
+    }
+    int missed = 0;
+    for (const Hit& h : tracer.closest(target, rays))
+        missed += h.patch < 0 ? 1 : 0;
+    return missed;
+}
+
+Mesh placed(Mesh mesh, double scale, const glm::dvec3& offset) {
+    for (glm::dvec3& p : mesh.points)
+        p = p * scale + offset;
+    return mesh;
+}
+
+class Placement : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(Placement, NoRayEscapes) {
+    auto [scale, offset] = GetParam();
+    for (const Mesh& mesh : {stretched(urchin_cage()), bilinear(stretched(urchin_cage()))}) {
+        Scene scene = scene_of(placed(mesh, scale, glm::dvec3(offset, -0.7 * offset, 0.3 * offset)), 60);
+        for (const KernelTable* target : native_targets())
+            EXPECT_EQ(escapes(scene, 0, *target, 20000), 0) << target->name << ' ' << mesh.name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(ScalesAndOffsets, Placement,
+                         testing::Values(std::pair(1.0, 0.0), std::pair(1.0, 1e3), std::pair(1.0, 1e5),
+                                         std::pair(1.0, 1e6), std::pair(1e-12, 0.0), std::pair(1e-6, 0.0),
+                                         std::pair(1e6, 0.0), std::pair(1e12, 0.0)),
+                         [](const auto& place) {
+                             auto power = [](double x) {
+                                 return x == 0 ? std::string("0")
+                                               : "1e" + std::to_string(std::lround(std::log10(x)));
+                             };
+                             std::string name =
+                                 "scale_" + power(place.param.first) + "_offset_" + power(place.param.second);
+                             for (char& c : name)
+                                 c = c == '-' ? 'm' : c;
+                             return name;
+                         });
+
+TEST(Placement, SizesOfTenMillionToOne) {
+    Scene scene = scene_of(stretched(torus_cage(9, 6)), 60);
+    Mesh large = placed(bilinear(cube_cage()), 1e7, glm::dvec3(0));
+    large.edge_length = 1e6;
+    scene.meshes.push_back(large);
+    for (const KernelTable* target : native_targets())
+        EXPECT_EQ(escapes(scene, 0, *target, 5000), 0) << target->name;
+}
+
+} // namespace
+} // namespace razor::test
