@@ -37,7 +37,7 @@ void RenderCommand::add_to(CLI::App& app) {
     render.add_option("--isa", isa_, "instruction set: auto, plain, sse4, avx2 or avx512")->type_name("NAME");
     render
         .add_option("--share", share_,
-                    "who shares a kd-tree: worker (nobody), chip (all), or N workers a tree")
+                    "who shares a kd-tree: chip (all, the default), worker (nobody), or N workers a tree")
         ->type_name("WHO");
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");

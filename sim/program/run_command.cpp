@@ -97,7 +97,7 @@ void RunCommand::add_to(CLI::App& app) {
         ->type_name("FILE.txt");
     run.add_option("--workers", workers_, "workers; without it, one a hardware thread")->type_name("N");
     run.add_option("--share", share_,
-                   "who shares a kd-tree: worker (nobody), chip (all), or N workers a tree")
+                   "who shares a kd-tree: chip (all, the default), worker (nobody), or N workers a tree")
         ->type_name("WHO");
     run.add_flag("--quiet", quiet_, "show no progress");
 }
