@@ -82,7 +82,7 @@ TEST_P(BruteForce, HitsAreIdentical) {
         const std::vector<Triangle>& triangles = oracle.triangles();
         RayMaker make(triangles, oracle.origins(), 1);
         std::vector<Ray> rays =
-            all_kinds_of_rays(make, std::clamp<std::size_t>(30'000'000 / triangles.size(), 230, 3000));
+            all_kinds_of_rays(make, std::clamp<std::size_t>(10'000'000 / triangles.size(), 230, 1000));
         std::vector<Hit> expected;
         std::vector<bool> expected_any;
         int hits = 0;

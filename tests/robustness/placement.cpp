@@ -54,7 +54,8 @@ TEST_P(Placement, NoRayEscapes) {
     for (const Mesh& mesh : {stretched(urchin_cage()), bilinear(stretched(urchin_cage()))}) {
         Scene scene = scene_of(placed(mesh, scale, glm::dvec3(offset, -0.7 * offset, 0.3 * offset)), 60);
         for (const KernelTable* target : native_targets())
-            EXPECT_EQ(escapes(scene, 0, *target, 20000), 0) << target->name << ' ' << mesh.name;
+            EXPECT_EQ(escapes(scene, 0, *target, target == native_targets().back() ? 20000 : 2000), 0)
+                << target->name << ' ' << mesh.name;
     }
 }
 
@@ -80,7 +81,8 @@ TEST(Placement, SizesOfTenMillionToOne) {
     large.edge_length = 1e6;
     scene.meshes.push_back(large);
     for (const KernelTable* target : native_targets())
-        EXPECT_EQ(escapes(scene, 0, *target, 5000), 0) << target->name;
+        EXPECT_EQ(escapes(scene, 0, *target, target == native_targets().back() ? 4000 : 200), 0)
+            << target->name;
 }
 
 } // namespace
