@@ -3,6 +3,8 @@
 razor=razor/program/razor # within a build folder
 simulator=sim/program/razor-sim
 compare_images=$PWD/build/release/analysis/razor-image-compare
+# Not under sanitizers: tests that run none of our code, and the longest ones' variants of the same paths.
+not_sanitized='^isa_(refused|lint)|^tree$|(Watertight|BruteForce)\..*_(stretched|bilinear)'
 scene=configs/scenes/default.toml
 machine=configs/machines/tiny.toml
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
@@ -87,9 +89,9 @@ build() {
     compile "build/$preset"
 }
 
-# On a terminal ctest's own progress; elsewhere its output without the tests that passed.
+# run_tests PRESET [OPTION OF CTEST...]: on a terminal ctest's own progress, elsewhere no word of tests that passed.
 run_tests() {
-    local arguments=(--preset "$1" -j "$(nproc)" --no-tests=error --output-junit tests.xml)
+    local arguments=(--preset "$1" -j "$(nproc)" --no-tests=error --output-junit tests.xml "${@:2}")
     if [[ -t 1 ]]; then
         ctest "${arguments[@]}" --progress
     else
