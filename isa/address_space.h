@@ -1,5 +1,6 @@
 // Frame memory: one reservation of virtual addresses, cut into regions that each hold one data structure of one owner.
-// Simulated addresses are distances from its base, so they never depend on the host. Memory reads as zero until written.
+// Simulated addresses are distances from its base, so they never depend on the host. Memory reads as zero until
+// written.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +11,13 @@
 namespace isa {
 
 struct region {
-    std::string structure; // the data structure it holds, as reports name it
-    int owner = -1;        // worker, or -1: everybody's
+    std::string structure;            // the data structure it holds, as reports name it
+    int owner = -1;                   // worker, or -1: everybody's
     std::uint64_t begin = 0, end = 0; // bytes from the base
 };
 
 class address_space {
-  public:
+public:
     /// Regions begin at multiples of this many bytes.
     static constexpr std::uint64_t granule = std::uint64_t{1} << 16;
 
@@ -39,7 +40,7 @@ class address_space {
     /// Gives the host's memory back; the bytes read as zero again.
     void clear(const region& r);
 
-  private:
+private:
     std::byte* base_ = nullptr;
     std::uint64_t capacity_ = 0, used_ = 0;
     std::vector<region> regions_;

@@ -98,23 +98,36 @@ inline svec limit_point(const Context& c, const Cage& g, pointer<FaceRecord> fac
     sint first = load(field(face, &FaceRecord::control_first));
     sint n = load(field(face, &FaceRecord::control_count));
     pointer<float> row = page_weights(c, g, face_class, PageKind::vertex, corner);
-    vvec sum{vfloat(0.0F), vfloat(0.0F), vfloat(0.0F)};
-    for (sint i = 0; branch(i < n); i += isa::width) {
-        vmask m = first_lanes(n - i);
-        vfloat w = load_vector(row + i, m);
-        vint point = load_vector(g.controls + (first + i), m);
-        vint at = point * vint(3);
-        vfloat x = gather(g.points, at, m);
-        vfloat y = gather(g.points + 1, at, m);
-        vfloat z = gather(g.points + 2, at, m);
-        sum.x = fma(w, x, sum.x);
-        sum.y = fma(w, y, sum.y);
-        sum.z = fma(w, z, sum.z);
+    // Summed as 64 lanes would sum it, so that no bit depends on the width.
+    constexpr int parts = 64 / isa::width;
+    vfloat zero(0.0F);
+    vvec sum[parts];
+    for (vvec& part : sum)
+        part = {zero, zero, zero};
+    for (sint i = 0; branch(i < n); i += 64) {
+        for (int k = 0; k < parts; ++k) {
+            sint from = i + k * isa::width;
+            if (branch(from < n)) {
+                vmask m = first_lanes(n - from);
+                vfloat w = load_vector(row + from, m);
+                vint point = load_vector(g.controls + (first + from), m);
+                vint at = point * vint(3);
+                vfloat x = gather(g.points, at, m);
+                vfloat y = gather(g.points + 1, at, m);
+                vfloat z = gather(g.points + 2, at, m);
+                sum[k].x = fma(w, x, sum[k].x);
+                sum[k].y = fma(w, y, sum[k].y);
+                sum[k].z = fma(w, z, sum[k].z);
+            }
+        }
     }
+    for (int half = parts / 2; half >= 1; half /= 2)
+        for (int k = 0; k < half; ++k)
+            sum[k] = sum[k] + sum[k + half];
     svec p;
-    p.x = reduce_add(sum.x);
-    p.y = reduce_add(sum.y);
-    p.z = reduce_add(sum.z);
+    p.x = reduce_add(sum[0].x);
+    p.y = reduce_add(sum[0].y);
+    p.z = reduce_add(sum[0].z);
     return p;
 }
 

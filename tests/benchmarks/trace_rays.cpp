@@ -278,7 +278,8 @@ void run(const std::string& model, double triangles, int size, const std::string
         lazy.trace(kernels, rays.arguments(any_hit));
         Counters after = lazy.statistics().counters;
         double packets = std::ceil(rays.count / static_cast<double>(kernels.width));
-        fmt::print("{} packet: {:.1f} groups, {:.1f} nodes, {:.1f} boxes, {:.1f} blocks, {:.1f} cells, {:.1f} quads\n",
+        fmt::print("{} packet: {:.1f} groups, {:.1f} nodes, {:.1f} boxes, {:.1f} blocks, {:.1f} cells, "
+                   "{:.1f} quads\n",
                    any_hit ? "shadow" : "camera", static_cast<double>(after.groups - before.groups) / packets,
                    static_cast<double>(after.node_visits - before.node_visits) / packets,
                    static_cast<double>(after.box_tests - before.box_tests) / packets,
