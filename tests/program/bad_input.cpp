@@ -180,8 +180,8 @@ TEST_F(Razor, FailedWritingLeavesNothing) {
 
 TEST_F(Razor, InterruptLeavesNothing) {
     const std::size_t before = folder_.count();
-    const Outcome result = run("timeout --foreground --preserve-status -s INT 1 " + std::string(RAZOR_PROGRAM) +
-                                   " render --size 3000x3000 --spp 16 -o a.exr",
+    const Outcome result = run("timeout --foreground --preserve-status -s INT 1 " +
+                                   std::string(RAZOR_PROGRAM) + " render --size 3000x3000 --spp 16 -o a.exr",
                                folder_.path());
     EXPECT_EQ(result.code, 130) << result.err;
     EXPECT_EQ(result.err, "razor: interrupted; nothing written\n");
