@@ -13,6 +13,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <stdexcept>
 
 namespace razor {
 
@@ -27,6 +29,19 @@ constexpr std::uint64_t all_lists = 64 * gibibyte;
 std::uint64_t share_of(std::uint64_t all, int workers) {
     std::uint64_t granule = isa::address_space::granule;
     return all / static_cast<std::uint64_t>(workers) / granule * granule;
+}
+
+/// Fills in the table if there is none.
+int count_trees(FrameOptions& options) {
+    std::vector<int>& of = options.tree_of_worker;
+    if (of.empty())
+        of.assign(static_cast<std::size_t>(options.workers), 0);
+    if (of.size() != static_cast<std::size_t>(options.workers))
+        throw std::invalid_argument("a frame's tree_of_worker must have one entry a worker");
+    const std::set<int> used(of.begin(), of.end());
+    if (*used.begin() != 0 || *used.rbegin() != static_cast<int>(used.size()) - 1)
+        throw std::invalid_argument("a frame's trees must be numbered from 0 without gaps");
+    return static_cast<int>(used.size());
 }
 
 void put(float (&to)[3], const glm::dvec3& v) {
@@ -94,7 +109,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         topologies.push_back(analyse_topology(mesh));
         undrawn += topologies.back().undrawn_faces;
     }
-    trees = options.share <= 0 ? 1 : (options.workers + options.share - 1) / options.share;
+    trees = count_trees(options);
     geometry = locate_scene(scene);
     pages = std::make_unique<PageStore>(meshes, topologies);
     counters.resize(static_cast<std::size_t>(options.workers));
@@ -272,7 +287,7 @@ void Frame::Impl::place_workers() {
         WorkerRecord& r = header->workers.get()[w];
         r.stack.set(region<float>("stack", w, stack_floats));
         r.packets.set(region<float>("packets", w, packet_floats));
-        r.tree = options.share <= 0 ? 0 : w / options.share;
+        r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
     }
 }
 

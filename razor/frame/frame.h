@@ -18,7 +18,8 @@ namespace razor {
 
 struct FrameOptions {
     int workers = 1;
-    int share = 0; // workers that share one kd-tree and its grids; 0: all of them
+    /// The kd-tree (with its grids) that each worker uses, numbered from 0 without gaps; empty: all use one.
+    std::vector<int> tree_of_worker = {};
     /// Each worker's arenas; 0: as large as 32-bit references allow.
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
 };

@@ -1,5 +1,6 @@
 #include "razor/native/render.h"
 
+#include "razor/frame/tree_groups.h"
 #include "razor/native/targets.h"
 
 #include <chrono>
@@ -73,7 +74,8 @@ RenderResult render_native(const Scene& scene, const RenderOptions& options) {
         options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
     r.statistics.threads = std::max(threads, 1);
     auto begin = Clock::now();
-    Frame frame(scene, {.workers = r.statistics.threads, .share = options.share});
+    Frame frame(scene, {.workers = r.statistics.threads,
+                        .tree_of_worker = tree_groups(r.statistics.threads, options.share)});
     r.statistics.load_seconds = seconds_since(begin);
     begin = Clock::now();
     run_workers(frame, kernels, options.progress, options.cancel);

@@ -116,6 +116,11 @@ int parse_share(std::string_view text) {
     if (text == "chip") {
         return 0;
     }
+    if (text == "core" || text == "tile") {
+        throw UserError(fmt::format("--share '{0}' needs a machine that says what a {0} is (razor-sim); give "
+                                    "worker, chip or a number of workers a tree",
+                                    text));
+    }
     if (text.find_first_not_of("0123456789") != std::string_view::npos) {
         throw UserError(
             fmt::format("--share '{}' is unknown; give worker, chip or a number of workers a tree", text));

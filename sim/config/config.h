@@ -55,6 +55,11 @@ struct MemoryConfig {
     std::string mapping;
 };
 
+/// How the renderer uses the machine.
+struct KdTreeConfig {
+    std::string share;
+};
+
 struct SimulationConfig {
     integer quantum = 0, stack_kib = 0;
 };
@@ -67,6 +72,7 @@ struct Config {
     L2Config l2;
     CoherenceConfig coherence;
     MemoryConfig memory;
+    KdTreeConfig kdtree;
     SimulationConfig sim;
 
     /// Every parameter at its default.

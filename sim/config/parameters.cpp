@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace sim {
 
@@ -35,9 +36,10 @@ struct Table {
     }
     template <class Section>
     void add(std::string key, Section Config::*section, std::string Section::*member,
-             std::vector<std::string> choices, std::string meaning) {
+             std::vector<std::string> choices, std::string meaning, integer most_number = 0) {
         auto at = [section, member](Config& c) -> std::string& { return (c.*section).*member; };
-        rows.push_back({std::move(key), "", std::move(meaning), ChoiceKind{at, std::move(choices)}});
+        rows.push_back(
+            {std::move(key), "", std::move(meaning), ChoiceKind{at, std::move(choices), most_number}});
     }
     void add_class(const char* table, std::array<integer, class_count> Config::*values, int index,
                    integer preset, integer least, std::string meaning) {
@@ -171,6 +173,14 @@ void add_memory(Table& t) {
           "fields of an address, most significant first, above the bytes of a burst");
 }
 
+void add_kdtree(Table& t) {
+    t.add(
+        "kdtree.share", &Config::kdtree, &KdTreeConfig::share, {"chip", "tile", "core", "worker"},
+        "workers that share a kd-tree and its grids: all, those of a tile or core, none, or so many that are "
+        "neighbours on the chip",
+        integer{1} << 20);
+}
+
 void add_simulation(Table& t) {
     using C = SimulationConfig;
     auto s = &Config::sim;
@@ -186,6 +196,7 @@ std::vector<Parameter> make_table() {
     add_classes(t);
     add_caches(t);
     add_memory(t);
+    add_kdtree(t);
     add_simulation(t);
     return std::move(t.rows);
 }
@@ -214,6 +225,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// How unlike two keys are; a shortened key is nearly as good as a misspelt one.
 std::size_t unlikeness(std::string_view known, std::string_view key) {
     return std::min(edit_distance(known, key), 1 + edit_distance(known.substr(0, key.size() + 1), key));
+}
+
+/// The words of a choice, and its numbers if it has any, for messages.
+std::string choices_of(const ChoiceKind& c) {
+    std::string words = fmt::format("\"{}\"", fmt::join(c.choices, "\", \""));
+    return c.most_number == 0 ? words : fmt::format("{}, or a number from 1 to {}", words, c.most_number);
+}
+
+/// Whether a choice stands at a number.
+bool is_number(const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
 std::string with_unit(const Parameter& p) {
@@ -257,16 +279,19 @@ std::string print_value(const Parameter& p, const Config& config) {
         return fmt::format("{}", k->at(c));
     if (const auto* r = std::get_if<RealKind>(&p.kind))
         return fmt::format("{:#}", r->at(c));
-    return fmt::format("\"{}\"", std::get<ChoiceKind>(p.kind).at(c));
+    const std::string& word = std::get<ChoiceKind>(p.kind).at(c);
+    return is_number(word) ? word : fmt::format("\"{}\"", word);
 }
 
 std::string set_integer(const Parameter& p, Config& config, integer value) {
     if (std::holds_alternative<RealKind>(p.kind))
         return set_real(p, config, static_cast<double>(value));
+    if (const auto* c = std::get_if<ChoiceKind>(&p.kind)) {
+        if (c->most_number == 0)
+            return fmt::format("{} is one of {}, not a number", p.key, choices_of(*c));
+        return set_text(p, config, fmt::format("{}", value));
+    }
     const auto* k = std::get_if<IntegerKind>(&p.kind);
-    if (k == nullptr)
-        return fmt::format("{} is one of \"{}\", not a number", p.key,
-                           fmt::join(std::get<ChoiceKind>(p.kind).choices, "\", \""));
     if (value < k->least || value > k->most)
         return fmt::format("{} is {}; it must be from {} to {}{}", p.key, value, k->least, k->most,
                            with_unit(p));
@@ -292,10 +317,13 @@ std::string set_text(const Parameter& p, Config& config, const std::string& valu
     const auto* c = std::get_if<ChoiceKind>(&p.kind);
     if (c == nullptr)
         return fmt::format("{} is \"{}\"; it must be a number", p.key, value);
-    if (std::find(c->choices.begin(), c->choices.end(), value) == c->choices.end())
-        return fmt::format("{} is \"{}\"; it must be one of \"{}\"", p.key, value,
-                           fmt::join(c->choices, "\", \""));
-    c->at(config) = value;
+    integer number = 0;
+    const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    const bool right = error == std::errc{} && stop == value.data() + value.size() && number >= 1 &&
+                       number <= c->most_number;
+    if (!right && std::find(c->choices.begin(), c->choices.end(), value) == c->choices.end())
+        return fmt::format("{} is \"{}\"; it must be one of {}", p.key, value, choices_of(*c));
+    c->at(config) = right ? fmt::format("{}", number) : value;
     return "";
 }
 

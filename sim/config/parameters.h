@@ -26,6 +26,7 @@ struct RealKind {
 struct ChoiceKind {
     std::function<std::string&(Config&)> at;
     std::vector<std::string> choices; // the first is the default
+    integer most_number = 0;          // whole numbers from 1 to this will do as well
 };
 
 struct Parameter {

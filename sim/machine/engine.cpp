@@ -1,5 +1,7 @@
 #include "sim/machine/engine.h"
 
+#include "sim/config/placement.h"
+
 #include <fmt/core.h>
 
 #include <bit>
@@ -118,11 +120,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
         }
     }
     std::vector<int> placed(harts_.size(), -1);
-    for (int w = 0; w < workers; ++w) {
-        integer core = config.chip.placement == "pack" ? w / config.chip.threads : w % config.chip.cores;
-        integer thread = config.chip.placement == "pack" ? w % config.chip.threads : w / config.chip.cores;
-        placed[static_cast<std::size_t>(core * config.chip.threads + thread)] = w;
-    }
+    const Placement placement(config.chip);
+    for (int w = 0; w < workers; ++w)
+        placed[static_cast<std::size_t>(placement.number(placement.of(w)))] = w;
     for (Hart& h : harts_) {
         h.worker = placed[h.number];
         if (h.worker >= 0)

@@ -8,7 +8,10 @@
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
 #include "razor/scene/error.h"
+#include "sim/config/error.h"
 #include "sim/config/machine_file.h"
+#include "sim/config/parameters.h"
+#include "sim/config/placement.h"
 #include "sim/machine/machine.h"
 
 #include <fmt/format.h>
@@ -40,10 +43,11 @@ private:
     std::jthread thread_;
 };
 
-json renderer(const razor::FrameStatistics& s) {
+json renderer(const razor::FrameStatistics& s, const std::vector<int>& tree_of_worker) {
     json out;
     out["plan"] = s.plan;
     out["trees"] = s.trees;
+    out["tree_of_worker"] = tree_of_worker;
     razor::for_each_counter(s.counters,
                             [&](const char* name, std::int64_t value) { out["counters"][name] = value; });
     out["built"] = {{"inner_nodes", s.inner_nodes},
@@ -58,15 +62,16 @@ json renderer(const razor::FrameStatistics& s) {
 /// What was rendered and what it took, above the machine's own report.
 std::string frame_text(const razor::Settings& s, int workers, const razor::FrameStatistics& f,
                        const Report& r) {
+    const std::string& share = r.config.kdtree.share;
     auto rays = static_cast<double>(f.counters.camera_rays + f.counters.shadow_rays);
     return fmt::format(
-        "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{}\n"
+        "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
         "rays                   {} camera, {} shadow; {:.3f} million a second of simulated time\n"
         "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
         "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
-        s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", f.counters.camera_rays,
-        f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
-        f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
+        s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", "kdtree.share = " + share,
+        f.counters.camera_rays, f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened,
+        f.patches, f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
         f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
 }
 
@@ -96,18 +101,26 @@ void RunCommand::add_to(CLI::App& app) {
     run.add_option("--report", report_, "write the readable report here instead of printing it")
         ->type_name("FILE.txt");
     run.add_option("--workers", workers_, "workers; without it, one a hardware thread")->type_name("N");
-    run.add_option("--share", share_,
-                   "who shares a kd-tree: chip (all, the default), worker (nobody), or N workers a tree")
+    run.add_option(
+           "--share", share_,
+           "who shares a kd-tree: chip (all), tile, core, worker (nobody), or N neighbouring workers; "
+           "without it, as the machine file says (kdtree.share)")
         ->type_name("WHO");
     run.add_flag("--quiet", quiet_, "show no progress");
 }
 
 int RunCommand::run() const {
-    const Machine machine(read_machine(machine_.file, machine_.settings));
+    Config config = read_machine(machine_.file, machine_.settings);
+    if (!share_.empty()) {
+        const std::string wrong = set_text(*find_parameter("kdtree.share"), config, share_);
+        if (!wrong.empty())
+            throw ConfigError("--share: " + wrong);
+    }
+    const Machine machine(config);
     const double most = machine.threads();
     const int workers =
         workers_.empty() ? machine.threads() : razor::parse_whole("--workers", workers_, {1, most});
-    const int share = razor::parse_share(share_);
+    const std::vector<int> trees = Placement(config.chip).trees(workers, config.kdtree.share);
     const razor::SceneDescription description = scene_.describe();
     const std::string scene = razor::to_toml(description);
     for (const std::string& output : outputs_)
@@ -117,7 +130,7 @@ int RunCommand::run() const {
             razor::check_writable(file);
 
     const std::atomic<bool>& interrupted = razor::watch_interrupts();
-    razor::Frame frame(razor::build_scene(description), {.workers = workers, .share = share});
+    razor::Frame frame(razor::build_scene(description), {.workers = workers, .tree_of_worker = trees});
     const std::vector<std::string> phases(std::begin(razor::phase_names), std::end(razor::phase_names));
     Report report;
     {
@@ -141,13 +154,13 @@ int RunCommand::run() const {
     if (!json_.empty()) {
         json out{{"program", "razor-sim"},
                  {"version", razor::version()},
-                 {"options", {{"workers", workers}, {"workers_a_tree", share}}},
+                 {"options", {{"workers", workers}, {"share", config.kdtree.share}}},
                  {"scene", scene}};
         json run = json::parse(print_json(report));
         json host = run["host"];
         run.erase("host");
         out.update(run);
-        out["renderer"] = renderer(statistics);
+        out["renderer"] = renderer(statistics, trees);
         host["topology_page_seconds"] = statistics.page_seconds;
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");

@@ -3,6 +3,7 @@
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
 
+#include "razor/frame/tree_groups.h"
 #include "razor/native/render.h"
 #include "razor/scene/error.h"
 
@@ -33,7 +34,9 @@ std::string failure(FrameOptions options) {
 
 class Arenas : public testing::TestWithParam<int> {
 protected:
-    FrameOptions options(int share) const { return {.workers = GetParam(), .share = share}; }
+    FrameOptions options(int share) const {
+        return {.workers = GetParam(), .tree_of_worker = tree_groups(GetParam(), share)};
+    }
 };
 
 TEST_P(Arenas, FullOfGrids) {

@@ -3,6 +3,7 @@
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
 
+#include "razor/frame/tree_groups.h"
 #include "razor/native/render.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ std::vector<float> film_of(Frame& frame) {
 }
 
 std::vector<float> rendered(const Scene& scene, const KernelTable& kernels, int workers, int share) {
-    Frame frame(scene, {.workers = workers, .share = share});
+    Frame frame(scene, {.workers = workers, .tree_of_worker = tree_groups(workers, share)});
     run_workers(frame, kernels);
     return film_of(frame);
 }
@@ -79,7 +80,7 @@ TEST(Images, DoNotDependOnWorkersAndSharing) {
 TEST(Images, DoNotDependOnTheFrameBefore) {
     for (const Scene& scene : scenes()) {
         const KernelTable& target = *native_targets().back();
-        Frame frame(scene, {.workers = 2, .share = 1});
+        Frame frame(scene, {.workers = 2, .tree_of_worker = {0, 1}});
         run_workers(frame, target);
         std::vector<float> first = film_of(frame);
         frame.reset();

@@ -3,11 +3,14 @@
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
 
+#include "razor/frame/tree_groups.h"
 #include "razor/native/render.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 namespace razor::test {
 namespace {
@@ -19,7 +22,7 @@ TEST(SharedTree, ManyWorkersOneTree) {
         const KernelTable& kernels = *native_targets().back();
         std::vector<float> first;
         for (int share : {0, 3}) {
-            Frame frame(scene, {.workers = 6, .share = share});
+            Frame frame(scene, {.workers = 6, .tree_of_worker = tree_groups(6, share)});
             for (int again = 0; again < 3; ++again) {
                 frame.reset(); // pages stay: the first time they are made under everybody's eyes
                 run_workers(frame, kernels);
@@ -33,6 +36,48 @@ TEST(SharedTree, ManyWorkersOneTree) {
             }
         }
     }
+}
+
+// Any table of workers and trees: the same picture, and statistics that count each tree's own patches and
+// nodes.
+TEST(SharedTree, EveryTreeIsCountedByItself) {
+    Scene scene = named_scene("torus_bilinear")->scene;
+    scene.settings.width = scene.settings.height = 96;
+    const KernelTable& kernels = *native_targets().back();
+    std::vector<float> first;
+    for (const std::vector<int>& table : std::vector<std::vector<int>>{
+             {}, {0, 1, 2, 0, 1, 2}, {2, 1, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 1}, {0, 1, 2, 3, 4, 5}}) {
+        Frame frame(scene, {.workers = 6, .tree_of_worker = table});
+        run_workers(frame, kernels);
+        const FrameStatistics s = frame.statistics();
+        const FrameHeader& h = frame.header();
+        std::int64_t trees = 0, built = 0, opened = 0;
+        for (; trees < s.trees; ++trees) {
+            const TreeRecord& tree = h.trees.get()[trees];
+            built += tree.root_state.word == ready ? 1 : 0;
+            for (int p = 0; p < h.patch_count; ++p)
+                opened += tree.patches.get()[p].state.word == ready ? 1 : 0;
+        }
+        EXPECT_EQ(trees, table.empty() ? 1 : *std::max_element(table.begin(), table.end()) + 1);
+        for (std::size_t w = 0; w < table.size(); ++w)
+            EXPECT_EQ(h.workers.get()[w].tree, table[w]);
+        EXPECT_EQ(s.patches, trees * h.patch_count);
+        EXPECT_EQ(s.counters.patches_opened, opened);
+        EXPECT_EQ(s.inner_nodes + s.leaves + s.unsplit_nodes, 2 * s.inner_nodes + built);
+        const float* film = h.film.get();
+        std::vector<float> picture(film,
+                                   film + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes);
+        if (first.empty())
+            first = picture;
+        EXPECT_EQ(std::memcmp(first.data(), picture.data(), first.size() * sizeof(float)), 0);
+    }
+}
+
+TEST(SharedTree, TablesMustFit) {
+    const Scene scene = scene_of(cube_cage(), 4);
+    for (const std::vector<int>& table :
+         std::vector<std::vector<int>>{{0}, {0, 0, 0}, {0, 2}, {1, 1}, {-1, 0}, {0, 1000000000}})
+        EXPECT_THROW(Frame(scene, {.workers = 2, .tree_of_worker = table}), std::invalid_argument);
 }
 
 } // namespace
