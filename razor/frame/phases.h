@@ -7,10 +7,10 @@ enum Phase : int {
     phase_animate,    // moving what is animated, refitting bounds
     phase_build,      // kd-tree nodes and item lists
     phase_tessellate, // patches to blocks
-    phase_shade,      // normals, materials, camera rays, shadow rays' contributions
+    phase_shade,      // the tile loop, camera rays, normals, materials
     phase_traverse,   // kd-tree descent
     phase_intersect,  // blocks
-    phase_light,      // light samples
+    phase_light,      // light samples, shadow rays' contributions
     phase_resolve,    // the film
     phase_count
 };

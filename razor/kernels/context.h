@@ -1,5 +1,7 @@
 // What a kernel carries with it: the handles it loaded once from the frame header, in registers, and its
 // worker's own.
+// Each phase's code lies in an inline namespace of its own, PHASE_kernel, and the functions that enter a
+// phase are not inlined: code_size.cmake reads the size of every phase's code off the symbols.
 #pragma once
 
 #include "isa/isa.h"

@@ -10,6 +10,7 @@
 #include <cstddef>
 
 namespace razor::ISA_TARGET {
+inline namespace intersect_kernel {
 
 /// What inner loops are compiled for. The plan picks an instantiation; absent features leave no branch there.
 struct Features {
@@ -401,7 +402,7 @@ inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> l
 }
 
 template <Features F, bool Mixed>
-inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
+[[gnu::noinline]] inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
     phase_scope phase(phase_intersect);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
     sint mesh = load(field(header, &BlockHeader::mesh));
@@ -471,4 +472,5 @@ inline void intersect_block(const Context& c, const Group& g, sint line, Hits& h
     }
 }
 
+} // namespace intersect_kernel
 } // namespace razor::ISA_TARGET

@@ -6,6 +6,7 @@
 #include "razor/kernels/kd_list.h"
 
 namespace razor::ISA_TARGET {
+inline namespace build_kernel {
 
 inline constexpr int plane_samples = 8;
 inline constexpr float traversal_cost = 1.0F; // a packet's visit to a node ...
@@ -133,7 +134,7 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
 }
 
 /// Splits a node or makes it a leaf; returns its new state, not yet published.
-inline sint build_node(const Context& c, pointer<KdNode> node) {
+[[gnu::noinline]] inline sint build_node(const Context& c, pointer<KdNode> node) {
     phase_scope phase(phase_build);
     sint line = load(field(node, &KdNode::link));
     List l = read_list(c, line);
@@ -200,7 +201,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
 }
 
 /// The root's list: every patch, closed.
-inline void build_root(const Context& c) {
+[[gnu::noinline]] inline void build_root(const Context& c) {
     phase_scope phase(phase_build);
     sint patches = load(field(c.frame, &FrameHeader::patch_count));
     sint from_stride = load(field(c.frame, &FrameHeader::bounds_stride));
@@ -247,4 +248,5 @@ inline void ensure_root(const Context& c) {
     build_once(field(c.tree, &TreeRecord::root_state), [&] { build_root(c); });
 }
 
+} // namespace build_kernel
 } // namespace razor::ISA_TARGET

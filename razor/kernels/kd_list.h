@@ -5,6 +5,7 @@
 #include "razor/kernels/tessellate.h"
 
 namespace razor::ISA_TARGET {
+inline namespace build_kernel {
 
 struct List {
     pointer<ItemList> header;
@@ -168,4 +169,5 @@ template <class Wanted> inline List open_items(const Context& c, const List& old
     return l;
 }
 
+} // namespace build_kernel
 } // namespace razor::ISA_TARGET

@@ -5,6 +5,7 @@
 #include "razor/kernels/tessellate.h"
 
 namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
 
 /// Sums derivative rows for a vector of vertices from `from` on.
 inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_stride, sint controls_first,
@@ -32,7 +33,8 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
     store_vector(out + stride * 2, n.z, m);
 }
 
-inline void make_normals(const Context& c, sint line, pointer<BlockHeader> header, sint normals_at) {
+[[gnu::noinline]] inline void make_normals(const Context& c, sint line, pointer<BlockHeader> header,
+                                           sint normals_at) {
     phase_scope phase(phase_shade);
     tally(c.counters->normal_blocks, 1);
     sint patch = load(field(header, &BlockHeader::patch));
@@ -101,4 +103,5 @@ inline sint ensure_normals(const Context& c, sint line) {
     return normals_at;
 }
 
+} // namespace shade_kernel
 } // namespace razor::ISA_TARGET

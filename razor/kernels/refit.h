@@ -6,6 +6,7 @@
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {
+inline namespace animate_kernel {
 
 inline constexpr float hull_growth = 1.0F / 256.0F;
 
@@ -68,7 +69,7 @@ inline void refit_chunk(const Context& c, sint first) {
 }
 
 /// Refits every patch once, whoever takes part; returns when all are done.
-inline void refit(const Context& c) {
+[[gnu::noinline]] inline void refit(const Context& c) {
     phase_scope phase(phase_animate);
     pointer<QueueRecord> queues = load(field(c.frame, &FrameHeader::queues));
     sint chunks = load(field(c.frame, &FrameHeader::refit_chunks));
@@ -83,4 +84,5 @@ inline void refit(const Context& c) {
         done = wait_while(field(queues, &QueueRecord::refitted), done);
 }
 
+} // namespace animate_kernel
 } // namespace razor::ISA_TARGET

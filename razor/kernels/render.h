@@ -6,6 +6,7 @@
 #include "razor/kernels/shade.h"
 
 namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
 
 /// Pixels of a packet: as square as the width allows.
 inline constexpr int packet_width = isa::width >= 32 ? 8 : 4;
@@ -82,9 +83,13 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint 
     }
 }
 
+} // namespace shade_kernel
+
+inline namespace resolve_kernel {
+
 /// Means of the samples into the film. Pixels without a hit have infinite depth and a zero normal.
-inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel, sint samples,
-                    const vmask& m) {
+[[gnu::noinline]] inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel,
+                                      sint samples, const vmask& m) {
     phase_scope phase(phase_resolve);
     pointer<float> film = load(field(c.frame, &FrameHeader::film));
     sint width = load(field(c.frame, &FrameHeader::width));
@@ -106,7 +111,12 @@ inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel, 
     }
 }
 
-template <Features F> inline void render_tile(const Context& c, sint tile) {
+} // namespace resolve_kernel
+
+inline namespace shade_kernel {
+
+template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c, sint tile) {
+    phase_scope phase(phase_shade);
     sint width = load(field(c.frame, &FrameHeader::width));
     sint height = load(field(c.frame, &FrameHeader::height));
     sint samples = load(field(c.frame, &FrameHeader::samples));
@@ -152,4 +162,5 @@ template <Features F> inline void render_worker(const Context& c) {
     }
 }
 
+} // namespace shade_kernel
 } // namespace razor::ISA_TARGET

@@ -8,6 +8,7 @@
 #include "razor/kernels/traverse.h"
 
 namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
 
 /// What a hit is shaded with, one lane a camera ray; world directions, scene coordinates.
 struct Surface {
@@ -75,7 +76,7 @@ inline vfloat position_error(const vvec& p, const vvec& origin) {
     return max(size, shift) * (16.0F / 16777216.0F);
 }
 
-inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
+[[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
     phase_scope phase(phase_shade);
     Surface s;
     s.hit = h.patch >= vint(0);
@@ -128,6 +129,10 @@ inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
     return s;
 }
 
+} // namespace shade_kernel
+
+inline namespace light_kernel {
+
 /// A unit vector around which `n` is the z axis: branch-free orthonormal basis (Duff et al., JCGT 2017).
 inline vvec to_world(const vvec& n, const vfloat& x, const vfloat& y, const vfloat& z) {
     vint sign_bit = as_int(n.z) & vint(std::int32_t(0x80000000U));
@@ -157,7 +162,6 @@ struct LightRays {
 /// A point on the rectangle light for each lane. header.light_radiance holds radiance x area / (pi x
 /// samples).
 inline LightRays sample_light(const Context& c, const Surface& s, const vint& sample) {
-    phase_scope phase(phase_light);
     vpoint at = sample_square(s.pixel, sample, dimension_light);
     vvec corner = load_broadcast_vec(field(c.frame, &FrameHeader::light_corner));
     vvec edge_u = load_broadcast_vec(field(c.frame, &FrameHeader::light_u));
@@ -189,7 +193,6 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
 /// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance /
 /// samples.
 inline LightRays sample_sky(const Surface& s, const vint& sample) {
-    phase_scope phase(phase_light);
     vpoint at = sample_square(s.pixel, sample, dimension_sky);
     vfloat radius = sqrt(at.u);
     vfloat height = sqrt(vfloat(1.0F) - at.u);
@@ -220,7 +223,9 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
 /// Sum over `samples` shadow rays a hit of the weights of those that arrive. Sky: directions about the
 /// normal; else points on the light. `first_sample` is the number of the camera sample times `samples`.
 template <Features F, bool Sky>
-inline vfloat gather_light(const Context& c, const Surface& s, sint samples, sint first_sample) {
+[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, sint samples,
+                                             sint first_sample) {
+    phase_scope phase(phase_light);
     constexpr int per_hit = 4;
     constexpr int hits_per_packet = isa::width / per_hit;
     pointer<float> sums = c.packets + packet_sum;
@@ -262,4 +267,5 @@ inline vfloat gather_light(const Context& c, const Surface& s, sint samples, sin
     return load_vector(sums);
 }
 
+} // namespace light_kernel
 } // namespace razor::ISA_TARGET

@@ -7,6 +7,7 @@
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {
+inline namespace tessellate_kernel {
 
 /// The cage of one mesh, as handles in registers.
 struct Cage {
@@ -264,4 +265,5 @@ inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<Curv
     return points;
 }
 
+} // namespace tessellate_kernel
 } // namespace razor::ISA_TARGET

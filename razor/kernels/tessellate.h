@@ -5,6 +5,7 @@
 #include "razor/kernels/surface.h"
 
 namespace razor::ISA_TARGET {
+inline namespace tessellate_kernel {
 
 /// One side of a patch's grid of 2^n segments.
 struct Side {
@@ -359,7 +360,7 @@ inline void bound_block(const Block& b, sint cells_at) {
 }
 
 /// Dices one patch into blocks and fills in its entry of the tree's table (all but the state).
-inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
+[[gnu::noinline]] inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
     phase_scope phase(phase_tessellate);
     sint mesh = load(field(c.patches + patch, &PatchRecord::mesh));
     Cage g = load_cage(c, mesh);
@@ -464,4 +465,5 @@ inline pointer<OpenPatch> open_patch(const Context& c, sint patch) {
     return entry;
 }
 
+} // namespace tessellate_kernel
 } // namespace razor::ISA_TARGET

@@ -7,6 +7,7 @@
 #include "razor/kernels/intersect.h"
 
 namespace razor::ISA_TARGET {
+inline namespace traverse_kernel {
 
 inline constexpr float infinite =
     3.0e38F; // distances beyond every scene, whose sums and products stay finite enough
@@ -129,7 +130,7 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
 
 /// One group from the root. AnyHit: the first hit retires a lane; its hit distance becomes -infinite.
 template <Features F, bool AnyHit, bool Mixed>
-inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
+[[gnu::noinline]] inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
     phase_scope phase(phase_traverse);
     tally(c.counters->groups, 1);
     vfloat enter, leave;
@@ -266,7 +267,8 @@ inline Hits no_hits(const Rays& r) {
 }
 
 /// Traces a packet; the hits of lanes that hit something name a patch.
-template <Features F, bool AnyHit> inline Hits trace(const Context& c, const Rays& r) {
+template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Context& c, const Rays& r) {
+    phase_scope phase(phase_traverse);
     ensure_root(c);
     Hits hits = no_hits(r);
     vint axis = largest_component(r.direction);
@@ -288,4 +290,5 @@ template <Features F, bool AnyHit> inline Hits trace(const Context& c, const Ray
     return hits;
 }
 
+} // namespace traverse_kernel
 } // namespace razor::ISA_TARGET

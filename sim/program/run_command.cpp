@@ -4,6 +4,7 @@
 #include "razor/frame/phases.h"
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
+#include "razor/kernels/code_size.h"
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
@@ -18,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include <atomic>
+#include <numeric>
 #include <thread>
 
 namespace sim {
@@ -73,6 +75,41 @@ std::string frame_text(const razor::Settings& s, int workers, const razor::Frame
         f.counters.camera_rays, f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened,
         f.patches, f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
         f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
+}
+
+/// Machine code of the kernels that this plan may run, in bytes: by native target, then by phase.
+json code_bytes(razor::Plan plan) {
+    json out = json::object();
+    for (const razor::CodeSize& size : razor::code_sizes()) {
+        json& row = out[size.target];
+        for (int phase = 0; phase < razor::phase_count; ++phase)
+            row[razor::phase_names[phase]] = size.phase[plan][phase];
+        row["common"] = size.common[plan];
+    }
+    return out;
+}
+
+/// The same as a table, with a sum.
+std::string code_text(razor::Plan plan) {
+    const auto sizes = razor::code_sizes();
+    std::string out = fmt::format("\n{:<16}", "native code");
+    for (const razor::CodeSize& size : sizes)
+        out += fmt::format(" {:>10}", size.target);
+    out += "   bytes by kernel; the machine fetches no instructions\n";
+    const auto row = [&](const char* name, auto bytes) {
+        out += fmt::format("{:<16}", name);
+        for (const razor::CodeSize& size : sizes)
+            out += fmt::format(" {:>10}", bytes(size));
+        out += '\n';
+    };
+    for (int phase = 0; phase < razor::phase_count; ++phase)
+        row(razor::phase_names[phase], [&](const razor::CodeSize& size) { return size.phase[plan][phase]; });
+    row("common", [&](const razor::CodeSize& size) { return size.common[plan]; });
+    row("all", [&](const razor::CodeSize& size) {
+        const auto& phases = size.phase[plan];
+        return std::accumulate(std::begin(phases), std::end(phases), size.common[plan]);
+    });
+    return out;
 }
 
 } // namespace
@@ -162,11 +199,12 @@ int RunCommand::run() const {
         out.update(run);
         out["renderer"] = renderer(statistics, trees);
         host["topology_page_seconds"] = statistics.page_seconds;
+        host["code_bytes"] = code_bytes(frame.plan());
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");
     }
-    const std::string text =
-        frame_text(description.settings, workers, statistics, report) + print_text(report);
+    const std::string text = frame_text(description.settings, workers, statistics, report) +
+                             print_text(report) + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

@@ -1,0 +1,75 @@
+# cmake -DNM=nm -DOUTPUT=code_size.cpp -DPHASES=phases.h -DOBJECTS=avx2=kernels.cpp.o,... -P code_size.cmake
+#
+# Writes the table of code_size.h from the symbols of the kernels' object files. A function's phase is the namespace
+# PHASE_kernel that it lies in; its plan is the Features that it is instantiated for, or all plans.
+cmake_minimum_required(VERSION 3.25)
+file(STRINGS ${PHASES} PHASES REGEX "^ +phase_[a-z]+,")
+list(TRANSFORM PHASES REPLACE "^ +phase_([a-z]+),.*" "\\1")
+string(REPLACE "," ";" OBJECTS "${OBJECTS}")
+set(TARGETS "")
+foreach(OBJECT IN LISTS OBJECTS)
+  string(REGEX MATCH "^([a-z0-9]+)=(.*)$" _ "${OBJECT}")
+  set(TARGET ${CMAKE_MATCH_1})
+  list(APPEND TARGETS ${TARGET})
+  execute_process(COMMAND ${NM} -P --defined-only ${CMAKE_MATCH_2} OUTPUT_VARIABLE LISTING COMMAND_ERROR_IS_FATAL ANY)
+  # A constructor has two names (C1, C2) and one body.
+  string(REGEX REPLACE "([CD])2E" "\\11E" LISTING "${LISTING}")
+  string(REPLACE "\n" ";" LISTING "${LISTING}")
+  list(REMOVE_DUPLICATES LISTING)
+  foreach(LINE IN LISTS LISTING)
+    # Not what only tests and benchmarks call.
+    if(LINE MATCHES "9trace_all|9build_all" OR NOT LINE MATCHES "^([^ ]+) [tTwW] [0-9a-f]+ ([0-9a-f]+)")
+      continue()
+    endif()
+    set(NAME ${CMAKE_MATCH_1})
+    set(BYTES 0x${CMAKE_MATCH_2})
+    set(PHASE common)
+    if(NAME MATCHES "^_ZZ*N[VK]*5razor[0-9]+${TARGET}[0-9]+([a-z]+)_kernel")
+      set(PHASE ${CMAKE_MATCH_1})
+      if(NOT PHASE IN_LIST PHASES)
+        message(FATAL_ERROR "${NAME}: there is no phase ${PHASE}")
+      endif()
+    endif()
+    foreach(PLAN flat hanging)
+      if(PLAN STREQUAL flat AND NAME MATCHES "8FeaturesELb1E" OR PLAN STREQUAL hanging AND NAME MATCHES "8FeaturesE(Lb0E)?E")
+        continue()
+      endif()
+      math(EXPR BYTES_${TARGET}_${PLAN}_${PHASE} "${BYTES_${TARGET}_${PLAN}_${PHASE}} + ${BYTES}")
+    endforeach()
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES TARGETS)
+
+set(ROWS "")
+list(LENGTH TARGETS COUNT)
+foreach(TARGET IN LISTS TARGETS)
+  set(TABLE "")
+  set(COMMON "")
+  foreach(PLAN flat hanging)
+    set(ROW "")
+    foreach(PHASE IN LISTS PHASES)
+      math(EXPR BYTES "${BYTES_${TARGET}_${PLAN}_${PHASE}} + 0")
+      string(APPEND ROW "${BYTES}, ")
+    endforeach()
+    string(APPEND TABLE "{${ROW}}, ")
+    math(EXPR BYTES "${BYTES_${TARGET}_${PLAN}_common} + 0")
+    string(APPEND COMMON "${BYTES}, ")
+  endforeach()
+  string(APPEND ROWS "    {\"${TARGET}\", {${TABLE}}, {${COMMON}}},\n")
+endforeach()
+file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT "// Written by code_size.cmake.
+#include \"razor/kernels/code_size.h\"
+
+#include <array>
+
+namespace razor {
+
+static_assert(plan_flat == 0 && plan_hanging == 1);
+static constexpr std::array<CodeSize, @COUNT@> table = {{
+@ROWS@}};
+std::span<const CodeSize> code_sizes() {
+    return table;
+}
+
+} // namespace razor
+")
