@@ -14,12 +14,16 @@ namespace {
 }
 
 void check_cache(const std::string& what, const char* name, integer size, integer ways, integer line) {
-    if (size % (ways * line) != 0)
+    if (size % (ways * line) != 0) {
+        const auto sets_below = static_cast<std::uint64_t>(size / (ways * line));
+        const auto set = static_cast<std::uint64_t>(ways * line);
+        const std::uint64_t above = std::bit_ceil(sets_below + 1) * set;
         fail(what,
-             fmt::format(
-                 "{0}.size_bytes is {1}, which {2} ways of {3}-byte lines do not divide; make it a multiple "
-                 "of {4}",
-                 name, size, ways, line, ways * line));
+             fmt::format("{}.size_bytes is {}, which {} ways of {}-byte lines do not divide; make it {}",
+                         name, size, ways, line,
+                         sets_below == 0 ? fmt::format("{}", above)
+                                         : fmt::format("{} or {}", std::bit_floor(sets_below) * set, above)));
+    }
     auto sets = static_cast<std::uint64_t>(size / (ways * line));
     if (!std::has_single_bit(sets))
         fail(what,

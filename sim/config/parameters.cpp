@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace sim {
 
@@ -238,6 +239,22 @@ bool is_number(const std::string& text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
+/// "2 MiB" as bytes, or 0 where the text is not of that form.
+integer binary_size(const std::string& text) {
+    integer number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    std::string_view unit(stop, end);
+    unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
+    const integer factor = unit == "KiB"   ? kibi
+                           : unit == "MiB" ? kibi * kibi
+                           : unit == "GiB" ? kibi * kibi * kibi
+                                           : 0;
+    const bool fits =
+        error == std::errc{} && number > 0 && factor > 0 && number <= (integer{1} << 62) / factor;
+    return fits ? number * factor : 0;
+}
+
 std::string with_unit(const Parameter& p) {
     return p.unit.empty() ? "" : " " + p.unit;
 }
@@ -283,6 +300,15 @@ std::string print_value(const Parameter& p, const Config& config) {
     return is_number(word) ? word : fmt::format("\"{}\"", word);
 }
 
+std::string print_bounds(const Parameter& p) {
+    if (const auto* k = std::get_if<IntegerKind>(&p.kind))
+        return fmt::format("{} to {}{}{}", k->least, k->most, with_unit(p),
+                           k->power_of_two ? ", a power of two" : "");
+    if (const auto* r = std::get_if<RealKind>(&p.kind))
+        return fmt::format("{} to {}{}", r->least, r->most, with_unit(p));
+    return choices_of(std::get<ChoiceKind>(p.kind));
+}
+
 std::string set_integer(const Parameter& p, Config& config, integer value) {
     if (std::holds_alternative<RealKind>(p.kind))
         return set_real(p, config, static_cast<double>(value));
@@ -303,6 +329,8 @@ std::string set_integer(const Parameter& p, Config& config, integer value) {
 
 std::string set_real(const Parameter& p, Config& config, double value) {
     const auto* r = std::get_if<RealKind>(&p.kind);
+    if (std::holds_alternative<IntegerKind>(p.kind) && value == std::floor(value) && std::abs(value) < 1e15)
+        return set_integer(p, config, static_cast<integer>(value)); // 1e6
     if (r == nullptr)
         return fmt::format("{} is {}; it must be a {}", p.key, value,
                            std::holds_alternative<IntegerKind>(p.kind) ? "whole number" : "word");
@@ -315,8 +343,16 @@ std::string set_real(const Parameter& p, Config& config, double value) {
 
 std::string set_text(const Parameter& p, Config& config, const std::string& value) {
     const auto* c = std::get_if<ChoiceKind>(&p.kind);
-    if (c == nullptr)
-        return fmt::format("{} is \"{}\"; it must be a number", p.key, value);
+    if (c == nullptr) {
+        if (p.unit != "bytes")
+            return fmt::format("{} is \"{}\"; it must be a number", p.key, value);
+        const integer size = binary_size(value);
+        return size > 0
+                   ? set_integer(p, config, size)
+                   : fmt::format("{} is \"{}\"; it must be a number, or one of KiB, MiB or GiB, as in \"64 "
+                                 "KiB\"",
+                                 p.key, value);
+    }
     integer number = 0;
     const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), number);
     const bool right = error == std::errc{} && stop == value.data() + value.size() && number >= 1 &&

@@ -45,6 +45,8 @@ const std::string& nearest_key(std::string_view key);
 
 /// The value of a parameter, as TOML writes it.
 std::string print_value(const Parameter& p, const Config& config);
+/// What it may be and in which unit: "1 to 64 bytes, a power of two".
+std::string print_bounds(const Parameter& p);
 /// Sets a parameter from a number or a word; returns what is wrong, or an empty string.
 std::string set_integer(const Parameter& p, Config& config, integer value);
 std::string set_real(const Parameter& p, Config& config, double value);

@@ -11,7 +11,7 @@
 namespace {
 
 int print_config(const sim::MachineOptions& options) {
-    fmt::print("{}", sim::print_machine(sim::read_machine(options.file, options.settings)));
+    fmt::print("{}", sim::print_machine(sim::describe_machine(options.file, options.settings)));
     return 0;
 }
 

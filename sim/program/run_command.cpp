@@ -14,6 +14,7 @@
 #include "sim/config/parameters.h"
 #include "sim/config/placement.h"
 #include "sim/machine/machine.h"
+#include "sim/program/provenance.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -147,12 +148,16 @@ void RunCommand::add_to(CLI::App& app) {
 }
 
 int RunCommand::run() const {
-    Config config = read_machine(machine_.file, machine_.settings);
+    std::vector<std::string> settings = machine_.settings;
     if (!share_.empty()) {
-        const std::string wrong = set_text(*find_parameter("kdtree.share"), config, share_);
+        Config any;
+        const std::string wrong = set_text(*find_parameter("kdtree.share"), any, share_);
         if (!wrong.empty())
             throw ConfigError("--share: " + wrong);
+        settings.push_back("kdtree.share=" + share_);
     }
+    const MachineDescription machine_description = describe_machine(machine_.file, settings);
+    const Config& config = machine_description.config;
     const Machine machine(config);
     const double most = machine.threads();
     const int workers =
@@ -197,13 +202,15 @@ int RunCommand::run() const {
         json host = run["host"];
         run.erase("host");
         out.update(run);
+        out["machine_provenance"] = provenance_json(machine_description);
         out["renderer"] = renderer(statistics, trees);
         host["topology_page_seconds"] = statistics.page_seconds;
         host["code_bytes"] = code_bytes(frame.plan());
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");
     }
-    const std::string text = frame_text(description.settings, workers, statistics, report) +
+    const std::string text = provenance_text(machine_description) +
+                             frame_text(description.settings, workers, statistics, report) +
                              print_text(report) + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
