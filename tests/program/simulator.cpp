@@ -69,5 +69,75 @@ TEST_F(Simulator, SharesTreesAsAsked) {
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
 }
 
+TEST_F(Simulator, RefusesBadMachinesAndOptions) {
+    folder_.file("good.toml", "[chip]\ncores = 2\n");
+    folder_.file("empty.toml", "");
+    folder_.file("noise.toml", std::string("\0\xff\x80[chip]\n", 10));
+    folder_.file("key.toml", "[chip]\ncoers = 2\n");
+    folder_.file("zero.toml", "[chip]\ncores = 0\n");
+    folder_.file("sets.toml", "[l2]\nsize_bytes = 3000000\n");
+    folder_.file("twice.toml", "[chip]\ncores = 2\n[l1]\n[chip]\nthreads = 2\n");
+    folder_.file("orphan.toml", "inherit = \"none.toml\"\n");
+    folder_.file("self.toml", "inherit = \"self.toml\"\n");
+    folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+    std::filesystem::create_directory(folder_ / "folder.toml");
+    const std::pair<const char*, const char*> cases[] = {
+        {"--machine none.toml", "none.toml: cannot be read"},
+        {"--machine ''", "cannot be read"},
+        {"--machine folder.toml", "folder.toml: is a folder"},
+        {"--machine empty.toml", "empty.toml: is empty"},
+        {"--machine noise.toml", "noise.toml:1:1: not TOML"},
+        {"--machine key.toml", "key.toml:2:1: unknown key chip.coers; the nearest known one is chip.cores"},
+        {"--machine zero.toml", "zero.toml:2:9: chip.cores is 0; it must be from 1 to"},
+        {"--machine sets.toml", "make it 2097152 or 4194304 (l2.size_bytes from sets.toml:2)"},
+        {"--machine twice.toml", "twice.toml:4:1: not TOML"},
+        {"--machine orphan.toml", "orphan.toml:1:11: inherits none.toml, which cannot be read"},
+        {"--machine self.toml", "self.toml:1:11: files inherit from each other in a circle"},
+        {"--machine good.toml -g chip.cores", "-g chip.cores: must be of the form section.key=value"},
+        {"--machine good.toml -g chip.core=2", "the nearest known one is chip.cores"},
+        {"--machine good.toml -g chip.cores=-2", "-g chip.cores=-2: chip.cores is -2"},
+        {"--machine good.toml -g core.scalar_overhead=nan", "core.scalar_overhead is nan"},
+        {"--machine good.toml -g l2.size_bytes=2MB", "KiB, MiB or GiB"},
+        {"--machine good.toml --workers 0", "--workers '0'"},
+        {"--machine good.toml --workers 5", "give a whole number from 1 to 4"},
+        {"--machine good.toml --share all", "--share: kdtree.share is \"all\"; it must be one of"},
+        {"--machine good.toml --share 0", "--share: kdtree.share is \"0\""},
+        {"--machin good.toml", "did you mean --machine?"},
+        {"", "--machine is required"},
+    };
+    const std::size_t before = folder_.count();
+    for (const auto& [options, says] : cases) {
+        SCOPED_TRACE(options);
+        const Outcome result =
+            simulator(std::string("run --scene box.toml -o a.exr --json a.json ") + options);
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_TRUE(result.err.starts_with("razor-sim: ")) << result.err;
+        EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(folder_.count(), before) << "a file was left";
+    }
+    EXPECT_EQ(simulator("print-config --machine key.toml").code, 2);
+}
+
+// The configuration that is printed runs as the machine that it was printed from, to the digit.
+TEST_F(Simulator, RunsItsPrintedConfiguration) {
+    folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+    const std::string settings = " -g chip.cores=2 -g l2.size_bytes=64KiB -g kdtree.share=core";
+    const std::string frame = " --quiet --scene box.toml --size 24x24 --spp 1";
+    const Outcome printed = simulator(std::string("print-config --machine ") + tiny + settings);
+    ASSERT_EQ(printed.code, 0) << printed.err;
+    folder_.file("printed.toml", printed.out);
+    ASSERT_EQ(simulator(std::string("run --json a.json --machine ") + tiny + settings + frame).code, 0);
+    ASSERT_EQ(simulator("run --json b.json --machine printed.toml" + frame).code, 0);
+    nlohmann::json a = report("a.json"), b = report("b.json");
+    EXPECT_EQ(a["machine_provenance"]["chip.cores"]["from"], "-g");
+    EXPECT_EQ(a["machine_provenance"]["l1.ways"]["mark"], "assumed");
+    EXPECT_EQ(b["machine_provenance"]["l1.ways"]["mark"], "assumed");
+    a.erase("machine_provenance");
+    b.erase("machine_provenance");
+    EXPECT_EQ(a, b);
+}
+
 } // namespace
 } // namespace razor
