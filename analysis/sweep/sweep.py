@@ -1,0 +1,219 @@
+#!/usr/bin/python3
+"""One machine, one key, several values: what each costs, what limits it, and whether more of it is always better.
+
+    analysis/sweep/sweep.py --machine configs/machines/tiny.toml --key l2.size_bytes --values 32KiB..512KiB -- --size 64x64 --spp 1
+    analysis/sweep/sweep.py --machine M.toml --key memory.channels --values 1 2 8 --expect falling --csv channels.csv -- --scene S.toml
+
+A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (-g settings too). Runs are deterministic;
+--jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
+"""
+import argparse
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+BINARY = {"": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30}
+NEVER_WAITS = {"busy", "idle"}  # causes of the CPI stack that are no waiting for the machine
+
+# Name in the table, width, text of a row's figure.
+COLUMNS = [
+    ("cycles", 12, lambda r: f"{r['cycles']}"),
+    ("of first", 9, lambda r: f"{r['of_first']:.3f}"),
+    ("M vops", 9, lambda r: f"{r['vops'] / 1e6:.2f}"),
+    ("IPC/core", 9, lambda r: f"{r['ipc']:.3f}"),
+    ("L1 miss", 9, lambda r: f"{r['l1_miss']:.2%}"),
+    ("L2 miss", 9, lambda r: f"{r['l2_miss']:.2%}"),
+    ("DRAM reads", 11, lambda r: f"{r['dram_reads']}"),
+    ("writes", 10, lambda r: f"{r['dram_writes']}"),
+    ("GB/s", 8, lambda r: f"{r['dram_gb_s']:.2f}"),
+    ("busiest resource", 18, lambda r: f"{r['resource']} {r['utilisation']:.0%}"),
+    ("largest wait", 18, lambda r: f"{r['wait']} {r['waiting']:.0%}"),
+]
+
+
+class Mistake(Exception):
+    """Of the user: one line."""
+
+
+def amount(text):
+    """Number and unit of "64KiB"; None where it is not of that form."""
+    match = re.fullmatch(r"(\d+)\s*(|KiB|MiB|GiB)", text)
+    return match and (int(match[1]) * BINARY[match[2]])
+
+
+def expand(words):
+    values = []
+    for word in words:
+        first, dots, last = word.partition("..")
+        if not dots:
+            values.append(word)
+            continue
+        begin, end = amount(first), amount(last)
+        if not begin or not end or begin > end:
+            raise Mistake(f"--values {word}: give A..B with whole numbers from 1, A at most B")
+        while begin <= end:
+            unit = max((u for u in BINARY if begin % BINARY[u] == 0), key=lambda u: BINARY[u])
+            values.append(f"{begin // BINARY[unit]}{unit}")
+            begin *= 2
+    return values
+
+
+def simulator(given):
+    if given:
+        if not os.access(given, os.X_OK) or os.path.isdir(given):
+            raise Mistake(f"--simulator {given}: no program; build razor-sim and give its path")
+        return given
+    found = shutil.which("razor-sim")
+    here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../build/release/sim/program/razor-sim")
+    if not found and not os.access(here, os.X_OK):
+        raise Mistake("razor-sim is neither on the PATH nor in build/release; build it, or give --simulator PATH")
+    return found or os.path.normpath(here)
+
+
+def run(options, value, folder):
+    report = os.path.join(folder, "report.json")
+    command = [simulator(options.simulator), "run", "--quiet", "--machine", options.machine, *options.more,
+               "-g", f"{options.key}={value}", "--json", report]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        lines = done.stderr.strip().splitlines() or [f"razor-sim ended with {done.returncode}"]
+        raise Mistake(f"{options.key}={value}: {lines[-1]}")
+    with open(report, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def share(part, whole):
+    return part / whole if whole else 0.0
+
+
+def figures(report, value):
+    """What the table shows of one run."""
+    chip = report["machine"]["chip"]
+    cores = chip.get("tiles", 1) * chip["cores"]
+    cycles, core, memory = report["cycles"], report["core"], report["memory"]
+    resources = {level: band["utilisation"] for level, band in report["bandwidth"].items()}
+    resources["issue"] = share(core["instructions"], cycles * cores * report["machine"]["core"]["issue_width"])
+    busiest = max(resources, key=resources.get)
+    worked = sum(report["stack"].values()) - report["stack"].get("idle", 0)
+    waits = {cause: n for cause, n in report["stack"].items() if cause not in NEVER_WAITS}
+    wait = max(waits, key=waits.get)
+    return {
+        "value": value,
+        "cycles": cycles,
+        "vops": core["vops"],
+        "ipc": share(core["instructions"], cycles * cores),
+        "l1_miss": share(report["l1"]["misses"], report["l1"]["hits"] + report["l1"]["misses"]),
+        "l2_miss": share(report["l2"]["misses"], report["l2"]["hits"] + report["l2"]["misses"]),
+        "dram_reads": memory["reads"],
+        "dram_writes": memory["writes"],
+        "dram_gb_s": report["bandwidth"]["memory"]["achieved_gb_s"],
+        "resource": busiest,
+        "utilisation": resources[busiest],
+        "wait": wait,
+        "waiting": share(waits[wait], worked),
+    }
+
+
+def direction(rows, name, tolerance):
+    """How a figure goes along the values, in words, and whether it ever rises or falls beyond the tolerance."""
+    steps = [(a["value"], b["value"], share(b[name] - a[name], a[name])) for a, b in zip(rows, rows[1:])]
+    rises = [s for s in steps if s[2] > tolerance]
+    falls = [s for s in steps if s[2] < -tolerance]
+    if rises and falls:
+        few = rises if len(rises) <= len(falls) else falls
+        odd = ", ".join(f"{a} to {b} ({change:+.1%})" for a, b, change in few)
+        word = "falls but rises" if few is rises else "rises but falls"
+        return f"not monotone: {word} from {odd}", True, True
+    word = "rises" if rises else "falls" if falls else "stays"
+    return f"monotone: {word}, {rows[-1][name]} of {rows[0][name]}", bool(rises), bool(falls)
+
+
+def table(options, rows):
+    width = max(len(options.key), *(len(r["value"]) for r in rows)) + 1
+    print(f"{options.key:<{width}}" + "".join(f"{name:>{w}}" for name, w, _ in COLUMNS))
+    for row in rows:
+        print(f"{row['value']:<{width}}" + "".join(f"{text(row):>{w}}" for _, w, text in COLUMNS))
+
+
+def parse(arguments):
+    more = []
+    if "--" in arguments:
+        at = arguments.index("--")
+        arguments, more = arguments[:at], arguments[at + 1:]
+    parser = argparse.ArgumentParser(prog="sweep.py", description=__doc__, add_help=True, allow_abbrev=False,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter, exit_on_error=False)
+    parser.error = lambda message: (_ for _ in ()).throw(Mistake(f"{message}; see sweep.py --help"))
+    parser.add_argument("--machine", required=True, metavar="FILE")
+    parser.add_argument("--key", required=True, metavar="KEY", help="of the machine, such as l2.size_bytes")
+    parser.add_argument("--values", required=True, nargs="+", metavar="VALUE")
+    parser.add_argument("--expect", choices=["falling", "rising"], help="what the cycles must do")
+    parser.add_argument("--tolerance", type=float, default=0.5, metavar="PERCENT", help="of a step; 0.5 by default")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N")
+    parser.add_argument("--csv", metavar="FILE", help="the table, for programs")
+    parser.add_argument("--simulator", metavar="PATH", help="razor-sim; else from the PATH or build/release")
+    options = parser.parse_args(arguments)
+    if options.jobs < 1:
+        raise Mistake(f"--jobs {options.jobs}: give a number from 1")
+    if not options.tolerance >= 0:
+        raise Mistake(f"--tolerance {options.tolerance}: give a percentage from 0")
+    options.more = more
+    options.values = expand(options.values)
+    return options
+
+
+def write_csv(path, key, rows):
+    temporary = path + ".tmp"
+    try:
+        with open(temporary, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, [key if name == "value" else name for name in rows[0]])
+            writer.writeheader()
+            writer.writerows({key if name == "value" else name: v for name, v in row.items()} for row in rows)
+        os.replace(temporary, path)
+    except OSError as error:
+        if os.path.exists(temporary):
+            os.remove(temporary)
+        raise Mistake(f"--csv {path}: {error.strerror}") from error
+
+
+def sweep(options):
+    if options.csv and not os.access(os.path.dirname(options.csv) or ".", os.W_OK):
+        raise Mistake(f"--csv {options.csv}: its folder cannot be written to")
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
+        folders = [tempfile.mkdtemp(dir=folder) for _ in options.values]
+        runs = [pool.submit(run, options, v, f) for v, f in zip(options.values, folders)]
+        try:
+            rows = [figures(r.result(), v) for r, v in zip(runs, options.values)]
+        except Mistake:
+            for r in runs:
+                r.cancel()
+            raise
+    for row in rows:
+        row["of_first"] = share(row["cycles"], rows[0]["cycles"])
+    if options.csv:
+        write_csv(options.csv, options.key, rows)
+    table(options, rows)
+    cycles, rises, falls = direction(rows, "cycles", options.tolerance / 100)
+    print(f"cycles      {cycles}")
+    print(f"DRAM reads  {direction(rows, 'dram_reads', options.tolerance / 100)[0]}")
+    if (options.expect == "falling" and rises) or (options.expect == "rising" and falls):
+        print(f"expected {options.expect} cycles: NOT so (steps within {options.tolerance} % do not count)")
+        return 1
+    return 0
+
+
+def main():
+    try:
+        return sweep(parse(sys.argv[1:]))
+    except (Mistake, argparse.ArgumentError) as mistake:
+        print(f"sweep.py: {mistake}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())
