@@ -44,6 +44,23 @@ int count_trees(FrameOptions& options) {
     return static_cast<int>(used.size());
 }
 
+/// Owners' regions begin at multiples of 64 KiB. If what they use did as well, the busiest lines of all
+/// workers would fall into the same few sets of a cache and into one bank of memory. So each owner begins
+/// some lines further on, each kind of region elsewhere: these many lines, fewer than fit into 64 KiB.
+constexpr int coloured_lines = static_cast<int>(isa::address_space::granule / line_bytes);
+constexpr int nodes_a_line = line_bytes / static_cast<int>(sizeof(KdNode));
+enum Coloured : int {
+    colour_stack,
+    colour_packets,
+    colour_grids,
+    colour_nodes,
+    colour_lists,
+    colour_patches
+};
+int colour(int owner, Coloured kind) {
+    return (owner * 97 + kind * 411) % coloured_lines;
+}
+
 void put(float (&to)[3], const glm::dvec3& v) {
     for (int i = 0; i < 3; ++i)
         to[i] = static_cast<float>(v[i]);
@@ -93,6 +110,22 @@ struct Frame::Impl {
     template <class T> T* region(const char* structure, int owner, std::size_t count) {
         return reinterpret_cast<T*>(
             memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T)));
+    }
+    /// Begins at a line of the owner's colour.
+    template <class T> T* coloured(const char* structure, int owner, std::size_t count, Coloured kind) {
+        auto* bytes = reinterpret_cast<std::byte*>(
+            region<T>(structure, owner, count + isa::address_space::granule / sizeof(T)));
+        return reinterpret_cast<T*>(bytes + colour(owner, kind) * line_bytes);
+    }
+    /// The first line or node of a worker's arena, counted from the base of its family.
+    int first_grid_line(int w) const {
+        return w * (grid_lines_each + coloured_lines) + colour(w, colour_grids);
+    }
+    int first_list_line(int w) const {
+        return w * (list_lines_each + coloured_lines) + colour(w, colour_lists);
+    }
+    int first_node(int w) const {
+        return w * (nodes_each + coloured_lines * nodes_a_line) + colour(w, colour_nodes) * nodes_a_line;
     }
     void place_scene(const Scene& scene);
     void place_topology();
@@ -255,11 +288,11 @@ void Frame::Impl::place_workers() {
     header->workers.set(region<WorkerRecord>("stack", -1, n));
     for (int t = 0; t < trees; ++t)
         header->trees.get()[t].patches.set(
-            region<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count)));
+            coloured<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count), colour_patches));
     // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
     auto size = [&](std::uint64_t wanted, std::uint64_t all) {
         std::uint64_t granule = isa::address_space::granule;
-        std::uint64_t most = share_of(all, options.workers);
+        std::uint64_t most = share_of(all, options.workers) - granule; // room for colours
         return wanted == 0 ? most : std::min((wanted + granule - 1) / granule * granule, most);
     };
     std::uint64_t grid_bytes = size(options.grid_bytes, all_grids);
@@ -269,24 +302,26 @@ void Frame::Impl::place_workers() {
     nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
     list_lines_each = static_cast<int>(list_bytes / line_bytes);
     for (int w = 0; w < options.workers; ++w) {
-        auto* p = reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes));
+        auto* p = reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule));
         if (w == 0)
             header->grids.set(p);
     }
     for (int w = 0; w < options.workers; ++w) {
-        auto* p = reinterpret_cast<KdNode*>(memory->add("kd nodes", w, node_bytes));
+        auto* p =
+            reinterpret_cast<KdNode*>(memory->add("kd nodes", w, node_bytes + isa::address_space::granule));
         if (w == 0)
             header->nodes.set(p);
     }
     for (int w = 0; w < options.workers; ++w) {
-        auto* p = reinterpret_cast<Line*>(memory->add("item lists", w, list_bytes));
+        auto* p =
+            reinterpret_cast<Line*>(memory->add("item lists", w, list_bytes + isa::address_space::granule));
         if (w == 0)
             header->lists.set(p);
     }
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
-        r.stack.set(region<float>("stack", w, stack_floats));
-        r.packets.set(region<float>("packets", w, packet_floats));
+        r.stack.set(coloured<float>("stack", w, stack_floats, colour_stack));
+        r.packets.set(coloured<float>("packets", w, packet_floats, colour_packets));
         r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
     }
 }
@@ -340,11 +375,11 @@ void Frame::Impl::reset() {
     }
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
-        r.grid_next = w * grid_lines_each;
+        r.grid_next = first_grid_line(w);
         r.grid_end = r.grid_next + grid_lines_each;
-        r.node_next = w * nodes_each;
+        r.node_next = first_node(w);
         r.node_end = r.node_next + nodes_each;
-        r.list_next = w * list_lines_each;
+        r.list_next = first_list_line(w);
         r.list_end = r.list_next + list_lines_each;
         counters[static_cast<std::size_t>(w)] = {};
     }
@@ -453,16 +488,16 @@ FrameStatistics Frame::statistics() const {
     s.undrawn_faces = impl_->undrawn;
     for (int w = 0; w < impl_->options.workers; ++w) {
         const WorkerRecord& r = impl_->header->workers.get()[w];
-        for (int i = w * impl_->nodes_each; i < r.node_next; ++i) {
+        for (int i = impl_->first_node(w); i < r.node_next; ++i) {
             int state = impl_->header->nodes.get()[i].state.word;
             s.inner_nodes += state == node_inner ? 1 : 0;
             s.leaves += state == node_leaf ? 1 : 0;
             s.unsplit_nodes += state == node_unsplit ? 1 : 0;
         }
-        s.grid_bytes += static_cast<std::int64_t>(r.grid_next - w * impl_->grid_lines_each) * line_bytes;
-        s.node_bytes += static_cast<std::int64_t>(r.node_next - w * impl_->nodes_each) *
+        s.grid_bytes += static_cast<std::int64_t>(r.grid_next - impl_->first_grid_line(w)) * line_bytes;
+        s.node_bytes += static_cast<std::int64_t>(r.node_next - impl_->first_node(w)) *
                         static_cast<std::int64_t>(sizeof(KdNode));
-        s.list_bytes += static_cast<std::int64_t>(r.list_next - w * impl_->list_lines_each) * line_bytes;
+        s.list_bytes += static_cast<std::int64_t>(r.list_next - impl_->first_list_line(w)) * line_bytes;
     }
     s.page_bytes = impl_->pages->made_bytes();
     s.page_seconds = impl_->pages->seconds();
