@@ -117,6 +117,7 @@ def figures(report, value):
         "utilisation": resources[busiest],
         "wait": wait,
         "waiting": share(waits[wait], worked),
+        "tiles_a_worker": report["renderer"]["screen_tiles"] / report["workers"],
     }
 
 
@@ -198,6 +199,9 @@ def sweep(options):
     if options.csv:
         write_csv(options.csv, options.key, rows)
     table(options, rows)
+    few = [row["value"] for row in rows if row["tiles_a_worker"] < 4]
+    if few:
+        print(f"few screen tiles a worker at {', '.join(few)}: the last one to end decides the time; a larger --size says more")
     cycles, rises, falls = direction(rows, "cycles", options.tolerance / 100)
     print(f"cycles      {cycles}")
     print(f"DRAM reads  {direction(rows, 'dram_reads', options.tolerance / 100)[0]}")

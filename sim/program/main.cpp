@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <new>
+
 namespace {
 
 int print_config(const sim::MachineOptions& options) {
@@ -33,6 +35,10 @@ int main(int argc, char** argv) {
             return print.parsed() ? print_config(machine) : run.run();
         } catch (const sim::ConfigError& e) {
             throw razor::UserError(e.what());
+        } catch (const std::bad_alloc&) {
+            throw razor::UserError(
+                "out of memory; run fewer workers (--workers), give the machine smaller caches or "
+                "stacks (sim.stack_kib), or render a smaller model or picture");
         }
     });
 }

@@ -63,18 +63,23 @@ json renderer(const razor::FrameStatistics& s, const std::vector<int>& tree_of_w
 }
 
 /// What was rendered and what it took, above the machine's own report.
-std::string frame_text(const razor::Settings& s, int workers, const razor::FrameStatistics& f,
-                       const Report& r) {
+std::string frame_text(const razor::Settings& s, int workers, int screen_tiles,
+                       const razor::FrameStatistics& f, const Report& r) {
+    // With few screen tiles a worker, the last one to end decides the time: that says little of the machine.
+    const char* few =
+        screen_tiles < 4 * workers ? ": few, so workers will be idle; a larger picture says more" : "";
     const std::string& share = r.config.kdtree.share;
     auto rays = static_cast<double>(f.counters.camera_rays + f.counters.shadow_rays);
     return fmt::format(
         "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
+        "screen tiles           {}, {:.1f} a worker{}\n"
         "rays                   {} camera, {} shadow; {:.3f} million a second of simulated time\n"
         "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
         "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
         s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", "kdtree.share = " + share,
-        f.counters.camera_rays, f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened,
-        f.patches, f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
+        screen_tiles, static_cast<double>(screen_tiles) / workers, few, f.counters.camera_rays,
+        f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
+        f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
         f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
 }
 
@@ -204,14 +209,16 @@ int RunCommand::run() const {
         out.update(run);
         out["machine_provenance"] = provenance_json(machine_description);
         out["renderer"] = renderer(statistics, trees);
+        out["renderer"]["screen_tiles"] = frame.header().tiles;
         host["topology_page_seconds"] = statistics.page_seconds;
         host["code_bytes"] = code_bytes(frame.plan());
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");
     }
-    const std::string text = provenance_text(machine_description) +
-                             frame_text(description.settings, workers, statistics, report) +
-                             print_text(report) + code_text(frame.plan());
+    const std::string text =
+        provenance_text(machine_description) +
+        frame_text(description.settings, workers, frame.header().tiles, statistics, report) +
+        print_text(report) + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else
