@@ -1,6 +1,8 @@
 // What parameters owe each other.
 #include "sim/config/config.h"
 #include "sim/config/error.h"
+#include "sim/memory/dram_mapping.h"
+#include "sim/memory/dram_timing.h"
 
 #include <fmt/core.h>
 
@@ -34,6 +36,43 @@ void check_cache(const std::string& what, const char* name, integer size, intege
                  std::bit_ceil(sets) * static_cast<std::uint64_t>(ways * line)));
 }
 
+void at_least(const std::string& what, const char* longer, integer a, const char* shorter, integer b) {
+    if (a < b)
+        fail(what, fmt::format("memory.{0} is {1}, less than memory.{2}, {3}; make it at least that", longer,
+                               a, shorter, b));
+}
+
+void check_memory(const std::string& what, const Config& config) {
+    const MemoryConfig& c = config.memory;
+    integer burst = c.bus_bytes * c.burst_length;
+    if (burst > config.l2.line_bytes)
+        fail(what,
+             fmt::format("a memory burst is {} bytes (memory.bus_bytes x memory.burst_length), more than "
+                         "l2.line_bytes, {}; lower either",
+                         burst, config.l2.line_bytes));
+    if (c.row_bytes < config.l2.line_bytes)
+        fail(what,
+             fmt::format("memory.row_bytes is {}, less than l2.line_bytes, {}; a line must lie in one row",
+                         c.row_bytes, config.l2.line_bytes));
+    if (std::string mistake = DramMapping::mistake(c); !mistake.empty())
+        fail(what, fmt::format("memory.mapping \"{}\" {}", c.mapping, mistake));
+    at_least(what, "tCCD_L", c.tCCD_L, "tCCD_S", c.tCCD_S);
+    at_least(what, "tRRD_L", c.tRRD_L, "tRRD_S", c.tRRD_S);
+    at_least(what, "tWTR_L", c.tWTR_L, "tWTR_S", c.tWTR_S);
+    at_least(what, "tRC", c.tRC, "tRAS", c.tRAS);
+    at_least(what, "write_queue", c.write_queue, "write_high", c.write_high);
+    if (c.write_low >= c.write_high)
+        fail(what, fmt::format("memory.write_low is {}, not less than memory.write_high, {}; lower it",
+                               c.write_low, c.write_high));
+    DramTiming t(c);
+    auto needed = static_cast<integer>(t.blocked_by_refresh()) + 64;
+    if (c.tREFI != 0 && c.tREFI / c.ranks < needed)
+        fail(what,
+             fmt::format("memory.tREFI is {}, which leaves no time between refreshes of {} ranks that take "
+                         "{} clocks each with what comes before and after; raise it to {} or more",
+                         c.tREFI, c.ranks, needed, needed * c.ranks));
+}
+
 } // namespace
 
 void check_consistency(const Config& c, const std::string& what) {
@@ -42,21 +81,7 @@ void check_consistency(const Config& c, const std::string& what) {
     if (c.l2.line_bytes < c.l1.line_bytes)
         fail(what, fmt::format("l2.line_bytes is {}, less than l1.line_bytes, {}; make it at least that",
                                c.l2.line_bytes, c.l1.line_bytes));
-    integer burst = c.memory.bus_bytes * c.memory.burst_length;
-    if (burst > c.l2.line_bytes)
-        fail(what,
-             fmt::format("a memory burst is {} bytes (memory.bus_bytes x memory.burst_length), more than "
-                         "l2.line_bytes, {}; lower either",
-                         burst, c.l2.line_bytes));
-    if (c.memory.row_bytes < c.l2.line_bytes)
-        fail(what,
-             fmt::format("memory.row_bytes is {}, less than l2.line_bytes, {}; a line must lie in one row",
-                         c.memory.row_bytes, c.l2.line_bytes));
-    if (c.memory.tREFI != 0 && c.memory.tRFC + c.memory.tRP + c.memory.tRCD >= c.memory.tREFI)
-        fail(what,
-             fmt::format(
-                 "memory.tREFI is {}, which leaves no time between refreshes of memory.tRFC, {}; raise it",
-                 c.memory.tREFI, c.memory.tRFC));
+    check_memory(what, c);
     if (c.chip.cores * c.chip.threads > 65536)
         fail(what, fmt::format("chip.cores x chip.threads is {}; it must be at most 65536",
                                c.chip.cores * c.chip.threads));

@@ -108,7 +108,8 @@ public:
         chain_.pop_back();
     }
 
-    void override(const std::string& setting);
+    /// Where its key sets others, or sets itself alone, as `first` says.
+    void override(const std::string& setting, bool first);
 
     MachineDescription finish() &&;
 
@@ -117,6 +118,7 @@ private:
     void inherit_one(const std::string& file, const toml::node& parent);
     void apply_section(const std::string& name, const toml::table& section, const std::string& text,
                        const std::string& file);
+    void set_origin(const Parameter& p, const Origin& origin);
     Origin& origin(const Parameter& p) {
         return machine_.origins[static_cast<std::size_t>(&p - parameters().data())];
     }
@@ -162,23 +164,35 @@ void Reader::inherit_one(const std::string& file, const toml::node& parent) {
 
 void Reader::apply_section(const std::string& name, const toml::table& section, const std::string& text,
                            const std::string& file) {
-    for (const auto& [key, value] : section) {
-        std::string full = fmt::format("{}.{}", name, key.str());
-        const Parameter* p = find_parameter(full);
-        if (p == nullptr)
-            fail(file, key.source(),
-                 fmt::format("unknown key {}; the nearest known one is {}", full, nearest_key(full)));
-        std::string wrong = set(*p, machine_.config, value);
-        if (!wrong.empty())
-            fail(file, value.source(), wrong);
-        const toml::source_position end = value.source().end;
-        origin(*p) = {Origin::file, fs::path(file).lexically_relative(folder_).string(),
-                      static_cast<int>(key.source().begin.line),
-                      std::string(comment_behind(line_of(text, end.line), end.column - 1))};
-    }
+    for (bool first : {true, false}) // first what sets others
+        for (const auto& [key, value] : section) {
+            std::string full = fmt::format("{}.{}", name, key.str());
+            const Parameter* p = find_parameter(full);
+            if (p == nullptr)
+                fail(file, key.source(),
+                     fmt::format("unknown key {}; the nearest known one is {}", full, nearest_key(full)));
+            if (sets_others(*p) != first)
+                continue;
+            std::string wrong = set(*p, machine_.config, value);
+            if (!wrong.empty())
+                fail(file, value.source(), wrong);
+            const toml::source_position end = value.source().end;
+            set_origin(*p, {Origin::file, fs::path(file).lexically_relative(folder_).string(),
+                            static_cast<int>(key.source().begin.line),
+                            std::string(comment_behind(line_of(text, end.line), end.column - 1))});
+        }
 }
 
-void Reader::override(const std::string& setting) {
+/// Of the parameter, and of others that it sets.
+void Reader::set_origin(const Parameter& p, const Origin& origin) {
+    if (sets_others(p))
+        for (const Parameter& other : parameters())
+            if (std::get<ChoiceKind>(p.kind).sets_key(other.key))
+                this->origin(other) = origin;
+    this->origin(p) = origin;
+}
+
+void Reader::override(const std::string& setting, bool first) {
     const std::string where = fmt::format("-g {}", setting);
     const std::size_t equals = setting.find('=');
     const auto trim = [](std::string text) {
@@ -193,8 +207,10 @@ void Reader::override(const std::string& setting) {
     if (p == nullptr)
         throw ConfigError(
             fmt::format("{}: unknown key {}; the nearest known one is {}", where, key, nearest_key(key)));
+    if (sets_others(*p) != first)
+        return;
     std::string wrong;
-    if (std::holds_alternative<ChoiceKind>(p->kind)) {
+    if (std::holds_alternative<ChoiceKind>(p->kind) || std::holds_alternative<TextKind>(p->kind)) {
         if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
             value = value.substr(1, value.size() - 2);
         wrong = set_text(*p, machine_.config, value);
@@ -209,7 +225,7 @@ void Reader::override(const std::string& setting) {
     }
     if (!wrong.empty())
         throw ConfigError(fmt::format("{}: {}", where, wrong));
-    origin(*p) = {Origin::setting, "", 0, ""};
+    set_origin(*p, {Origin::setting, "", 0, ""});
 }
 
 MachineDescription Reader::finish() && {
@@ -241,8 +257,9 @@ MachineDescription describe_machine_text(const std::string& text, const std::str
                                          const std::vector<std::string>& overrides) {
     Reader reader(name);
     reader.apply(text, name);
-    for (const std::string& setting : overrides)
-        reader.override(setting);
+    for (bool first : {true, false}) // first what sets others
+        for (const std::string& setting : overrides)
+            reader.override(setting, first);
     return std::move(reader).finish();
 }
 

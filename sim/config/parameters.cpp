@@ -1,5 +1,7 @@
 #include "sim/config/parameters.h"
 
+#include "sim/config/memory_presets.h"
+
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -39,8 +41,15 @@ struct Table {
     void add(std::string key, Section Config::*section, std::string Section::*member,
              std::vector<std::string> choices, std::string meaning, integer most_number = 0) {
         auto at = [section, member](Config& c) -> std::string& { return (c.*section).*member; };
-        rows.push_back(
-            {std::move(key), "", std::move(meaning), ChoiceKind{at, std::move(choices), most_number}});
+        rows.push_back({std::move(key), "", std::move(meaning),
+                        ChoiceKind{at, std::move(choices), most_number, nullptr, nullptr}});
+    }
+    /// Any text; what it must be is for check_consistency to say.
+    template <class Section>
+    void add_text(std::string key, Section Config::*section, std::string Section::*member, std::string preset,
+                  std::string meaning) {
+        auto at = [section, member](Config& c) -> std::string& { return (c.*section).*member; };
+        rows.push_back({std::move(key), "", std::move(meaning), TextKind{at, std::move(preset)}});
     }
     void add_class(const char* table, std::array<integer, class_count> Config::*values, int index,
                    integer preset, integer least, std::string meaning) {
@@ -147,31 +156,75 @@ void add_caches(Table& t) {
 void add_memory(Table& t) {
     using C = MemoryConfig;
     auto s = &Config::memory;
-    t.add("memory.clock_ps", s, &C::clock_ps, "ps", 1250, 50, 1000000,
+    const C& d = memory_presets().front();
+    std::vector<std::string> presets;
+    for (const C& preset : memory_presets())
+        presets.push_back(preset.preset);
+    t.add("memory.preset", s, &C::preset, presets,
+          "sets all other memory keys but controller_cycles, before what its layer says of them");
+    auto& preset = std::get<ChoiceKind>(t.rows.back().kind);
+    preset.sets = apply_memory_preset;
+    preset.sets_key = memory_preset_sets;
+    t.add("memory.clock_ps", s, &C::clock_ps, "ps", d.clock_ps, 50, 1000000,
           "period of the command clock; data moves at twice its rate");
-    t.add("memory.channels", s, &C::channels, "", 1, 1, 64, "independent channels", true);
-    t.add("memory.banks", s, &C::banks, "", 8, 1, 1024, "banks of a channel", true);
-    t.add("memory.row_bytes", s, &C::row_bytes, "bytes", 2048, 64, 64 * kibi, "row of a bank; stays open",
+    t.add("memory.channels", s, &C::channels, "", d.channels, 1, 256,
+          "independent channels (HBM: pseudo channels)", true);
+    t.add("memory.ranks", s, &C::ranks, "", d.ranks, 1, 8, "ranks of a channel", true);
+    t.add("memory.bank_groups", s, &C::bank_groups, "", d.bank_groups, 1, 8, "bank groups of a rank", true);
+    t.add("memory.banks", s, &C::banks, "", d.banks, 1, 64, "banks of a bank group", true);
+    t.add("memory.rows", s, &C::rows, "", d.rows, 1, 1 << 24, "rows of a bank", true);
+    t.add("memory.row_bytes", s, &C::row_bytes, "bytes", d.row_bytes, 64, 64 * kibi,
+          "row of a bank, of all devices of a rank", true);
+    t.add("memory.bus_bytes", s, &C::bus_bytes, "bytes", d.bus_bytes, 1, 256, "width of a channel's data bus",
           true);
-    t.add("memory.bus_bytes", s, &C::bus_bytes, "bytes", 8, 1, 256, "width of a channel's data bus", true);
-    t.add("memory.burst_length", s, &C::burst_length, "transfers", 8, 2, 64, "transfers of one access", true);
-    t.add("memory.tRCD", s, &C::tRCD, "clocks", 11, 1, 1000, "activate to column command");
-    t.add("memory.tCL", s, &C::tCL, "clocks", 11, 1, 1000, "read command to first data");
-    t.add("memory.tCWL", s, &C::tCWL, "clocks", 8, 1, 1000, "write command to first data");
-    t.add("memory.tRP", s, &C::tRP, "clocks", 11, 1, 1000, "precharge to activate");
-    t.add("memory.tRAS", s, &C::tRAS, "clocks", 28, 1, 1000, "activate to precharge, at least");
-    t.add("memory.tCCD", s, &C::tCCD, "clocks", 4, 1, 1000, "column command to column command of one bank");
-    t.add("memory.tRTP", s, &C::tRTP, "clocks", 6, 1, 1000, "read command to precharge");
-    t.add("memory.tWR", s, &C::tWR, "clocks", 12, 1, 1000, "last written data to precharge");
-    t.add("memory.tREFI", s, &C::tREFI, "clocks", 0, 0, 1000000,
-          "between refreshes, which close all rows; 0: none");
-    t.add("memory.tRFC", s, &C::tRFC, "clocks", 0, 0, 100000, "a refresh blocks a channel");
+    t.add("memory.burst_length", s, &C::burst_length, "transfers", d.burst_length, 2, 64,
+          "transfers of one access", true);
+    t.add("memory.command_buses", s, &C::command_buses, "", d.command_buses, 1, 2,
+          "2: one for rows and one for columns; each takes one command a clock");
+    struct Timing {
+        const char* name;
+        integer C::*member;
+        integer least, most;
+        const char* meaning;
+    };
+    for (const Timing& p : {
+             Timing{"tRCD", &C::tRCD, 1, 1000, "activate to column command"},
+             {"tRP", &C::tRP, 1, 1000, "precharge to activate"},
+             {"tRAS", &C::tRAS, 1, 1000, "activate to precharge"},
+             {"tRC", &C::tRC, 1, 2000, "activate to activate of one bank"},
+             {"tCL", &C::tCL, 1, 1000, "read command to first data"},
+             {"tCWL", &C::tCWL, 1, 1000, "write command to first data"},
+             {"tCCD_S", &C::tCCD_S, 1, 64, "column command to column command, other bank group"},
+             {"tCCD_L", &C::tCCD_L, 1, 64, "column command to column command, same bank group"},
+             {"tRRD_S", &C::tRRD_S, 1, 64, "activate to activate, other bank group"},
+             {"tRRD_L", &C::tRRD_L, 1, 64, "activate to activate, same bank group"},
+             {"tFAW", &C::tFAW, 1, 1000, "first to fifth activate of a rank"},
+             {"tRTP", &C::tRTP, 1, 1000, "read command to precharge"},
+             {"tWR", &C::tWR, 0, 1000, "last written data to precharge"},
+             {"tWTR_S", &C::tWTR_S, 0, 1000, "last written data to read command, other bank group"},
+             {"tWTR_L", &C::tWTR_L, 0, 1000, "last written data to read command, same bank group"},
+             {"tRTW", &C::tRTW, 0, 64, "the bus idle from read to written data"},
+             {"tRTRS", &C::tRTRS, 0, 64, "the bus idle from one rank's data to another's"},
+             {"tREFI", &C::tREFI, 0, 1000000, "between refreshes, which close all rows of a rank; 0: none"},
+             {"tRFC", &C::tRFC, 1, 100000, "a refresh blocks a rank"},
+         })
+        t.add(fmt::format("memory.{}", p.name), s, p.member, "clocks", d.*p.member, p.least, p.most,
+              p.meaning);
+    t.add("memory.page_policy", s, &C::page_policy, {"open", "closed"},
+          "open: a row stays open until another is wanted; closed: it closes after each access");
+    t.add("memory.write_queue", s, &C::write_queue, "bursts", d.write_queue, 1, 4096,
+          "written bursts that a channel's controller holds");
+    t.add("memory.write_high", s, &C::write_high, "bursts", d.write_high, 1, 4096,
+          "queued, at which a batch is sent");
+    t.add("memory.write_low", s, &C::write_low, "bursts", d.write_low, 0, 4095,
+          "queued, at which the batch ends");
     t.add("memory.controller_cycles", s, &C::controller_cycles, "core cycles", 10, 0, 100000,
           "from the L2 to the memory's command bus and back, together");
-    t.add("memory.mapping", s, &C::mapping,
-          {"row:bank:column:channel", "row:column:bank:channel", "row:bank:channel:column",
-           "row:channel:bank:column", "row:column:channel:bank", "row:channel:column:bank"},
-          "fields of an address, most significant first, above the bytes of a burst");
+    t.add_text(
+        "memory.mapping", s, &C::mapping, d.mapping,
+        "fields of an address, most significant first, above the bytes of a burst; x.2: two bits of x");
+    t.add("memory.bank_xor", s, &C::bank_xor, {"off", "on"},
+          "on: the lowest bits of the row are added to bank group and bank, bit by bit");
 }
 
 void add_kdtree(Table& t) {
@@ -269,6 +322,8 @@ Config::Config() {
             r->at(*this) = r->preset;
         else if (const auto* c = std::get_if<ChoiceKind>(&p.kind))
             c->at(*this) = c->choices.front();
+        else if (const auto* t = std::get_if<TextKind>(&p.kind))
+            t->at(*this) = t->preset;
     }
 }
 
@@ -296,6 +351,8 @@ std::string print_value(const Parameter& p, const Config& config) {
         return fmt::format("{}", k->at(c));
     if (const auto* r = std::get_if<RealKind>(&p.kind))
         return fmt::format("{:#}", r->at(c));
+    if (const auto* t = std::get_if<TextKind>(&p.kind))
+        return fmt::format("\"{}\"", t->at(c));
     const std::string& word = std::get<ChoiceKind>(p.kind).at(c);
     return is_number(word) ? word : fmt::format("\"{}\"", word);
 }
@@ -306,12 +363,16 @@ std::string print_bounds(const Parameter& p) {
                            k->power_of_two ? ", a power of two" : "");
     if (const auto* r = std::get_if<RealKind>(&p.kind))
         return fmt::format("{} to {}{}", r->least, r->most, with_unit(p));
+    if (std::holds_alternative<TextKind>(p.kind))
+        return "a text";
     return choices_of(std::get<ChoiceKind>(p.kind));
 }
 
 std::string set_integer(const Parameter& p, Config& config, integer value) {
     if (std::holds_alternative<RealKind>(p.kind))
         return set_real(p, config, static_cast<double>(value));
+    if (std::holds_alternative<TextKind>(p.kind))
+        return fmt::format("{} is a text, not a number", p.key);
     if (const auto* c = std::get_if<ChoiceKind>(&p.kind)) {
         if (c->most_number == 0)
             return fmt::format("{} is one of {}, not a number", p.key, choices_of(*c));
@@ -342,6 +403,12 @@ std::string set_real(const Parameter& p, Config& config, double value) {
 }
 
 std::string set_text(const Parameter& p, Config& config, const std::string& value) {
+    if (const auto* t = std::get_if<TextKind>(&p.kind)) {
+        if (value.find_first_of("\"\\\n") != std::string::npos)
+            return fmt::format("{} must be one line without quotes and backslashes", p.key);
+        t->at(config) = value;
+        return "";
+    }
     const auto* c = std::get_if<ChoiceKind>(&p.kind);
     if (c == nullptr) {
         if (p.unit != "bytes")
@@ -360,6 +427,8 @@ std::string set_text(const Parameter& p, Config& config, const std::string& valu
     if (!right && std::find(c->choices.begin(), c->choices.end(), value) == c->choices.end())
         return fmt::format("{} is \"{}\"; it must be one of {}", p.key, value, choices_of(*c));
     c->at(config) = right ? fmt::format("{}", number) : value;
+    if (c->sets)
+        c->sets(config, value);
     return "";
 }
 

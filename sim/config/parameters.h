@@ -27,14 +27,27 @@ struct ChoiceKind {
     std::function<std::string&(Config&)> at;
     std::vector<std::string> choices; // the first is the default
     integer most_number = 0;          // whole numbers from 1 to this will do as well
+    /// What the choice sets besides itself; such a key goes before all others of its layer.
+    std::function<void(Config&, const std::string&)> sets = nullptr;
+    std::function<bool(std::string_view key)> sets_key = nullptr;
+};
+struct TextKind {
+    std::function<std::string&(Config&)> at;
+    std::string preset;
 };
 
 struct Parameter {
     std::string key;  // section.name
     std::string unit; // empty: a number without one
     std::string meaning;
-    std::variant<IntegerKind, RealKind, ChoiceKind> kind;
+    std::variant<IntegerKind, RealKind, ChoiceKind, TextKind> kind;
 };
+
+/// Whether setting the parameter sets others.
+inline bool sets_others(const Parameter& p) {
+    const auto* c = std::get_if<ChoiceKind>(&p.kind);
+    return c != nullptr && c->sets != nullptr;
+}
 
 /// In the order in which they are printed.
 std::span<const Parameter> parameters();

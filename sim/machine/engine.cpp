@@ -60,13 +60,11 @@ std::uint64_t to_core_cycles(const Config& c, integer memory_clocks) {
 std::uint64_t longest_wait(const Config& c) {
     integer outstanding = c.chip.cores * (c.l1.mshrs + c.l1.write_back_buffer) + c.l2.mshrs +
                           c.l2.write_back_buffer + 2 * c.chip.cores * c.chip.threads * integer{width};
-    integer bursts = c.l2.line_bytes / (c.memory.bus_bytes * c.memory.burst_length);
-    integer service = c.memory.tRAS + c.memory.tRP + c.memory.tRCD + c.memory.tWR + c.memory.tCL +
-                      bursts * (c.memory.burst_length / 2 + c.memory.tCCD);
     integer on_chip =
         c.l1.latency + c.l2.latency + c.memory.controller_cycles + c.coherence.visibility_cycles;
-    return wide(outstanding) * to_core_cycles(c, service) + to_core_cycles(c, 2 * c.memory.tRFC) +
-           wide(on_chip) + wide(outstanding * (c.l1.line_bytes / c.l2.bank_bytes + 1));
+    auto service = static_cast<integer>(Memory::longest_service(c, wide(outstanding)));
+    return to_core_cycles(c, service) + wide(on_chip) +
+           wide(outstanding * (c.l1.line_bytes / c.l2.bank_bytes + 1));
 }
 
 /// How far behind its latest turn an operation may issue: younger operations of a window are simulated after
@@ -140,6 +138,7 @@ Report Engine::run() {
             h.account(h.accounted, h.complete.at(), h.complete.why());
             h.accounted = h.complete.at();
         }
+    memory_.finish();
     return report(workers_, phases_);
 }
 
@@ -658,6 +657,7 @@ Report Engine::report(int workers, const std::vector<std::string>& phases) const
     r.traffic = attribution_.cells();
     r.l2 = l2_.counters();
     r.memory = memory_.counters();
+    r.memory_by_rank = memory_.rank_counters();
     r.phase_vops.resize(phases.size());
     r.phase_instructions.resize(phases.size());
     for (const Hart& h : harts_) {

@@ -80,6 +80,9 @@ std::string print_json(const Report& r, bool with_host) {
         out["l1_by_core"].push_back(counters(c, cache_counters));
     out["l2"] = counters(r.l2, cache_counters);
     out["memory"] = counters(r.memory, memory_counters);
+    out["memory"]["last_clock"] = r.memory.last_clock;
+    for (const MemoryCounters& c : r.memory_by_rank)
+        out["memory_by_rank"].push_back(counters(c, memory_counters));
     for (const Bandwidth& b : bandwidths(r))
         out["bandwidth"][b.level] = {
             {"achieved_gb_s", b.achieved}, {"peak_gb_s", b.peak}, {"utilisation", b.utilisation()}};

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -41,6 +42,61 @@ void check_traffic(const Report& r, const CacheCounters& l1) {
           total(r, &Traffic::memory_writes));
 }
 
+/// What one rank, or all, did on commands and data.
+void check_commands(const MemoryConfig& c, const MemoryCounters& m, std::uint64_t ranks) {
+    auto wide = [](integer x) { return static_cast<std::uint64_t>(x); };
+    std::uint64_t bursts = m.read_bursts + m.write_bursts;
+    equal("row hits + empties + conflicts = bursts", m.row_hits + m.row_empties + m.row_conflicts, bursts);
+    equal("bus clocks = bursts x clocks of one", m.busy_clocks, bursts * wide(c.burst_length / 2));
+    equal("activates = row empties + conflicts + reopened", m.activates,
+          m.row_empties + m.row_conflicts + m.reopened);
+    at_most("row conflicts <= precharges", m.row_conflicts, m.precharges);
+    at_most("precharges <= activates", m.precharges, m.activates);
+    at_most("activates <= 4 a rank and tFAW", m.activates, 4 * ranks * (m.last_clock / wide(c.tFAW) + 1));
+    at_most("clocks queued <= clocks of reads", m.queue_clocks, m.read_clocks);
+    at_most("read bursts take tCL and their transfer at least",
+            m.read_bursts * wide(c.tCL + c.burst_length / 2), m.read_clocks);
+}
+
+/// Ranks take turns; each is refreshed every tREFI until the channel's last burst.
+std::uint64_t refreshes(const MemoryConfig& c, std::uint64_t end) {
+    std::uint64_t count = 0;
+    for (integer rank = 0; c.tREFI != 0 && rank < c.ranks; ++rank) {
+        auto first = static_cast<std::uint64_t>(c.tREFI + c.tREFI * rank / c.ranks);
+        count += end <= first ? 0 : (end - 1 - first) / static_cast<std::uint64_t>(c.tREFI) + 1;
+    }
+    return count;
+}
+
+void check_memory(const Report& r) {
+    const MemoryConfig& c = r.config.memory;
+    auto ranks = static_cast<std::size_t>(c.ranks);
+    MemoryCounters sum;
+    for (std::size_t channel = 0; channel < r.memory_by_rank.size(); channel += ranks) {
+        MemoryCounters all;
+        for (std::size_t rank = 0; rank < ranks; ++rank) {
+            check_commands(c, r.memory_by_rank[channel + rank], 1);
+            all += r.memory_by_rank[channel + rank];
+        }
+        check_commands(c, all, ranks);
+        equal("refreshes = clocks / tREFI", all.refreshes, refreshes(c, all.last_clock));
+        at_most("bus clocks of a channel <= clocks", all.busy_clocks, all.last_clock);
+        at_most("turnarounds < bursts", all.turnarounds, all.read_bursts + all.write_bursts);
+        at_most("turnarounds <= 2 x the lesser of read and written bursts", all.turnarounds,
+                2 * std::min(all.read_bursts, all.write_bursts));
+        at_most("rank switches < bursts", all.rank_switches, all.read_bursts + all.write_bursts);
+        sum += all;
+    }
+    for (const auto& row : memory_counters)
+        equal("memory = sum over ranks", r.memory.*row.count, sum.*row.count);
+    equal("memory's last clock = that of a rank", r.memory.last_clock, sum.last_clock);
+    auto parts = static_cast<std::uint64_t>(r.config.l2.line_bytes / (c.bus_bytes * c.burst_length));
+    equal("read bursts + forwarded = lines read x bursts of a line", sum.read_bursts + sum.forwarded,
+          sum.reads * parts);
+    equal("written bursts + merged = lines written x bursts of a line", sum.write_bursts + sum.merged,
+          sum.writes * parts);
+}
+
 void check_levels(const Report& r, const CacheCounters& l1) {
     equal("L1 hits + misses = accesses", l1.hits + l1.misses, l1.reads + l1.writes);
     equal("L2 hits + misses = accesses", r.l2.hits + r.l2.misses, r.l2.reads + r.l2.writes);
@@ -51,11 +107,7 @@ void check_levels(const Report& r, const CacheCounters& l1) {
     equal("memory writes = L2 write-backs", r.memory.writes, r.l2.write_backs);
     at_most("L2 fills <= misses", r.l2.fills, r.l2.misses);
     at_most("L1 hits in flight <= hits", l1.hits_in_flight, l1.hits);
-    equal("row hits + empties + conflicts = bursts",
-          r.memory.row_hits + r.memory.row_empties + r.memory.row_conflicts, r.memory.bursts);
-    auto burst = static_cast<std::uint64_t>(r.config.memory.bus_bytes * r.config.memory.burst_length);
-    equal("burst bytes = line bytes read and written", r.memory.bursts * burst,
-          (r.memory.reads + r.memory.writes) * static_cast<std::uint64_t>(r.config.l2.line_bytes));
+    check_memory(r);
 }
 
 void check_use(const Report& r, const CacheCounters& l1) {
@@ -64,8 +116,6 @@ void check_use(const Report& r, const CacheCounters& l1) {
             r.cycles * cores * static_cast<std::uint64_t>(r.config.core.issue_width));
     at_most("L1 port cycles used <= port cycles", l1.busy_cycles,
             r.drained * cores * static_cast<std::uint64_t>(r.config.l1.ports));
-    at_most("memory bus clocks used <= clocks", r.memory.busy_clocks,
-            r.memory.last_clock * static_cast<std::uint64_t>(r.config.memory.channels));
 }
 
 void check_stacks(const Report& r) {

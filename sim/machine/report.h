@@ -67,6 +67,7 @@ struct Report {
     std::vector<CacheCounters> l1; // by core
     CacheCounters l2;
     MemoryCounters memory;
+    std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<Traffic> traffic; // [structure * phases + phase]
     double host_seconds = 0;      // apart from everything else in JSON
 

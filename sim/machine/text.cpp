@@ -37,13 +37,25 @@ void level(std::string& out, const char* name, const CacheCounters& c) {
                        c.hits, c.misses, 100 * ratio(c.misses, c.reads + c.writes), c.write_backs);
 }
 
+void memory(std::string& out, const Report& r) {
+    const MemoryCounters& m = r.memory;
+    out += fmt::format("memory   {:>12} {:>12}  lines of {} bytes, {}\n", m.reads, m.writes,
+                       r.config.l2.line_bytes, r.config.memory.preset);
+    out += fmt::format(
+        "         bursts: {} rows open, {} empty, {} in conflict; {} from the write queue, {} merged\n",
+        m.row_hits, m.row_empties, m.row_conflicts, m.forwarded, m.merged);
+    double ns = static_cast<double>(r.config.memory.clock_ps) * 1e-3;
+    out += fmt::format("         read bursts: {:.1f} ns in the memory, of which {:.1f} ns queued\n",
+                       ns * ratio(m.read_clocks, m.read_bursts), ns * ratio(m.queue_clocks, m.read_bursts));
+    out += fmt::format("         {} write batches, {} turnarounds, {} rank switches, {} refreshes\n",
+                       m.batches, m.turnarounds, m.rank_switches, m.refreshes);
+}
+
 void levels(std::string& out, const Report& r) {
     out += "\ncaches          reads       writes         hits       misses  miss rate  write-backs\n";
     level(out, "L1", r.l1_total());
     level(out, "L2", r.l2);
-    out += fmt::format("memory: {} lines read, {} written; rows: {} hits, {} empty, {} conflicts\n",
-                       r.memory.reads, r.memory.writes, r.memory.row_hits, r.memory.row_empties,
-                       r.memory.row_conflicts);
+    memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";
     for (const Bandwidth& b : bandwidths(r))
         out += fmt::format("  {:<12} {:>13.3f} {:>11.3f} {:>11.1f} %\n", b.level, b.achieved, b.peak,

@@ -35,19 +35,46 @@ inline constexpr std::array<CounterRow<CacheCounters>, 12> cache_counters = {{
 }};
 
 struct MemoryCounters {
-    std::uint64_t reads = 0, writes = 0, bursts = 0, row_hits = 0, row_empties = 0, row_conflicts = 0;
-    std::uint64_t busy_clocks = 0, last_clock = 0;
+    std::uint64_t reads = 0, writes = 0, read_bursts = 0, write_bursts = 0, forwarded = 0, merged = 0;
+    std::uint64_t row_hits = 0, row_empties = 0, row_conflicts = 0, activates = 0, reopened = 0,
+                  precharges = 0, refreshes = 0;
+    std::uint64_t batches = 0, turnarounds = 0, rank_switches = 0;
+    std::uint64_t busy_clocks = 0, read_clocks = 0, queue_clocks = 0, write_wait_clocks = 0;
+    std::uint64_t last_clock = 0; // in which the last burst ended; of a sum, the latest
 };
-inline constexpr std::array<CounterRow<MemoryCounters>, 8> memory_counters = {{
+inline constexpr std::array<CounterRow<MemoryCounters>, 20> memory_counters = {{
     {"reads", &MemoryCounters::reads, "lines read"},
     {"writes", &MemoryCounters::writes, "lines written"},
-    {"bursts", &MemoryCounters::bursts, "bus bursts, of bus_bytes x burst_length bytes"},
+    {"read_bursts", &MemoryCounters::read_bursts, "bursts read, of bus_bytes x burst_length bytes"},
+    {"write_bursts", &MemoryCounters::write_bursts, "bursts written"},
+    {"forwarded", &MemoryCounters::forwarded, "bursts read from the write queue instead"},
+    {"merged", &MemoryCounters::merged, "bursts written into one that was still queued"},
     {"row_hits", &MemoryCounters::row_hits, "bursts whose row was open"},
     {"row_empties", &MemoryCounters::row_empties, "bursts whose bank had no open row"},
     {"row_conflicts", &MemoryCounters::row_conflicts, "bursts whose bank had another row open"},
+    {"activates", &MemoryCounters::activates, "rows opened"},
+    {"reopened", &MemoryCounters::reopened, "of these, once more for a write that a refresh has overtaken"},
+    {"precharges", &MemoryCounters::precharges, "rows closed, those closed by a refresh not counted"},
+    {"refreshes", &MemoryCounters::refreshes, "refreshes of a rank, until the last burst"},
+    {"batches", &MemoryCounters::batches, "times that queued writes were sent (with a channel's first rank)"},
+    {"turnarounds", &MemoryCounters::turnarounds,
+     "neighbouring bursts of different direction (with a channel's first rank)"},
+    {"rank_switches", &MemoryCounters::rank_switches,
+     "neighbouring bursts of different ranks (with a channel's first rank)"},
     {"busy_clocks", &MemoryCounters::busy_clocks,
      "memory clocks in which a data bus moved data, all channels"},
-    {"last_clock", &MemoryCounters::last_clock, "the clock in which the last burst ended"},
+    {"read_clocks", &MemoryCounters::read_clocks,
+     "memory clocks from a read burst's arrival to its last data, summed"},
+    {"queue_clocks", &MemoryCounters::queue_clocks,
+     "of these, beyond what its own commands take in an idle memory"},
+    {"write_wait_clocks", &MemoryCounters::write_wait_clocks,
+     "memory clocks that written bursts waited for a place in the queue, summed"},
 }};
+inline MemoryCounters& operator+=(MemoryCounters& sum, const MemoryCounters& c) {
+    for (const auto& row : memory_counters)
+        sum.*row.count += c.*row.count;
+    sum.last_clock = sum.last_clock > c.last_clock ? sum.last_clock : c.last_clock;
+    return sum;
+}
 
 } // namespace sim

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <string_view>
 
 namespace sim {
 namespace {
@@ -10,125 +9,85 @@ namespace {
 std::uint64_t wide(integer x) {
     return static_cast<std::uint64_t>(x);
 }
-unsigned log2(integer x) {
-    return static_cast<unsigned>(std::countr_zero(wide(x)));
-}
 
 } // namespace
 
 Memory::Memory(const Config& config, std::uint64_t ring_clocks)
-    : c_(config.memory), core_ps_(wide(config.chip.clock_ps)), memory_ps_(wide(c_.clock_ps)),
-      there_(wide(c_.controller_cycles) / 2), back_(wide(c_.controller_cycles) - there_),
-      burst_bytes_(wide(c_.bus_bytes * c_.burst_length)), line_bytes_(wide(config.l2.line_bytes)),
-      burst_clocks_(static_cast<std::uint32_t>(c_.burst_length / 2)) {
-    for (integer i = 0; i < c_.channels; ++i)
-        channels_.push_back({Calendar("memory bus", ring_clocks), std::vector<Bank>(wide(c_.banks))});
-    unsigned shift = static_cast<unsigned>(std::countr_zero(burst_bytes_));
-    std::string_view fields = c_.mapping;
-    while (!fields.empty()) {
-        std::size_t colon = fields.rfind(':');
-        std::string_view name = colon == std::string_view::npos ? fields : fields.substr(colon + 1);
-        fields = colon == std::string_view::npos ? "" : fields.substr(0, colon);
-        if (name == "row") {
-            row_ = {shift, ~std::uint64_t{0}};
-        } else if (name == "column") {
-            shift += static_cast<unsigned>(std::countr_zero(wide(c_.row_bytes) / burst_bytes_));
-        } else {
-            integer count = name == "channel" ? c_.channels : c_.banks;
-            (name == "channel" ? channel_ : bank_) = {shift, wide(count) - 1};
-            shift += log2(count);
-        }
-    }
-}
-
-Memory::Place Memory::locate(std::uint64_t address) const {
-    return {(address >> channel_.shift) & channel_.mask, (address >> bank_.shift) & bank_.mask,
-            address >> row_.shift};
-}
-
-Memory::clock Memory::after_refresh(clock t) const {
-    if (c_.tREFI == 0)
-        return t;
-    clock into = t % wide(c_.tREFI);
-    return t >= wide(c_.tREFI) && into < wide(c_.tRFC) ? t + wide(c_.tRFC) - into : t;
-}
-
-/// The clock from which a column command may go to `row`, opened if need be.
-Memory::clock Memory::open_row(Bank& b, std::uint64_t row, clock arrival) {
-    clock epoch = c_.tREFI == 0 ? 0 : arrival / wide(c_.tREFI);
-    if (epoch > b.epoch) {
-        b.epoch = epoch;
-        b.row = b.closed_row = no_row;
-        b.activate_ok = std::max(b.activate_ok, epoch * wide(c_.tREFI) + wide(c_.tRFC));
-    }
-    if (b.row == row) {
-        ++counters_.row_hits;
-        return std::max(arrival, b.column_ok);
-    }
-    clock activate = 0;
-    if (b.row == no_row) {
-        ++counters_.row_empties;
-        activate = std::max(arrival, b.activate_ok);
-    } else {
-        ++counters_.row_conflicts;
-        b.closing = std::max(arrival, b.precharge_ok);
-        b.closed_row = b.row;
-        b.closed_column_ok = b.column_ok;
-        activate = b.closing + wide(c_.tRP);
-    }
-    activate = after_refresh(activate);
-    b.row = row;
-    b.precharge_ok = activate + wide(c_.tRAS);
-    return activate + wide(c_.tRCD);
-}
-
-/// One burst; returns the clock after its last transfer.
-Memory::clock Memory::burst(std::uint64_t address, clock arrival, bool write) {
-    Place p = locate(address);
-    Channel& channel = channels_[p.channel];
-    Bank& b = channel.banks[p.bank];
-    ++counters_.bursts;
-    counters_.busy_clocks += burst_clocks_;
-    arrival = after_refresh(arrival);
-    clock to_data = wide(write ? c_.tCWL : c_.tCL);
-    clock data = 0;
-    if (!write && b.closed_row == p.row && b.row != p.row) {
-        data = channel.bus.find_run(std::max(arrival, b.closed_column_ok) + to_data, burst_clocks_);
-        clock column = data - to_data;
-        if (column + wide(c_.tRTP) <= b.closing) {
-            channel.bus.mark_run(data, burst_clocks_);
-            b.closed_column_ok = column + wide(c_.tCCD);
-            ++counters_.row_hits;
-            counters_.last_clock = std::max(counters_.last_clock, data + burst_clocks_);
-            return data + burst_clocks_;
-        }
-    }
-    clock ready = after_refresh(open_row(b, p.row, arrival));
-    data = channel.bus.take_run(ready + to_data, burst_clocks_);
-    clock column = data - to_data;
-    b.column_ok = column + wide(c_.tCCD);
-    b.precharge_ok =
-        std::max(b.precharge_ok, write ? data + burst_clocks_ + wide(c_.tWR) : column + wide(c_.tRTP));
-    counters_.last_clock = std::max(counters_.last_clock, data + burst_clocks_);
-    return data + burst_clocks_;
-}
-
-cycle Memory::transfer(std::uint64_t address, cycle t, bool write) {
-    clock arrival = (t * core_ps_ + memory_ps_ - 1) / memory_ps_;
-    clock done = 0;
-    for (std::uint64_t part = 0; part < line_bytes_; part += burst_bytes_)
-        done = std::max(done, burst(address + part, arrival, write));
-    return (done * memory_ps_ + core_ps_ - 1) / core_ps_;
+    : core_ps_(wide(config.chip.clock_ps)), memory_ps_(wide(config.memory.clock_ps)),
+      there_(wide(config.memory.controller_cycles) / 2),
+      back_(wide(config.memory.controller_cycles) - there_),
+      burst_shift_(static_cast<unsigned>(
+          std::countr_zero(wide(config.memory.bus_bytes * config.memory.burst_length)))),
+      parts_(static_cast<std::uint32_t>(config.l2.line_bytes >> burst_shift_)), mapping_(config.memory),
+      timing_(config.memory), lines_(wide(config.memory.channels * config.memory.ranks)) {
+    channels_.reserve(wide(config.memory.channels));
+    for (std::uint32_t i = 0; i < wide(config.memory.channels); ++i)
+        channels_.emplace_back(i, config.memory, timing_, ring_clocks);
 }
 
 cycle Memory::read(std::uint64_t address, cycle t) {
-    ++counters_.reads;
-    return transfer(address, t + there_, false) + back_;
+    Clock from = arrival(t);
+    latest_ = std::max(latest_, from);
+    Clock done = 0;
+    std::uint64_t burst = address >> burst_shift_ & ~std::uint64_t{parts_ - 1};
+    for (std::uint32_t i = 0; i < parts_; ++i) {
+        DramPlace p = mapping_.locate((burst + i) << burst_shift_);
+        if (i == 0)
+            ++lines_[p.channel * lines_.size() / channels_.size() + p.rank].reads;
+        done = std::max(done, channels_[p.channel].read(p, burst + i, from, i + 1 == parts_));
+    }
+    return leave(done) + back_;
 }
 
 cycle Memory::write(std::uint64_t address, cycle t) {
-    ++counters_.writes;
-    return transfer(address, t + there_, true);
+    Clock from = arrival(t);
+    latest_ = std::max(latest_, from);
+    Clock taken = 0;
+    std::uint64_t burst = address >> burst_shift_ & ~std::uint64_t{parts_ - 1};
+    for (std::uint32_t i = 0; i < parts_; ++i) {
+        DramPlace p = mapping_.locate((burst + i) << burst_shift_);
+        if (i == 0)
+            ++lines_[p.channel * lines_.size() / channels_.size() + p.rank].writes;
+        taken = std::max(taken, channels_[p.channel].write(p, burst + i, from));
+    }
+    return leave(taken);
+}
+
+void Memory::finish() {
+    for (DramChannel& c : channels_)
+        c.finish(latest_);
+}
+
+std::vector<MemoryCounters> Memory::rank_counters() const {
+    std::vector<MemoryCounters> out = lines_;
+    auto to = out.begin();
+    for (const DramChannel& c : channels_)
+        for (const MemoryCounters& rank : c.counters())
+            *to++ += rank;
+    return out;
+}
+
+MemoryCounters Memory::counters() const {
+    MemoryCounters sum;
+    for (const MemoryCounters& rank : rank_counters())
+        sum += rank;
+    return sum;
+}
+
+void Memory::set_log(std::vector<DramCommand>* log) {
+    for (DramChannel& c : channels_)
+        c.set_log(log);
+}
+
+std::uint64_t Memory::longest_service(const Config& config, std::uint64_t requests) {
+    const MemoryConfig& c = config.memory;
+    DramTiming t(c);
+    std::uint64_t bursts = wide(config.l2.line_bytes / (c.bus_bytes * c.burst_length));
+    // Each burst on its own: opened, turned around, closed; in between, refreshes of every rank.
+    Clock each = t.tRC + t.tRCD + t.precharge[1] + t.column[0][1][at(Near::channel)] +
+                 t.column[1][0][at(Near::group)] + t.data[0] + t.burst + t.tFAW;
+    Clock busy = each * (requests * bursts + wide(c.write_queue + 1));
+    return t.tREFI == 0 ? busy : (busy / (t.tREFI - t.blocked_by_refresh()) + 2) * t.tREFI;
 }
 
 } // namespace sim

@@ -1,14 +1,11 @@
-// DRAM: channels of banks with one open row each. A bank serves requests in the order they come; a request
-// for the row that is about to be closed still goes before the closing (row look-back, in place of a
-// first-ready queue). The data bus of a channel is a calendar. Refresh blocks a channel for tRFC every tREFI
-// and closes all rows. Not modelled: ranks, bank groups, activation limits across banks (tRRD, tFAW), bus
-// turnarounds, command bus, write queue.
+// The memory as the L2 sees it: lines become bursts, core cycles memory clocks, and each burst goes to its
+// channel. Pseudo channels of HBM are channels here, with command buses of their own (those of a real pair
+// share one). Requests come in nearly nondecreasing order of time.
 #pragma once
 
 #include "sim/config/config.h"
-#include "sim/core/calendar.h"
 #include "sim/core/stalls.h"
-#include "sim/memory/counters.h"
+#include "sim/memory/dram_channel.h"
 
 #include <vector>
 
@@ -16,52 +13,40 @@ namespace sim {
 
 class Memory {
 public:
+    /// Whatever is booked at one time, and the times of requests to come, lie within `ring_clocks`.
     Memory(const Config& config, std::uint64_t ring_clocks);
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
 
     /// A line of the L2; returns the core cycle at which its last byte is back at the L2.
     cycle read(std::uint64_t address, cycle t);
-    /// Returns the core cycle at which the line is written.
+    /// Returns the core cycle at which the write queues have taken the line.
     cycle write(std::uint64_t address, cycle t);
-    const MemoryCounters& counters() const { return counters_; }
+    /// Sends what is still queued. No requests follow.
+    void finish();
+
+    /// Sums over all ranks, and each: rank r of channel c at c x ranks + r.
+    MemoryCounters counters() const;
+    std::vector<MemoryCounters> rank_counters() const;
+    /// Every command is appended to `log` (not in time order; refreshes by finish()).
+    void set_log(std::vector<DramCommand>* log);
+
+    /// Clocks that `requests` lines, and all that the write queues hold, may take one after another: what
+    /// `ring_clocks` must span besides the disorder of requests.
+    static std::uint64_t longest_service(const Config& config, std::uint64_t requests);
 
 private:
-    using clock = std::uint64_t; // memory clocks
-    struct Bank {
-        std::uint64_t row = no_row, closed_row = no_row;
-        clock column_ok = 0;    // a column command to the open row
-        clock precharge_ok = 0; // closing it
-        clock activate_ok = 0;  // opening the next
-        clock closing = 0;      // when closed_row was or will be closed
-        clock closed_column_ok = 0;
-        clock epoch = 0; // refresh interval of the last use
-    };
-    struct Channel {
-        Calendar bus;
-        std::vector<Bank> banks;
-    };
-    struct Place {
-        std::size_t channel, bank;
-        std::uint64_t row;
-    };
-    static constexpr std::uint64_t no_row = ~std::uint64_t{0};
+    Clock arrival(cycle t) const { return ((t + there_) * core_ps_ + memory_ps_ - 1) / memory_ps_; }
+    cycle leave(Clock t) const { return (t * memory_ps_ + core_ps_ - 1) / core_ps_; }
 
-    Place locate(std::uint64_t address) const;
-    clock after_refresh(clock t) const;
-    clock burst(std::uint64_t address, clock arrival, bool write);
-    clock open_row(Bank& bank, std::uint64_t row, clock arrival);
-    cycle transfer(std::uint64_t address, cycle t, bool write);
-
-    MemoryConfig c_;
     std::uint64_t core_ps_, memory_ps_, there_, back_;
-    std::uint64_t burst_bytes_, line_bytes_;
-    std::uint32_t burst_clocks_;
-    struct Field {
-        unsigned shift = 0;
-        std::uint64_t mask = 0;
-    };
-    Field channel_, bank_, row_;
-    std::vector<Channel> channels_;
-    MemoryCounters counters_;
+    unsigned burst_shift_;
+    std::uint32_t parts_; // bursts of a line
+    DramMapping mapping_;
+    DramTiming timing_;
+    std::vector<DramChannel> channels_;
+    std::vector<MemoryCounters> lines_; // reads and writes, by rank of the first burst
+    Clock latest_ = 0;
 };
 
 } // namespace sim

@@ -39,7 +39,7 @@ TEST(MachineFile, MistakesAreOneClearLine) {
         {"[memory]\nbus_bytes = 16\n", "m.toml:", "more than l2.line_bytes"},
         {"[memory]\nrow_bytes = 1\n", "m.toml:2:13:", "must be from 64"},
         {"[memory]\ntREFI = 100\ntRFC = 90\n", "m.toml:", "between refreshes"},
-        {"[memory]\nmapping = \"row\"\n", "m.toml:2:11:", "must be one of"},
+        {"[memory]\nmapping = \"row\"\n", "m.toml:", "names rank without a number 0 times"},
         {"[chip\n", "m.toml:", "not TOML"},
         {"\x01\x02\xff", "m.toml:", "not TOML"},
         {"inherit = 3\n", "m.toml:1:11:", "in quotes"},

@@ -25,6 +25,7 @@ inline Config simple() {
     c.core.lanes = 64;
     c.l1.port_bytes = 1024;
     c.core.predictor = "perfect";
+    c.memory.tREFI = 0;
     return c;
 }
 /// A frame memory of one region of 64 MiB.

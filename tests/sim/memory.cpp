@@ -70,7 +70,7 @@ TEST(Memory, RowHitEmptyConflict) {
     EXPECT_EQ(second(line), other + idle_read(c) - u(c.memory.tRCD)); // hit
     EXPECT_EQ(second(c.memory.row_bytes), other + idle_read(c));      // another bank
     EXPECT_EQ(second(rows), other + idle_read(c) + u(c.memory.tRP));  // conflict
-    c.memory.tRAS = 200;                                              // the row may not be closed before
+    c.memory.tRAS = c.memory.tRC = 200;                               // the row may not be closed before
     EXPECT_EQ(second(rows), u(200 + c.memory.tRP));
 }
 

@@ -48,7 +48,9 @@ Config random_machine(std::mt19937& random) {
     c.l2.write_back_buffer = pick(1, 8);
     c.memory.clock_ps = pick(200, 3000);
     c.memory.channels = power(0, 3);
-    c.memory.banks = power(0, 5);
+    c.memory.ranks = power(0, 2);
+    c.memory.bank_groups = power(0, 2);
+    c.memory.banks = power(0, 3);
     c.memory.row_bytes = std::max(c.l2.line_bytes, power(9, 13));
     c.memory.bus_bytes = power(0, 3);
     c.memory.burst_length = power(1, 3);
@@ -56,8 +58,16 @@ Config random_machine(std::mt19937& random) {
         c.memory.burst_length /= 2;
     if (c.memory.burst_length < 2)
         c.memory.bus_bytes = 2, c.memory.burst_length = 2;
-    c.memory.tREFI = pick(0, 1) == 0 ? 0 : pick(1000, 9000);
-    c.memory.tRFC = pick(0, 300);
+    c.memory.tREFI = pick(0, 1) == 0 ? 0 : c.memory.ranks * pick(1000, 9000);
+    c.memory.tRFC = pick(1, 300);
+    c.memory.tFAW = pick(1, 60);
+    c.memory.tRTRS = pick(0, 4);
+    c.memory.page_policy = pick(0, 1) == 0 ? "open" : "closed";
+    c.memory.bank_xor = pick(0, 1) == 0 ? "on" : "off";
+    c.memory.command_buses = pick(1, 2);
+    c.memory.write_queue = pick(1, 40);
+    c.memory.write_high = pick(1, c.memory.write_queue);
+    c.memory.write_low = pick(0, c.memory.write_high - 1);
     c.sim.quantum = std::array<integer, 5>{0, 1, 10, 100, 5000}[random() % 5];
     return c;
 }
