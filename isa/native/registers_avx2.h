@@ -66,7 +66,13 @@ inline I select(M m, I a, I b) {
 }
 
 // --- masks
-inline M mask_and(M a, M b) { return _mm256_and_ps(a, b); }
+inline M mask_and(M a, M b) {
+    M m = _mm256_and_ps(a, b);
+#if defined(__clang__)
+    asm("" : "+x"(m)); // clang would pack comparisons to 16 bits and back to join them anew in each block
+#endif
+    return m;
+}
 inline M mask_or(M a, M b) { return _mm256_or_ps(a, b); }
 inline M mask_xor(M a, M b) { return _mm256_xor_ps(a, b); }
 inline M mask_not(M a) { return _mm256_xor_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(-1))); }

@@ -1,5 +1,5 @@
-// isa_cost TARGET vocabulary|intrinsics [PACKETS]: runs one version of the kernel and prints nanoseconds a
-// packet of 32 rays and a sum over the results, which both versions share. See compare.py.
+// isa_cost TARGET vocabulary|intrinsics|wide_intrinsics [PACKETS]: runs one version of the kernel and prints
+// nanoseconds a packet of 32 rays and a sum over the results, which all versions share. See compare.py.
 #include "packet.h"
 #include "targets.h"
 
@@ -15,6 +15,7 @@
     namespace isa_cost::target {                                                                                       \
     bool vocabulary(const triangle&, rays&, int);                                                                      \
     bool intrinsics(const triangle&, rays&, int);                                                                      \
+    bool wide_intrinsics(const triangle&, rays&, int);                                                                 \
     }
 ISA_COST_TARGETS(DECLARE)
 
@@ -24,11 +25,14 @@ int main(int argc, char** argv) {
     isa_cost::kernel kernel = nullptr;
 #define CHOOSE(name)                                                                                                   \
     if (target == #name)                                                                                               \
-        kernel = version == "vocabulary" ? &isa_cost::name::vocabulary : &isa_cost::name::intrinsics;
+        kernel = version == "vocabulary"        ? &isa_cost::name::vocabulary                                          \
+                 : version == "intrinsics"      ? &isa_cost::name::intrinsics                                          \
+                 : version == "wide_intrinsics" ? &isa_cost::name::wide_intrinsics                                     \
+                                                : nullptr;
     ISA_COST_TARGETS(CHOOSE)
     if (kernel == nullptr || !isa::cpu_runs(target)) {
-        std::fprintf(stderr,
-                     "usage: isa_cost TARGET vocabulary|intrinsics [PACKETS], on a processor that runs TARGET\n");
+        std::fprintf(stderr, "usage: isa_cost TARGET vocabulary|intrinsics|wide_intrinsics [PACKETS], on a processor "
+                             "that runs TARGET\n");
         return 2;
     }
     std::mt19937 random(1);

@@ -11,24 +11,24 @@ namespace {
 struct vec {
     vfloat x, y, z;
 };
-vec load_rays(pointer<const float> p) {
-    vfloat x = load_vector(p);
-    vfloat y = load_vector(p + 32);
-    vfloat z = load_vector(p + 64);
+inline vec load_rays(pointer<const float> p, sint at) {
+    vfloat x = load_vector(p + at);
+    vfloat y = load_vector(p + 32 + at);
+    vfloat z = load_vector(p + 64 + at);
     return {x, y, z};
 }
-vec load_corner(pointer<const float> p) {
+inline vec load_corner(pointer<const float> p) {
     vfloat x = load_broadcast(p);
     vfloat y = load_broadcast(p + 1);
     vfloat z = load_broadcast(p + 2);
     return {x, y, z};
 }
-vfloat dot(const vec& a, const vec& b) {
+inline vfloat dot(const vec& a, const vec& b) {
     vfloat d = a.z * b.z;
     d = fma(a.y, b.y, d);
     return fma(a.x, b.x, d);
 }
-vec cross(const vec& a, const vec& b) {
+inline vec cross(const vec& a, const vec& b) {
     vfloat x = a.z * b.y;
     vfloat y = a.x * b.z;
     vfloat z = a.y * b.x;
@@ -39,13 +39,13 @@ vec cross(const vec& a, const vec& b) {
 
 bool vocabulary(const triangle& tri, rays& r, int at);
 bool vocabulary(const triangle& tri, rays& r, int at) {
-    vec direction = load_rays(pointer<const float>(r.direction[0] + at));
+    vec direction = load_rays(pointer<const float>(r.direction[0]), at);
     vec e2 = load_corner(pointer<const float>(tri.edge[1]));
     vec p = cross(direction, e2);
     vec e1 = load_corner(pointer<const float>(tri.edge[0]));
     vfloat determinant = dot(e1, p);
     vfloat inverse = reciprocal(determinant);
-    vec s = load_rays(pointer<const float>(r.origin[0] + at));
+    vec s = load_rays(pointer<const float>(r.origin[0]), at);
     vec corner = load_corner(pointer<const float>(tri.corner));
     s = {s.x - corner.x, s.y - corner.y, s.z - corner.z};
     vfloat u = dot(s, p);
