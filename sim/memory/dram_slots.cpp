@@ -43,6 +43,7 @@ DramSlots::DramSlots(const MemoryConfig& c, const DramTiming& timing, std::uint6
     // Three quarters of what 64 clocks can take.
     pressing_activates_ = static_cast<int>(4 * 48 / beat_);
     pressing_columns_ = static_cast<int>(48 / t_.column[0][0][at(Near::rank)]);
+    between_refreshes_.resize(ranks_);
     std::uint64_t words = std::bit_ceil(ring_clocks / 64 + 2);
     mask_ = words - 1;
     words_.resize(words * size_);
@@ -54,11 +55,16 @@ Clock DramSlots::first_refresh(std::uint32_t rank) const {
     return t_.tREFI + t_.tREFI * rank / ranks_; // ranks take turns
 }
 
-Clock DramSlots::next_refresh(Clock t, std::uint32_t rank) const {
+Clock DramSlots::next_refresh(Clock t, std::uint32_t rank) {
     if (t_.tREFI == 0)
         return all;
-    Clock first = first_refresh(rank);
-    return t < first ? first : first + ((t - first) / t_.tREFI + 1) * t_.tREFI;
+    Interval& i = between_refreshes_[rank];
+    if (t < i.begin || t >= i.end) {
+        Clock first = first_refresh(rank);
+        i.end = t < first ? first : first + ((t - first) / t_.tREFI + 1) * t_.tREFI;
+        i.begin = t < first ? 0 : i.end - t_.tREFI;
+    }
+    return i.end;
 }
 
 /// A word that nothing is booked in: beats, and refreshes, each after a precharge of all banks.
@@ -111,15 +117,11 @@ void DramSlots::take_bus(Clock t, std::uint32_t bus) {
     word(t / 64)[bus] |= Bits{1} << (t % 64);
 }
 
-void DramSlots::forbid_activate(Clock first, Clock last, std::uint32_t rank, std::uint32_t group,
-                                bool whole_rank) {
+/// For the whole rank.
+void DramSlots::forbid_activates(Clock first, Clock last, std::uint32_t rank) {
     for (std::uint64_t n = first / 64; n <= last / 64; ++n) {
         Bits* w = word(n) + no_activate_ + rank * groups_;
         Bits bits = part(n, first, last);
-        if (!whole_rank) {
-            w[group] |= bits;
-            continue;
-        }
         for (std::uint32_t g = 0; g < groups_; ++g)
             w[g] |= bits;
     }
@@ -134,6 +136,11 @@ void DramSlots::forbid_near_activates(Clock t, std::uint32_t rank) {
     auto bits = [&](std::uint64_t n, Clock from, Clock to) {
         return word(n)[activates_ + rank] & part(n, from, to);
     };
+    int near = 0;
+    for (std::uint64_t n = first / 64; n <= last / 64; ++n)
+        near += std::popcount(bits(n, first, last));
+    if (near <= most)
+        return;
     for (std::uint64_t n = t / 64; t > 0 && count < most; --n) { // backwards
         for (Bits b = bits(n, first, t - 1); b != 0 && count < most;) {
             auto bit = 63 - static_cast<unsigned>(std::countl_zero(b));
@@ -152,15 +159,20 @@ void DramSlots::forbid_near_activates(Clock t, std::uint32_t rank) {
     for (int i = 0; i + 3 < count; ++i) {
         Clock low = times[static_cast<std::size_t>(i)], high = times[static_cast<std::size_t>(i) + 3];
         if (high - low < t_.tFAW)
-            forbid_activate(back(high, t_.tFAW - 1), low + t_.tFAW - 1, rank, 0, true);
+            forbid_activates(back(high, t_.tFAW - 1), low + t_.tFAW - 1, rank);
     }
 }
 
 void DramSlots::take_activate(Clock t, std::uint32_t rank, std::uint32_t group) {
     take_bus(t, row_bus_);
-    auto [near, far] = t_.activate;
-    forbid_activate(back(t, near - 1), t + near - 1, rank, group, false);
-    forbid_activate(back(t, far - 1), t + far - 1, rank, group, true);
+    auto [near, far] = t_.activate; // near is the longer
+    for (std::uint64_t n = back(t, near - 1) / 64; n <= (t + near - 1) / 64; ++n) {
+        Bits* w = word(n) + no_activate_ + rank * groups_;
+        Bits bits = part(n, back(t, far - 1), t + far - 1);
+        for (std::uint32_t g = 0; g < groups_; ++g)
+            w[g] |= bits;
+        w[group] |= part(n, back(t, near - 1), t + near - 1);
+    }
     word(t / 64)[activates_ + rank] |= Bits{1} << (t % 64);
     forbid_near_activates(t, rank);
 }

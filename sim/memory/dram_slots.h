@@ -45,7 +45,7 @@ public:
     std::uint64_t rank_switches() const { return static_cast<std::uint64_t>(rank_switches_); }
 
     /// The start of the rank's first refresh after `t`; the largest clock where there are none.
-    Clock next_refresh(Clock t, std::uint32_t rank) const;
+    Clock next_refresh(Clock t, std::uint32_t rank);
     Clock first_refresh(std::uint32_t rank) const;
 
 private:
@@ -104,7 +104,7 @@ private:
     Clock find_gap(Clock from, Column c, std::uint32_t rank, std::uint32_t group);
     Clock rest(const Burst& first, const Burst& second) const;
     void take_bus(Clock t, std::uint32_t bus);
-    void forbid_activate(Clock first, Clock last, std::uint32_t rank, std::uint32_t group, bool whole_rank);
+    void forbid_activates(Clock first, Clock last, std::uint32_t rank);
     void forbid_near_activates(Clock t, std::uint32_t rank);
     void count_changes(Clock t, const Burst& burst);
     Burst before(Clock t);
@@ -118,7 +118,11 @@ private:
         no_column_, size_;
     std::uint64_t mask_;
     std::vector<Bits> words_;
-    Clock latest_ = 0; // the last column command in time
+    struct Interval {
+        Clock begin = 0, end = 0;
+    };
+    std::vector<Interval> between_refreshes_; // by rank: where the last question was
+    Clock latest_ = 0;                        // the last column command in time
     Burst latest_burst_;
     std::int64_t turnarounds_ = 0, rank_switches_ = 0;
     Clock reach_; // of a column command's marks

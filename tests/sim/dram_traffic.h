@@ -82,8 +82,8 @@ inline cycle request(sim::Memory& memory, const Request& r, cycle t) {
 } // namespace detail
 
 /// `in_flight` requests at all times: each answer is followed by the next request.
-inline Outcome closed_loop(const Config& c, std::uint64_t in_flight, std::uint64_t count, const Source& source,
-                       bool with_log = false) {
+inline Outcome closed_loop(const Config& c, std::uint64_t in_flight, std::uint64_t count,
+                           const Source& source, bool with_log = false) {
     sim::Memory memory(c, 64 + sim::Memory::longest_service(c, in_flight));
     Outcome run;
     if (with_log)
@@ -106,7 +106,7 @@ inline Outcome closed_loop(const Config& c, std::uint64_t in_flight, std::uint64
 
 /// Requests at random times, `gap` clocks apart in the mean, whatever the memory does.
 inline Outcome open_loop(const Config& c, double gap, std::uint64_t count, const Source& source,
-                     unsigned seed = 1, bool with_log = false) {
+                         unsigned seed = 1, bool with_log = false) {
     sim::Memory memory(c, 64 + sim::Memory::longest_service(c, most_in_flight));
     Outcome run;
     if (with_log)

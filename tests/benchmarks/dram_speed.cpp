@@ -1,0 +1,56 @@
+// Host nanoseconds (of processor time) that a request to the memory takes, by preset, traffic and requests in
+// flight a channel; those of the generator alone are taken off. And what the memory reached.
+//   dram_speed [REQUESTS]
+#include "tests/sim/dram_traffic.h"
+
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <ctime>
+
+namespace {
+
+using namespace sim;
+using namespace sim::test;
+
+double seconds(std::clock_t begin) {
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+/// The generator, with a memory that always takes 100 clocks.
+double generator_seconds(std::uint64_t in_flight, std::uint64_t count, const Source& source) {
+    std::clock_t begin = std::clock();
+    std::priority_queue<cycle, std::vector<cycle>, std::greater<>> busy;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        cycle t = 0;
+        if (busy.size() == in_flight) {
+            t = busy.top();
+            busy.pop();
+        }
+        busy.push(t + 100 + source().address % 2);
+    }
+    return seconds(begin);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    std::uint64_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
+    constexpr std::uint64_t lines = std::uint64_t{1} << 24;
+    fmt::print("{:<12} {:<22} {:>9} {:>11} {:>9} {:>9}\n", "preset", "traffic", "in flight", "ns/request",
+               "GB/s", "of peak");
+    for (const MemoryConfig& preset : memory_presets())
+        for (std::uint64_t in_flight : {1U, 8U, 64U})
+            for (int traffic = 0; traffic < 3; ++traffic) {
+                Config c = memory_of(preset.preset);
+                std::uint64_t all = in_flight * static_cast<std::uint64_t>(c.memory.channels);
+                auto source = [&] { return traffic == 2 ? stream() : random_lines(lines, traffic * 0.25); };
+                std::clock_t begin = std::clock();
+                Outcome o = closed_loop(c, all, count, source());
+                double own = seconds(begin) - generator_seconds(all, count, source());
+                const char* const names[] = {"random reads", "random, 25 % writes", "sequential reads"};
+                fmt::print("{:<12} {:<22} {:>9} {:>11.0f} {:>9.2f} {:>7.1f} %\n", preset.preset,
+                           names[traffic], all, 1e9 * own / o.lines, o.bandwidth(c),
+                           100 * o.bytes_per_clock() / peak(c));
+            }
+}
