@@ -141,6 +141,30 @@ TEST(Marks, AreReadFromComments) {
     EXPECT_EQ(comment_behind("a = 1", 5), "");
 }
 
+// A key that sets others stands for them until something sets them by themselves.
+TEST(Inheritance, PresetsAreWhereTheirValuesComeFrom) {
+    const TemporaryFolder folder;
+    folder.file("root.toml", "[memory]\ntRCD = 33\nchannels = 4\n");
+    const std::string top = folder
+                                .file("top.toml", "inherit = \"root.toml\"\n[memory]\nchannels = 2\npreset = "
+                                                  "\"hbm2\" # known (JESD235A): two words\n")
+                                .string();
+    const MachineDescription m = describe_machine(top, {"memory.banks=8"});
+    EXPECT_EQ(m.config.memory.channels, 2);
+    EXPECT_EQ(m.config.memory.banks, 8);
+    EXPECT_NE(m.config.memory.tRCD, 33);
+    EXPECT_EQ(origin_of(m, "memory.channels").place(), "top.toml:3");
+    EXPECT_EQ(origin_of(m, "memory.tRCD").place(), "top.toml:4");
+    EXPECT_EQ(origin_of(m, "memory.tRCD").comment, "known (JESD235A): two words");
+    EXPECT_EQ(origin_of(m, "memory.banks").place(), "-g");
+    EXPECT_EQ(origin_of(m, "memory.controller_cycles").place(), "default");
+    const MachineDescription again = describe_machine_text(print_machine(m), "again.toml");
+    EXPECT_EQ(print_machine(again.config), print_machine(m.config));
+    EXPECT_EQ(origin_of(describe_machine(top, {"memory.banks=8", "memory.preset=ddr4-2400r"}), "memory.tRCD")
+                  .place(),
+              "-g");
+}
+
 // What is printed is a machine file of the same values and marks; only the places are new.
 TEST(Printing, RoundTripsValuesAndMarks) {
     const TemporaryFolder folder;
