@@ -5,13 +5,13 @@
 namespace sim {
 namespace {
 
-/// Queues and policies are of the controller; no data sheet gives them. Assumed: sizes as in the controllers
-/// that gem5 and DRAMsim3 describe (32 to 64 entries), drained in batches of 16.
+/// Queues and policies are of the controller; no data sheet gives them. Assumed: 64 entries, as gem5's controller
+/// has, drained in long batches.
 MemoryConfig controller() {
     MemoryConfig c;
     c.write_queue = 64;
-    c.write_high = 48;
-    c.write_low = 16;
+    c.write_high = 56;
+    c.write_low = 8;
     c.page_policy = "open";
     c.bank_xor = "off";
     c.command_buses = 1;

@@ -5,8 +5,8 @@
 namespace sim {
 
 DramChannel::DramChannel(std::uint32_t number, const MemoryConfig& c, const DramTiming& timing,
-                         std::uint64_t ring_clocks)
-    : t_(timing), slots_(c, timing, ring_clocks), number_(number),
+                         std::uint64_t disorder)
+    : t_(timing), slots_(c, timing, disorder), number_(number),
       groups_(static_cast<std::uint32_t>(c.bank_groups)),
       banks_per_group_(static_cast<std::uint32_t>(c.banks)), closed_page_(c.page_policy == "closed"),
       capacity_(static_cast<std::size_t>(c.write_queue)), high_(static_cast<std::size_t>(c.write_high)),
@@ -111,6 +111,7 @@ void DramChannel::send(const DramPlace& p, Column c, const Sent& s, bool last) {
 
 Clock DramChannel::read(const DramPlace& place, std::uint64_t burst, Clock arrival, bool last) {
     MemoryCounters& n = counters_[place.rank];
+    slots_.set_now(arrival);
     for (const Write& w : queue_)
         if (w.burst == burst && w.leaves > arrival) {
             ++n.forwarded;
@@ -172,6 +173,7 @@ void DramChannel::send_batch(Clock now) {
 
 Clock DramChannel::write(const DramPlace& place, std::uint64_t burst, Clock arrival) {
     MemoryCounters& n = counters_[place.rank];
+    slots_.set_now(arrival);
     for (const Write& w : queue_)
         if (w.burst == burst && w.leaves == never) {
             ++n.merged;

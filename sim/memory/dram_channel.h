@@ -18,7 +18,7 @@ namespace sim {
 class DramChannel {
 public:
     DramChannel(std::uint32_t number, const MemoryConfig& config, const DramTiming& timing,
-                std::uint64_t ring_clocks);
+                std::uint64_t disorder);
 
     /// A burst by its number in memory; `last` of its request in this row. Returns the clock after its data.
     Clock read(const DramPlace& place, std::uint64_t burst, Clock arrival, bool last);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -21,10 +22,10 @@ Clock back(Clock t, Clock distance) {
 
 } // namespace
 
-DramSlots::DramSlots(const MemoryConfig& c, const DramTiming& timing, std::uint64_t ring_clocks)
+DramSlots::DramSlots(const MemoryConfig& c, const DramTiming& timing, std::uint64_t disorder)
     : t_(timing), ranks_(static_cast<std::uint32_t>(c.ranks)),
       groups_(static_cast<std::uint32_t>(c.bank_groups)),
-      rank_planes_(static_cast<std::uint32_t>(std::countr_zero(ranks_))) {
+      rank_planes_(static_cast<std::uint32_t>(std::countr_zero(ranks_))), disorder_(disorder) {
     row_bus_ = 1;
     column_bus_ = c.command_buses == 1 ? row_bus_ : row_bus_ + 1;
     columns_ = column_bus_ + 1;
@@ -44,7 +45,7 @@ DramSlots::DramSlots(const MemoryConfig& c, const DramTiming& timing, std::uint6
     pressing_activates_ = static_cast<int>(4 * 48 / beat_);
     pressing_columns_ = static_cast<int>(48 / t_.column[0][0][at(Near::rank)]);
     between_refreshes_.resize(ranks_);
-    std::uint64_t words = std::bit_ceil(ring_clocks / 64 + 2);
+    std::uint64_t words = std::bit_ceil(disorder / 64 + 16);
     mask_ = words - 1;
     words_.resize(words * size_);
     for (std::uint64_t n = 0; n < words; ++n)
@@ -65,6 +66,20 @@ Clock DramSlots::next_refresh(Clock t, std::uint32_t rank) {
         i.begin = t < first ? 0 : i.end - t_.tREFI;
     }
     return i.end;
+}
+
+/// The word of a ring large enough for it and all that are still needed.
+DramSlots::Bits* DramSlots::grown(std::uint64_t number) {
+    std::uint64_t words = std::bit_ceil(number - kept_ + 1);
+    std::vector<Bits> old = std::exchange(words_, std::vector<Bits>(words * size_));
+    std::uint64_t first = kept_; // words keep their places or, being new, get the latest number that fits
+    for (std::uint64_t i = 0; i < words; ++i)
+        renew(&words_[((first + i) & (words - 1)) * size_], first + i);
+    for (std::uint64_t i = 0; i <= mask_; ++i)
+        if (old[i * size_] >= kept_)
+            std::copy_n(&old[i * size_], size_, &words_[(old[i * size_] & (words - 1)) * size_]);
+    mask_ = words - 1;
+    return word(number);
 }
 
 /// A word that nothing is booked in: beats, and refreshes, each after a precharge of all banks.

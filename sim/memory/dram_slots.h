@@ -15,8 +15,12 @@ namespace sim {
 
 class DramSlots {
 public:
-    /// Everything that is booked at one time lies within `ring_clocks`.
-    DramSlots(const MemoryConfig& config, const DramTiming& timing, std::uint64_t ring_clocks);
+    /// `disorder`: how much earlier than its predecessors a request may come. The ring grows to whatever is
+    /// booked at one time.
+    DramSlots(const MemoryConfig& config, const DramTiming& timing, std::uint64_t disorder);
+
+    /// Requests come at `now`, and no more than the disorder earlier, from here on.
+    void set_now(Clock now) { kept_ = std::max(kept_, (now > disorder_ ? now - disorder_ : 0) / 64); }
 
     /// The first clock from `from` on at which a command may be issued. `now`: when its request came. Where
     /// much is booked after that, commands keep step with each other, or the gaps between them would go to
@@ -78,10 +82,13 @@ private:
         if (w[0] != number) [[unlikely]] {
             if (w[0] > number)
                 calendar_too_short("memory commands", number * 64, (mask_ + 1) * 64);
+            if (w[0] >= kept_)
+                return grown(number);
             renew(w, number);
         }
         return w;
     }
+    Bits* grown(std::uint64_t number);
     void renew(Bits* w, std::uint64_t number);
     Clock find(Clock from, std::uint32_t bus, std::uint32_t kind) {
         std::uint64_t number = from / 64;
@@ -116,7 +123,8 @@ private:
     // Where the bitmaps stand in a word: its number first.
     std::uint32_t row_bus_, column_bus_, columns_, writes_, planes_, activates_, beats_, no_activate_,
         no_column_, size_;
-    std::uint64_t mask_;
+    std::uint64_t mask_, kept_ = 0; // the first word that is still needed
+    Clock disorder_;
     std::vector<Bits> words_;
     struct Interval {
         Clock begin = 0, end = 0;

@@ -12,7 +12,7 @@ std::uint64_t wide(integer x) {
 
 } // namespace
 
-Memory::Memory(const Config& config, std::uint64_t ring_clocks)
+Memory::Memory(const Config& config, std::uint64_t disorder)
     : core_ps_(wide(config.chip.clock_ps)), memory_ps_(wide(config.memory.clock_ps)),
       there_(wide(config.memory.controller_cycles) / 2),
       back_(wide(config.memory.controller_cycles) - there_),
@@ -22,7 +22,7 @@ Memory::Memory(const Config& config, std::uint64_t ring_clocks)
       timing_(config.memory), lines_(wide(config.memory.channels * config.memory.ranks)) {
     channels_.reserve(wide(config.memory.channels));
     for (std::uint32_t i = 0; i < wide(config.memory.channels); ++i)
-        channels_.emplace_back(i, config.memory, timing_, ring_clocks);
+        channels_.emplace_back(i, config.memory, timing_, disorder);
 }
 
 cycle Memory::read(std::uint64_t address, cycle t) {

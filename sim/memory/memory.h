@@ -13,8 +13,8 @@ namespace sim {
 
 class Memory {
 public:
-    /// Whatever is booked at one time, and the times of requests to come, lie within `ring_clocks`.
-    Memory(const Config& config, std::uint64_t ring_clocks);
+    /// `disorder`: memory clocks by which a request may be earlier than its predecessors.
+    Memory(const Config& config, std::uint64_t disorder);
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
@@ -32,7 +32,7 @@ public:
     void set_log(std::vector<DramCommand>* log);
 
     /// Clocks that `requests` lines, and all that the write queues hold, may take one after another: what
-    /// `ring_clocks` must span besides the disorder of requests.
+    /// lies between a request and what is booked for it, at most.
     static std::uint64_t longest_service(const Config& config, std::uint64_t requests);
 
 private:

@@ -82,10 +82,10 @@ TEST(DramBounds, StreamIsLimitedByTheBus) {
         for (integer channels : {1, 2, 4, 16}) {
             Config c = memory_of(preset, [&](MemoryConfig& m) { m.channels = channels; });
             auto in_flight = static_cast<std::uint64_t>(32 * channels);
-            Outcome r = closed_loop(c, in_flight, 100000 * static_cast<std::uint64_t>(channels), stream());
+            Outcome r = closed_loop(c, in_flight, 20000 * static_cast<std::uint64_t>(channels), stream());
             EXPECT_TRUE(close(r.bytes_per_clock(), peak(c) * awake(c), 0.02)) << preset << " " << channels;
             c.memory.tREFI = 0;
-            r = closed_loop(c, in_flight, 100000 * static_cast<std::uint64_t>(channels), stream());
+            r = closed_loop(c, in_flight, 20000 * static_cast<std::uint64_t>(channels), stream());
             EXPECT_TRUE(close(r.bytes_per_clock(), peak(c), 0.002)) << preset << " " << channels;
         }
 }

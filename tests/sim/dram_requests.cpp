@@ -161,6 +161,20 @@ TEST(DramWrites, TurnaroundIsPaidOncePerBatch) {
     }
 }
 
+// What is booked far ahead makes the calendar grow; nothing is forgotten.
+TEST(DramRows, TheCalendarGrowsWithWhatIsBooked) {
+    for (const char* preset : {"ddr4-2400r", "hbm2"}) {
+        Config c = memory_of(preset, [](MemoryConfig& m) { m.channels = 1, m.ranks = 2; });
+        sim::Memory small(c, 0), large(c, ring(c));
+        auto a = random_lines(1 << 20, 0.3), b = random_lines(1 << 20, 0.3);
+        for (cycle t = 0; t < 8000; ++t) {
+            Request r = a(), same = b();
+            cycle at = t < 2000 ? 0 : 20 * t;
+            ASSERT_EQ(detail::request(small, r, at), detail::request(large, same, at)) << t;
+        }
+    }
+}
+
 TEST(DramRows, LookBackGoesBeforeTheClosing) {
     Config c = ddr4();
     const MemoryConfig& m = c.memory;

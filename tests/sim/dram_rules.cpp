@@ -107,7 +107,7 @@ TEST(DramRules, EachBrokenRuleIsNoticed) {
             base(m);
             --(m.*rule.member);
         });
-        Outcome r = closed_loop(wrong, 32, 30000, mixed(3), true);
+        Outcome r = closed_loop(wrong, 32, 12000, mixed(3), true);
         auto broken = broken_rules(sheet.memory, r.log);
         EXPECT_EQ(broken.count(rule.name), 1U) << rule.name << " noticed as " << names(broken);
         EXPECT_EQ(broken_rules(wrong.memory, r.log).size(), 0U);

@@ -11,8 +11,6 @@
 
 namespace sim::test {
 
-inline constexpr std::uint64_t most_in_flight = 4096;
-
 inline Config memory_of(const std::string& preset, const std::function<void(MemoryConfig&)>& change = {}) {
     Config c;
     apply_memory_preset(c, preset);
@@ -84,7 +82,7 @@ inline cycle request(sim::Memory& memory, const Request& r, cycle t) {
 /// `in_flight` requests at all times: each answer is followed by the next request.
 inline Outcome closed_loop(const Config& c, std::uint64_t in_flight, std::uint64_t count,
                            const Source& source, bool with_log = false) {
-    sim::Memory memory(c, 64 + sim::Memory::longest_service(c, in_flight));
+    sim::Memory memory(c, 0);
     Outcome run;
     if (with_log)
         memory.set_log(&run.log);
@@ -107,7 +105,7 @@ inline Outcome closed_loop(const Config& c, std::uint64_t in_flight, std::uint64
 /// Requests at random times, `gap` clocks apart in the mean, whatever the memory does.
 inline Outcome open_loop(const Config& c, double gap, std::uint64_t count, const Source& source,
                          unsigned seed = 1, bool with_log = false) {
-    sim::Memory memory(c, 64 + sim::Memory::longest_service(c, most_in_flight));
+    sim::Memory memory(c, 0);
     Outcome run;
     if (with_log)
         memory.set_log(&run.log);
