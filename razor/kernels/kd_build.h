@@ -1,6 +1,8 @@
 // The kd-tree, split on demand by the surface-area heuristic: a node is split when the first ray enters it.
-// Planes are sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). Patches stay
-// closed in the lists until their box is large against the node's cell (after Hunt et al. 2007).
+// Planes are sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). The bonus
+// for empty space ranks planes only: whether to split is asked of the cost, or piles would be trimmed for
+// ever. Patches stay closed in the lists until their box is large against the node's cell (after Hunt et al.
+// 2007).
 #pragma once
 
 #include "razor/kernels/kd_list.h"
@@ -16,12 +18,15 @@ inline constexpr int few_items = 8;       // so few are opened whatever their si
 inline constexpr float large_item = 0.5F; // of the cell's largest side
 
 struct Plane {
-    sfloat cost, at;
+    sfloat cost; // expected, of the node split here
+    sfloat rank; // by which planes are compared: the cost, less the bonus where a side is empty
+    sfloat at;
     sint axis;
     sint below, above; // items on either side
 };
 
-/// Counts the items on both sides of 8 planes between `from` and `to` (exclusive) and keeps the cheapest.
+/// Counts the items on both sides of 8 planes between `from` and `to` (exclusive) and keeps the one of lowest
+/// rank.
 inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& best) {
     sfloat lows[3] = {l.low.x, l.low.y, l.low.z};
     sfloat highs[3] = {l.high.x, l.high.y, l.high.z};
@@ -62,12 +67,13 @@ inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& b
         sfloat cost = fma(weighted, per_area, sfloat(traversal_cost));
         sbool empty = below[k] == 0;
         empty = empty | (above[k] == 0);
-        cost = select(empty, cost * empty_bonus, cost);
-        sbool better = cost < best.cost;
+        sfloat rank = select(empty, cost * empty_bonus, cost);
+        sbool better = rank < best.rank;
         better = better & (place[k] > low);
         better = better & (place[k] < high);
         if (branch(better)) {
             best.cost = cost;
+            best.rank = rank;
             best.at = place[k];
             best.axis = axis;
             best.below = below[k];
@@ -76,10 +82,11 @@ inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& b
     }
 }
 
-/// The cheapest plane found; cost stays infinite if none separates anything.
+/// The plane of lowest rank found; its cost stays infinite if none separates anything.
 inline Plane choose_plane(const List& l) {
     Plane best;
     best.cost = 3.0e38F;
+    best.rank = 3.0e38F;
     best.axis = -1;
     sfloat lows[3] = {l.low.x, l.low.y, l.low.z};
     sfloat highs[3] = {l.high.x, l.high.y, l.high.z};
