@@ -22,13 +22,13 @@ address_space::address_space(std::uint64_t capacity_bytes) : capacity_(capacity_
 
 address_space::~address_space() { munmap(base_, capacity_); }
 
-std::byte* address_space::add(const std::string& structure, int owner, std::uint64_t bytes) {
+std::byte* address_space::add(const std::string& structure, int owner, std::uint64_t bytes, bool transient) {
     std::uint64_t begin = used_;
     if (bytes > capacity_ - used_)
         throw std::runtime_error(fmt::format("frame memory is full: {} GiB reserved, {} GiB more wanted for {}",
                                              capacity_ >> 30U, (bytes >> 30U) + 1, structure));
     used_ = std::min(capacity_, (begin + bytes + granule - 1) / granule * granule);
-    regions_.push_back({structure, owner, begin, begin + bytes});
+    regions_.push_back({structure, owner, begin, begin + bytes, transient});
     return base_ + begin;
 }
 

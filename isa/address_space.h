@@ -14,6 +14,7 @@ struct region {
     std::string structure;            // the data structure it holds, as reports name it
     int owner = -1;                   // worker, or -1: everybody's
     std::uint64_t begin = 0, end = 0; // bytes from the base
+    bool transient = false;           // dead when the frame ends
 };
 
 class address_space {
@@ -28,7 +29,7 @@ public:
     address_space& operator=(const address_space&) = delete;
 
     /// A region of at least `bytes`, after all earlier ones. Throws std::runtime_error if the space is full.
-    std::byte* add(const std::string& structure, int owner, std::uint64_t bytes);
+    std::byte* add(const std::string& structure, int owner, std::uint64_t bytes, bool transient = false);
     std::byte* base() const { return base_; }
     std::uint64_t offset(const void* p) const {
         return static_cast<std::uint64_t>(static_cast<const std::byte*>(p) - base_);

@@ -107,14 +107,15 @@ struct Frame::Impl {
     Plan plan = plan_flat;
     std::int64_t undrawn = 0;
 
-    template <class T> T* region(const char* structure, int owner, std::size_t count) {
+    template <class T>
+    T* region(const char* structure, int owner, std::size_t count, bool transient = false) {
         return reinterpret_cast<T*>(
-            memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T)));
+            memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T), transient));
     }
     /// Begins at a line of the owner's colour.
     template <class T> T* coloured(const char* structure, int owner, std::size_t count, Coloured kind) {
         auto* bytes = reinterpret_cast<std::byte*>(
-            region<T>(structure, owner, count + isa::address_space::granule / sizeof(T)));
+            region<T>(structure, owner, count + isa::address_space::granule / sizeof(T), true));
         return reinterpret_cast<T*>(bytes + colour(owner, kind) * line_bytes);
     }
     /// The first line or node of a worker's arena, counted from the base of its family.
@@ -282,10 +283,11 @@ void Frame::Impl::place_topology() {
 }
 
 void Frame::Impl::place_workers() {
+    // All of it lives for one frame.
     auto n = static_cast<std::size_t>(options.workers);
-    header->queues.set(region<QueueRecord>("queues", -1, 1));
-    header->trees.set(region<TreeRecord>("kd nodes", -1, static_cast<std::size_t>(trees)));
-    header->workers.set(region<WorkerRecord>("stack", -1, n));
+    header->queues.set(region<QueueRecord>("queues", -1, 1, true));
+    header->trees.set(region<TreeRecord>("kd nodes", -1, static_cast<std::size_t>(trees), true));
+    header->workers.set(region<WorkerRecord>("stack", -1, n, true));
     for (int t = 0; t < trees; ++t)
         header->trees.get()[t].patches.set(
             coloured<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count), colour_patches));
@@ -302,19 +304,20 @@ void Frame::Impl::place_workers() {
     nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
     list_lines_each = static_cast<int>(list_bytes / line_bytes);
     for (int w = 0; w < options.workers; ++w) {
-        auto* p = reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule));
+        auto* p =
+            reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule, true));
         if (w == 0)
             header->grids.set(p);
     }
     for (int w = 0; w < options.workers; ++w) {
-        auto* p =
-            reinterpret_cast<KdNode*>(memory->add("kd nodes", w, node_bytes + isa::address_space::granule));
+        auto* p = reinterpret_cast<KdNode*>(
+            memory->add("kd nodes", w, node_bytes + isa::address_space::granule, true));
         if (w == 0)
             header->nodes.set(p);
     }
     for (int w = 0; w < options.workers; ++w) {
-        auto* p =
-            reinterpret_cast<Line*>(memory->add("item lists", w, list_bytes + isa::address_space::granule));
+        auto* p = reinterpret_cast<Line*>(
+            memory->add("item lists", w, list_bytes + isa::address_space::granule, true));
         if (w == 0)
             header->lists.set(p);
     }

@@ -13,7 +13,7 @@ namespace sim {
 using integer = std::int64_t;
 
 struct ChipConfig {
-    integer clock_ps = 0, cores = 0, threads = 0;
+    integer clock_ps = 0, tiles = 0, cores = 0, threads = 0; // cores of a tile, threads of a core
     std::string placement;
 };
 
@@ -45,7 +45,7 @@ struct L2Config {
 };
 
 struct CoherenceConfig {
-    integer visibility_cycles = 0, atomic_cycles = 0;
+    integer visibility_cycles = 0, atomic_cycles = 0, remote_cycles = 0;
 };
 
 struct MemoryConfig {
@@ -66,7 +66,7 @@ struct KdTreeConfig {
 };
 
 struct SimulationConfig {
-    integer quantum = 0, stack_kib = 0;
+    integer quantum = 0, window = 0, stack_kib = 0;
 };
 
 struct Config {
@@ -82,6 +82,9 @@ struct Config {
 
     /// Every parameter at its default.
     Config();
+
+    integer all_cores() const { return chip.tiles * chip.cores; }
+    integer all_threads() const { return all_cores() * chip.threads; }
 };
 
 /// Throws ConfigError where parameters do not fit each other; `what` names the machine in the message.

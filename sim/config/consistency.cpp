@@ -82,9 +82,9 @@ void check_consistency(const Config& c, const std::string& what) {
         fail(what, fmt::format("l2.line_bytes is {}, less than l1.line_bytes, {}; make it at least that",
                                c.l2.line_bytes, c.l1.line_bytes));
     check_memory(what, c);
-    if (c.chip.cores * c.chip.threads > 65536)
-        fail(what, fmt::format("chip.cores x chip.threads is {}; it must be at most 65536",
-                               c.chip.cores * c.chip.threads));
+    if (c.all_threads() > 65536)
+        fail(what, fmt::format("chip.tiles x chip.cores x chip.threads is {}; it must be at most 65536",
+                               c.all_threads()));
 }
 
 } // namespace sim

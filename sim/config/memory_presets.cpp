@@ -5,8 +5,8 @@
 namespace sim {
 namespace {
 
-/// Queues and policies are of the controller; no data sheet gives them. Assumed: 64 entries, as gem5's controller
-/// has, drained in long batches.
+/// Queues and policies are of the controller; no data sheet gives them. Assumed: 64 entries, as gem5's
+/// controller has, drained in long batches.
 MemoryConfig controller() {
     MemoryConfig c;
     c.write_queue = 64;

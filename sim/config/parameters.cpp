@@ -64,10 +64,12 @@ void add_chip(Table& t) {
     using C = ChipConfig;
     auto s = &Config::chip;
     t.add("chip.clock_ps", s, &C::clock_ps, "ps", 1000, 50, 1000000, "period of the cores' clock");
-    t.add("chip.cores", s, &C::cores, "", 4, 1, 1024, "cores, each with its own L1");
+    t.add("chip.tiles", s, &C::tiles, "", 1, 1, 1024, "tiles, each with its own L2");
+    t.add("chip.cores", s, &C::cores, "", 4, 1, 1024, "cores of a tile, each with its own L1");
     t.add("chip.threads", s, &C::threads, "", 2, 1, 64, "hardware threads of a core");
     t.add("chip.placement", s, &C::placement, {"spread", "pack"},
-          "spread: consecutive workers on different cores; pack: a core's threads filled first");
+          "spread: consecutive workers on different tiles, then cores; pack: a core's threads filled first, "
+          "then a tile's");
 }
 
 void add_core(Table& t) {
@@ -151,6 +153,8 @@ void add_caches(Table& t) {
           "from a write of a shared word until others see it");
     t.add("coherence.atomic_cycles", c, &C::atomic_cycles, "cycles", 2, 0, 1000,
           "that a read-modify-write adds to its access of the L2, where it acts");
+    t.add("coherence.remote_cycles", c, &C::remote_cycles, "cycles", 0, 0, 100000,
+          "that a write or read-modify-write takes longer where the word is reached from several tiles");
 }
 
 void add_memory(Table& t) {
@@ -240,6 +244,10 @@ void add_simulation(Table& t) {
     auto s = &Config::sim;
     t.add("sim.quantum", s, &C::quantum, "cycles", 1, 0, 100000,
           "threads run ahead of each other inside windows this long; 0 or 1: ordered operation by operation");
+    t.add(
+        "sim.window", s, &C::window, "cycles", 0, 0, 100000,
+        "tiles and memory meet at the ends of windows this long; 0: as long as changes nothing, the shortest "
+        "way to memory and back");
     t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 64, 65536, "host stack of a simulated thread");
 }
 

@@ -19,7 +19,7 @@ integer group_size(const std::string& text) {
 } // namespace
 
 Placement::Placement(const ChipConfig& chip)
-    : Placement(1, chip.cores, chip.threads, chip.placement == "pack") {}
+    : Placement(chip.tiles, chip.cores, chip.threads, chip.placement == "pack") {}
 
 Place Placement::of(integer worker) const {
     if (packed_)

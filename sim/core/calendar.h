@@ -65,6 +65,12 @@ public:
             s.last = take(s.last + 1);
         return s;
     }
+    /// Frees a slot that was taken, unless the ring has passed it.
+    void release(Slot slot) {
+        Word& w = words_[slot / 64 & mask_];
+        if (w.number == slot / 64)
+            w.bits &= ~(std::uint64_t{1} << (slot % 64));
+    }
     /// The first of `length` adjacent free slots from `from` on; takes none.
     Slot find_run(Slot from, std::uint32_t length) {
         for (Slot end = from + length;;) {

@@ -1,6 +1,7 @@
 // A hardware thread: what it owns besides its stack.
 #pragma once
 
+#include "sim/core/calendar.h"
 #include "sim/core/registers.h"
 #include "sim/core/stalls.h"
 #include "sim/machine/report.h"
@@ -10,24 +11,29 @@
 namespace sim {
 
 struct Core;
+struct Tile;
 
 struct Hart {
-    Hart(std::uint32_t number, Core& core, const Config& config, std::size_t phases)
-        : number(number), core(&core), window(static_cast<std::size_t>(config.core.window)),
+    Hart(std::uint32_t number, Tile& tile, Core& core, const Config& config, std::size_t phases)
+        : number(number), tile(&tile), core(&core), window(static_cast<std::size_t>(config.core.window)),
           registers(static_cast<std::size_t>(config.core.vector_registers)), stacks(phases, Stack{}),
           phase_vops(phases, 0), phase_instructions(phases, 0) {}
 
     std::uint32_t number;
+    Tile* tile;
     Core* core;
     int worker = -1;
+    bool finished = false;
 
     // --- issue order (rule 2)
     Due bound;               // no later operation issues before
     std::vector<Due> window; // when the last operations issued, a ring
     std::size_t position = 0;
-    Due complete;     // when everything begun so far is done
-    cycle stored = 0; // when all stores so far are in the L1
-    cycle now = 0;    // the latest cycle to which it let the other threads come
+    Due complete;     // when everything begun so far is done, but for what open tickets stand for
+    cycle stored = 0; // when all stores so far are in the L1, likewise
+    std::vector<cycle> loading, storing; // tickets of loads and stores, some already answered
+    cycle now = 0;                       // the latest cycle to which it let the other threads come
+    cycle issued = 0;                    // the latest issue so far
 
     // --- the CPI stack: all cycles before `accounted` have a cause
     cycle accounted = 0;
@@ -41,10 +47,20 @@ struct Hart {
     std::vector<std::uint64_t> phase_vops, phase_instructions;
     CoreCounters counters;
 
+    // --- operands of the operation at hand whose times are open
+    struct Pending {
+        cycle ticket;
+        bool lanes, spill;
+    };
+    std::array<Pending, 16> pending;
+    std::size_t pending_count = 0;
+
     // --- between before_atomic and after_atomic
     Due acting;
     // --- while it sleeps
     const std::int32_t* waits_for = nullptr;
+    cycle next_look = 0;               // at the word, in issue slots taken in advance ...
+    std::vector<Calendar::Slot> looks; // ... these, of the window at hand
 
     void account(cycle from, cycle to, Cause why) {
         stacks[phase][static_cast<std::size_t>(why)] += to - from;

@@ -1,14 +1,16 @@
-// One run: all state of the machine, and what the timing port does with it.
-// Not modelled: instruction fetch, TLBs, order between a load and an earlier store to the same place inside
-// an issue window, coherence beyond shared words.
+// One run: all state of the machine, and what the timing port does with it. Time advances in windows: every
+// tile runs to the window's end by itself; what left it is served then, in order of time. Not modelled:
+// instruction fetch, TLBs, a store buffer, order between a load and an earlier store to the same place inside
+// an issue window, coherence beyond shared words, the network between tiles and memory.
 #pragma once
 
-#include "sim/core/core.h"
-#include "sim/core/hart.h"
+#include "isa/services.h"
 #include "sim/core/sites.h"
+#include "sim/machine/beyond.h"
+#include "sim/machine/homes.h"
 #include "sim/machine/machine.h"
-#include "sim/machine/published.h"
-#include "sim/machine/scheduler.h"
+#include "sim/machine/rings.h"
+#include "sim/machine/tile.h"
 
 #include <deque>
 #include <memory>
@@ -32,7 +34,7 @@ public:
            const std::vector<std::string>& phases, const std::function<void(int)>& worker);
     Report run();
 
-    // --- operations, by the hart that runs them
+    // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
     stamp compute(Hart& h, int kind, std::uint32_t instructions, Due ready, bool vector);
     void branch(Hart& h, site where, Due ready, bool taken);
     stamp load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector);
@@ -43,38 +45,53 @@ public:
     void scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
     void prefetch(Hart& h, const void* p, Due ready);
     void discard(Hart& h, const void* p, std::uint32_t bytes, Due ready);
-    void before_atomic(Hart& h, isa::timing::atomic kind, Due ready);
+    void before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due ready, bool waits = false);
     stamp after_atomic(Hart& h, isa::timing::atomic kind, const void* p, bool wrote);
     stamp wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due ready);
     void request_page(Hart& h, isa::page_service& service, std::int32_t space, std::int32_t kind,
                       std::int32_t index);
     std::size_t set_phase(Hart& h, std::size_t phase);
+    /// Returns when the ticket is answered.
+    Answered await(Hart& h, cycle ticket);
 
-    // --- operands (rules 1 and 3): each makes `ready` no earlier than the operand
+    // --- operands (rules 1 and 3): each makes `ready` no earlier than the operand, or notes that its time is
+    // open
     Due begin(Hart& h) const { return later(h.bound, h.window[h.position]); }
     static Due later(Due a, Due b) {
         a.later(b);
         return a;
     }
-    void need_scalar(Due& ready, const stamp& s) const {
-        ready.later(Due(s.last, static_cast<Cause>(s.cause)));
+    void need_scalar(Hart& h, Due& ready, const stamp& s) const {
+        if (is_ticket(s.last)) [[unlikely]]
+            h.pending[h.pending_count++] = {s.last, false, false};
+        else
+            ready.later(Due(s.last, static_cast<Cause>(s.cause)));
     }
     void need_all(Hart& h, Due& ready, const stamp& s) {
         need_register(h, ready, s);
-        need_scalar(ready, s);
+        need_scalar(h, ready, s);
     }
     void need_lanes(Hart& h, Due& ready, const stamp& s) {
         need_register(h, ready, s);
-        cycle follow = s.last > span_ - 1 ? s.last - (span_ - 1) : 0;
-        ready.later(Due(std::max(s.first, follow), static_cast<Cause>(s.cause)));
+        if (is_ticket(s.last)) [[unlikely]]
+            h.pending[h.pending_count++] = {s.last, true, false};
+        else
+            ready.later(Due(follow(s.first, s.last), static_cast<Cause>(s.cause)));
     }
     std::uint32_t vector_instructions() const { return pieces_; }
 
 private:
+    /// What the accesses of one operation bring together.
     struct Data {
         cycle first = ~cycle{0}, last = 0, granted = 0;
         Cause from = Cause::l1;
+        std::uint32_t open = 0;           // how many are not answered yet
+        std::array<cycle, width> tickets; // of these; not initialised
+        Data() {}                         // NOLINT: leaves `tickets` alone
     };
+    cycle follow(cycle first, cycle last) const {
+        return std::max(first, last > span_ - 1 ? last - (span_ - 1) : 0);
+    }
     void need_register(Hart& h, Due& ready, const stamp& s) {
         if (s.value != 0 && registers_) {
             RegisterFile::Use where = h.registers.use(s.value);
@@ -83,6 +100,16 @@ private:
         }
     }
     void reload(Hart& h, Due& ready, std::uint32_t value, bool unstored);
+    /// Waits until the times of all operands are known.
+    void settle(Hart& h, Due& ready) {
+        if (h.pending_count != 0) [[unlikely]]
+            await_operands(h, ready);
+    }
+    void await_operands(Hart& h, Due& ready);
+    cycle await_room(Hart& h, cycle since, cycle until);
+    void await_stores(Hart& h);
+    void settle_loads(Hart& h);
+
     cycle turn(Hart& h, cycle t);
     cycle hold_core(Hart& h, cycle t);
     Issued issue(Hart& h, int kind, std::uint32_t instructions, Due ready);
@@ -91,14 +118,21 @@ private:
     void count(Hart& h, std::uint32_t instructions, bool vector);
     void touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from, Data& data);
     void touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots,
-                    cycle from, Data& data);
-    Data touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from);
-    Data touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
-                       bool write, cycle from);
+                    cycle& from, Data& data);
+    void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
+    void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
+                       bool write, cycle from, Data& data);
     std::uint32_t indexed_instructions(std::uint64_t lanes) const;
+    cycle ticket_of(Hart& h, const Data& data) const;
+    stamp loaded(Hart& h, const Data& data, bool vector);
+    stamp loaded_ticket(Hart& h, const Data& data);
     void stored(Hart& h, const Data& data);
-    void publish(Hart& h, std::uint64_t address, cycle written, cycle visible);
+
+    void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
+    void publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);
+    void look(Hart& sleeper, cycle end);
+    void stop_looking(Hart& sleeper, cycle woken);
     std::uint64_t address(const void* p) const {
         auto a = static_cast<std::uint64_t>(static_cast<const std::byte*>(p) - base_);
         if (a >= attribution_.spill_begin()) [[unlikely]]
@@ -106,8 +140,20 @@ private:
         return a;
     }
     [[noreturn]] static void outside(const void* p);
+
+    // --- windows
+    bool run_window();
+    cycle next_event() const;
+    void set_floors(cycle arrival);
+    void run_tiles();
+    void perform_deeds();
+    void resume(Hart& h);
+    void answer_parked(Tile& tile);
+    void forget_tickets(Tile& tile);
+    void fail(const std::exception_ptr& why);
+    void finish_frame();
     std::string describe_deadlock() const;
-    Report report(int workers, const std::vector<std::string>& phases) const;
+    Report report() const;
 
     // --- constants of the machine, in the types that the hot paths want
     Config config_;
@@ -115,32 +161,56 @@ private:
     std::uint32_t piece_lanes_; // logical lanes of one of them
     std::uint32_t span_;        // cycles in which they can issue at the least
     unsigned issue_shift_, port_shift_;
-    std::uint32_t port_bytes_, line_bytes_;
+    std::uint32_t issue_width_, port_bytes_, line_bytes_;
     unsigned line_shift_;
+    std::uint64_t l1_latency_;
     std::array<std::uint32_t, class_count> latency_{}, interval_{};
     std::uint32_t overhead_; // 1/1024 instructions
     bool registers_, lane_gather_, hold_policy_;
+    bool in_order_; // operations act when they are ready, not when the issue window reaches them
     enum class Prediction { counters, none, perfect } prediction_;
 
     const std::byte* base_;
+    std::uint64_t window_cycles_; // of the windows in which tiles run by themselves
+    std::uint64_t shortest_read_;
     std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
-    std::uint64_t ring_;  // cycles by which one thread's operations may lie behind another's bookings
+    std::uint64_t ring_;  // cycles that one thread's operations may lie behind another's bookings
     const isa::address_space& space_;
+    std::vector<std::string> phases_; // the caller's, and the end of the frame
     Attribution attribution_;
-    Memory memory_;
-    L2 l2_;
-    std::deque<Core> cores_;
+    Homes homes_;
+    Published published_; // words that several tiles reach
+    Beyond beyond_;
+    std::deque<Tile> tiles_;
     std::deque<Hart> harts_;
     Sites sites_;
-    Published published_;
-    Scheduler scheduler_;
-    std::vector<Hart*> sleepers_;
+    cycle window_end_ = 0;
+    std::exception_ptr failure_;
+    cycle cycles_ = 0; // of the whole run
     int workers_;
-    std::vector<std::string> phases_;
 };
 
 /// The run and the hardware thread that the port acts for; null outside a run.
 extern Engine* running_engine;
 extern Hart* running_hart;
+
+/// While a thread lets others run: whoever comes back is the one that left, also when it is being unwound.
+class Away {
+public:
+    Away() = default;
+    Away(const Away&) = delete;
+    Away& operator=(const Away&) = delete;
+    ~Away() { running_hart = self_; }
+
+private:
+    Hart* self_ = running_hart;
+};
+
+inline std::uint64_t wide(integer x) {
+    return static_cast<std::uint64_t>(x);
+}
+inline std::uint32_t narrow(integer x) {
+    return static_cast<std::uint32_t>(x);
+}
 
 } // namespace sim

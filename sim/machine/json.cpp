@@ -35,7 +35,11 @@ json stack(const Stack& s) {
 json threads(const Report& r) {
     json out = json::array();
     for (const ThreadReport& t : r.threads) {
-        json row = {{"core", t.core}, {"thread", t.thread}, {"worker", t.worker}, {"finish", t.finish}};
+        json row = {{"tile", t.tile},
+                    {"core", t.core},
+                    {"thread", t.thread},
+                    {"worker", t.worker},
+                    {"finish", t.finish}};
         for (std::size_t p = 0; p < r.phases.size(); ++p)
             row["stack"][r.phases[p]] = stack(t.stacks[p]);
         out.push_back(std::move(row));
@@ -78,7 +82,9 @@ std::string print_json(const Report& r, bool with_host) {
     out["l1"] = counters(r.l1_total(), cache_counters);
     for (const CacheCounters& c : r.l1)
         out["l1_by_core"].push_back(counters(c, cache_counters));
-    out["l2"] = counters(r.l2, cache_counters);
+    out["l2"] = counters(r.l2_total(), cache_counters);
+    for (const CacheCounters& c : r.l2)
+        out["l2_by_tile"].push_back(counters(c, cache_counters));
     out["memory"] = counters(r.memory, memory_counters);
     out["memory"]["last_clock"] = r.memory.last_clock;
     for (const MemoryCounters& c : r.memory_by_rank)

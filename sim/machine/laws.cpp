@@ -26,16 +26,16 @@ std::uint64_t total(const Report& r, std::uint64_t Traffic::*count) {
                            [count](std::uint64_t sum, const Traffic& t) { return sum + t.*count; });
 }
 
-void check_traffic(const Report& r, const CacheCounters& l1) {
+void check_traffic(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
     equal("L1 reads = sum over structures and phases", l1.reads, total(r, &Traffic::l1_reads));
     equal("L1 writes = sum over structures and phases", l1.writes, total(r, &Traffic::l1_writes));
     equal("L1 misses = sum over structures and phases", l1.misses, total(r, &Traffic::l1_misses));
     equal("L1 write-backs = sum over structures and phases", l1.write_backs,
           total(r, &Traffic::l1_write_backs));
-    equal("L2 reads = sum over structures and phases", r.l2.reads, total(r, &Traffic::l2_reads));
-    equal("L2 writes = sum over structures and phases", r.l2.writes, total(r, &Traffic::l2_writes));
-    equal("L2 misses = sum over structures and phases", r.l2.misses, total(r, &Traffic::l2_misses));
-    equal("L2 write-backs = sum over structures and phases", r.l2.write_backs,
+    equal("L2 reads = sum over structures and phases", l2.reads, total(r, &Traffic::l2_reads));
+    equal("L2 writes = sum over structures and phases", l2.writes, total(r, &Traffic::l2_writes));
+    equal("L2 misses = sum over structures and phases", l2.misses, total(r, &Traffic::l2_misses));
+    equal("L2 write-backs = sum over structures and phases", l2.write_backs,
           total(r, &Traffic::l2_write_backs));
     equal("memory reads = sum over structures and phases", r.memory.reads, total(r, &Traffic::memory_reads));
     equal("memory writes = sum over structures and phases", r.memory.writes,
@@ -97,21 +97,21 @@ void check_memory(const Report& r) {
           sum.writes * parts);
 }
 
-void check_levels(const Report& r, const CacheCounters& l1) {
+void check_levels(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
     equal("L1 hits + misses = accesses", l1.hits + l1.misses, l1.reads + l1.writes);
-    equal("L2 hits + misses = accesses", r.l2.hits + r.l2.misses, r.l2.reads + r.l2.writes);
+    equal("L2 hits + misses = accesses", l2.hits + l2.misses, l2.reads + l2.writes);
     equal("L1 fills = misses + prefetches", l1.fills, l1.misses + l1.prefetches);
-    equal("L2 reads = L1 fills + read-modify-writes", r.l2.reads, l1.fills + r.core.modifications);
-    equal("L2 writes = L1 write-backs + releases", r.l2.writes, l1.write_backs + r.core.releases);
-    equal("memory reads = L2 fills", r.memory.reads, r.l2.fills);
-    equal("memory writes = L2 write-backs", r.memory.writes, r.l2.write_backs);
-    at_most("L2 fills <= misses", r.l2.fills, r.l2.misses);
+    equal("L2 reads = L1 fills + read-modify-writes", l2.reads, l1.fills + r.core.modifications);
+    equal("L2 writes = L1 write-backs + releases", l2.writes, l1.write_backs + r.core.releases);
+    equal("memory reads = L2 fills", r.memory.reads, l2.fills);
+    equal("memory writes = L2 write-backs", r.memory.writes, l2.write_backs);
+    at_most("L2 fills <= misses", l2.fills, l2.misses);
     at_most("L1 hits in flight <= hits", l1.hits_in_flight, l1.hits);
     check_memory(r);
 }
 
 void check_use(const Report& r, const CacheCounters& l1) {
-    auto cores = static_cast<std::uint64_t>(r.config.chip.cores);
+    auto cores = static_cast<std::uint64_t>(r.config.all_cores());
     at_most("issue slots used <= slots", r.core.instructions,
             r.cycles * cores * static_cast<std::uint64_t>(r.config.core.issue_width));
     at_most("L1 port cycles used <= port cycles", l1.busy_cycles,
@@ -136,8 +136,9 @@ void check_stacks(const Report& r) {
 
 void check_laws(const Report& r) {
     CacheCounters l1 = r.l1_total();
-    check_levels(r, l1);
-    check_traffic(r, l1);
+    CacheCounters l2 = r.l2_total();
+    check_levels(r, l1, l2);
+    check_traffic(r, l1, l2);
     check_use(r, l1);
     check_stacks(r);
     if (r.config.sim.quantum <= 1)
@@ -148,12 +149,24 @@ double Report::seconds() const {
     return static_cast<double>(cycles) * static_cast<double>(config.chip.clock_ps) * 1e-12;
 }
 
-CacheCounters Report::l1_total() const {
+namespace {
+
+CacheCounters sum_of(const std::vector<CacheCounters>& all) {
     CacheCounters sum;
-    for (const CacheCounters& c : l1)
+    for (const CacheCounters& c : all)
         for (const auto& row : cache_counters)
             sum.*row.count += c.*row.count;
     return sum;
+}
+
+} // namespace
+
+CacheCounters Report::l1_total() const {
+    return sum_of(l1);
+}
+
+CacheCounters Report::l2_total() const {
+    return sum_of(l2);
 }
 
 Stack Report::stack() const {

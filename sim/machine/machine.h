@@ -23,7 +23,7 @@ public:
     explicit Machine(Config config) : config_(std::move(config)) {}
 
     /// Hardware threads: the most workers that can run.
-    int threads() const { return static_cast<int>(config_.chip.cores * config_.chip.threads); }
+    int threads() const { return static_cast<int>(config_.all_threads()); }
     const Config& config() const { return config_; }
     /// Calls worker(0 .. workers-1), each on a hardware thread of its own (chip.placement), with caches cold
     /// and time at 0. The workers' code is compiled for the target `simulated` and touches memory of `space`

@@ -35,7 +35,7 @@ inline constexpr std::array<CounterRow<CoreCounters>, 21> core_counters = {{
     {"releases", &CoreCounters::releases, "of these, releases: written to the L2"},
     {"modifications", &CoreCounters::modifications, "of these, read-modify-writes: act at the L2"},
     {"waits", &CoreCounters::waits, "waits for a shared word that parked the thread"},
-    {"spins", &CoreCounters::spins, "looks at a shared word while waiting, two instructions each"},
+    {"spins", &CoreCounters::spins, "looks at a shared word while waiting, two of the instructions each"},
     {"causality_waits", &CoreCounters::causality_waits,
      "reads of a shared word before the time at which it was written: 0 where threads are ordered exactly"},
     {"spill_stores", &CoreCounters::spill_stores, "vector values stored because registers ran out"},
@@ -49,8 +49,8 @@ inline constexpr std::array<CounterRow<CoreCounters>, 21> core_counters = {{
 using Stack = std::array<std::uint64_t, cause_count>;
 
 struct ThreadReport {
-    int worker = -1; // -1: none ran here
-    int core = 0, thread = 0;
+    int worker = -1;                    // -1: none ran here
+    int tile = 0, core = 0, thread = 0; // cores are numbered through all tiles
     cycle finish = 0;
     std::vector<Stack> stacks; // by phase; sums to the run's cycles
 };
@@ -61,18 +61,20 @@ struct Report {
     int workers = 0;
     cycle cycles = 0;  // until the last worker has returned and its last result is there
     cycle drained = 0; // until memory is quiet as well
+    cycle window = 0;  // in which tiles ran by themselves
     CoreCounters core;
     std::vector<std::uint64_t> phase_vops, phase_instructions;
     std::vector<ThreadReport> threads;
     std::vector<CacheCounters> l1; // by core
-    CacheCounters l2;
+    std::vector<CacheCounters> l2; // by tile
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
-    std::vector<Traffic> traffic; // [structure * phases + phase]
-    double host_seconds = 0;      // apart from everything else in JSON
+    std::vector<Traffic> traffic;               // [structure * phases + phase]
+    double host_seconds = 0;                    // apart from everything else in JSON
 
     double seconds() const;
     CacheCounters l1_total() const;
+    CacheCounters l2_total() const;
     Stack stack() const; // of all threads and phases
 };
 

@@ -1,9 +1,5 @@
 #include "sim/machine/scheduler.h"
 
-#include "sim/machine/machine.h"
-
-#include <algorithm>
-
 namespace sim {
 
 void Scheduler::add(std::uint32_t thread, std::function<void()> work) {
@@ -46,41 +42,39 @@ Scheduler::Key Scheduler::pop() {
 void Scheduler::go_on(Key k) {
     current_ = static_cast<std::uint32_t>(k & ((Key{1} << thread_bits) - 1));
     if (exact())
-        horizon_ = queue_.empty() ? ~Key{0} : queue_.front();
+        horizon_ = queue_.empty() ? limit_ - 1 : std::min(limit_ - 1, queue_.front());
     else
-        horizon_ = key(((k >> thread_bits) / quantum_ + 1) * quantum_, 0) - 1;
+        horizon_ = std::min(limit_, key((cycle_of(k) / quantum_ + 1) * quantum_, 0)) - 1;
+}
+
+/// From the thread that runs, which is in the queue or parked, to the next one.
+void Scheduler::leave() {
+    Fibre& self = *threads_[current_]->fibre;
+    if (stepping_ || queue_.empty() || queue_.front() >= limit_) {
+        self.switch_to(main_);
+    } else {
+        go_on(pop());
+        self.switch_to(*threads_[current_]->fibre);
+    }
+    if (cancelling_)
+        throw Cancelled{};
 }
 
 void Scheduler::yield(Key k) {
     if (cancelling_ || std::uncaught_exceptions() > 0)
         return; // unwinding: destructors act at once
-    if (queue_.empty() || k < queue_.front()) {
+    if (!stepping_ && k < limit_ && (queue_.empty() || k < queue_.front())) {
         go_on(k);
         return;
     }
-    std::uint32_t self = current_;
-    Key next = queue_.front();
-    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-    queue_.back() = k;
-    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
-    go_on(next);
-    threads_[self]->fibre->switch_to(*threads_[current_]->fibre);
-    if (cancelling_)
-        throw Cancelled{};
+    push(k);
+    leave();
 }
 
-void Scheduler::sleep() {
+void Scheduler::park() {
     if (cancelling_)
         throw Cancelled{};
-    std::uint32_t self = current_;
-    if (queue_.empty()) {
-        threads_[self]->fibre->switch_to(main_);
-    } else {
-        go_on(pop());
-        threads_[self]->fibre->switch_to(*threads_[current_]->fibre);
-    }
-    if (cancelling_)
-        throw Cancelled{};
+    leave();
 }
 
 void Scheduler::wake(Key k) {
@@ -92,9 +86,8 @@ void Scheduler::wake(Key k) {
 void Scheduler::call(std::function<void()> request) {
     if (cancelling_)
         return;
-    std::uint32_t self = current_;
     request_ = std::move(request);
-    threads_[self]->fibre->switch_to(main_);
+    threads_[current_]->fibre->switch_to(main_);
     if (cancelling_)
         throw Cancelled{};
 }
@@ -108,8 +101,17 @@ void Scheduler::cancel() {
         }
 }
 
-void Scheduler::run(const std::function<std::string()>& stuck) {
-    while (unfinished_ > 0 && !failure_) {
+void Scheduler::step(std::uint32_t thread) {
+    stepping_ = true;
+    current_ = thread;
+    horizon_ = 0;
+    main_.switch_to(*threads_[thread]->fibre);
+    stepping_ = false;
+}
+
+void Scheduler::run(cycle end) {
+    limit_ = key(end, 0);
+    while (!failure_) {
         if (request_) {
             auto request = std::move(request_);
             request_ = nullptr;
@@ -117,19 +119,14 @@ void Scheduler::run(const std::function<std::string()>& stuck) {
                 request();
             } catch (...) {
                 failure_ = std::current_exception();
-                break;
+                return;
             }
-        } else if (queue_.empty()) {
-            failure_ = std::make_exception_ptr(Deadlock(stuck()));
-            break;
+        } else if (queue_.empty() || queue_.front() >= limit_) {
+            return;
         } else {
             go_on(pop());
         }
         main_.switch_to(*threads_[current_]->fibre);
-    }
-    if (failure_) {
-        cancel();
-        std::rethrow_exception(failure_);
     }
 }
 

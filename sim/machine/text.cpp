@@ -7,11 +7,11 @@ namespace sim {
 namespace {
 
 void overview(std::string& out, const Report& r) {
-    auto cores = static_cast<std::uint64_t>(r.config.chip.cores);
+    auto cores = static_cast<std::uint64_t>(r.config.all_cores());
     out += fmt::format("cycles                {:>14}   ({:.6f} s at {:.3f} GHz)\n", r.cycles, r.seconds(),
                        1e3 / static_cast<double>(r.config.chip.clock_ps));
-    out += fmt::format("workers               {:>14}   on {} cores x {} threads\n", r.workers,
-                       r.config.chip.cores, r.config.chip.threads);
+    out += fmt::format("workers               {:>14}   on {} tiles x {} cores x {} threads\n", r.workers,
+                       r.config.chip.tiles, r.config.chip.cores, r.config.chip.threads);
     out += fmt::format("order of threads      {:>14}   {}\n", r.config.sim.quantum,
                        r.config.sim.quantum <= 1 ? "(exact, operation by operation)" : "(cycles a window)");
     out += fmt::format("instructions          {:>14}   {:.3f} a cycle and core\n", r.core.instructions,
@@ -54,7 +54,7 @@ void memory(std::string& out, const Report& r) {
 void levels(std::string& out, const Report& r) {
     out += "\ncaches          reads       writes         hits       misses  miss rate  write-backs\n";
     level(out, "L1", r.l1_total());
-    level(out, "L2", r.l2);
+    level(out, "L2", r.l2_total());
     memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";
     for (const Bandwidth& b : bandwidths(r))

@@ -1,54 +1,150 @@
-// Tags of a set-associative cache with least-recently-used replacement. Knows nothing of time or data.
+// Tags of a set-associative cache with least-recently-used replacement, and two flags a line. Knows nothing
+// of time or data. A set lies in consecutive memory of the host: 64 bytes for eight ways.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <stdexcept>
 #include <vector>
 
 namespace sim {
 
 class CacheArray {
 public:
-    static constexpr std::size_t none = ~std::size_t{0};
+    using Entry = std::uint32_t; // set << 6 | way
+    static constexpr Entry none = ~Entry{0};
     static constexpr std::uint64_t no_line = ~std::uint64_t{0};
 
-    /// `sets` is a power of two.
+    /// `sets` is a power of two, at most 2^25; at most 64 ways.
     CacheArray(std::size_t sets, std::size_t ways)
-        : tags_(sets * ways, no_line), used_(sets * ways, 0), mask_(sets - 1), ways_(ways) {}
+        : mask_(sets - 1), ways_(static_cast<std::uint32_t>(ways)), order_at_(ways * 4),
+          flags_at_((order_at_ + ways + 7) / 8 * 8), stride_((flags_at_ + 16 + 15) / 16 * 16),
+          bytes_(sets * stride_ + 64) {
+        while ((std::size_t{1} << set_bits_) < sets)
+            ++set_bits_;
+        std::size_t misaligned = reinterpret_cast<std::uintptr_t>(bytes_.data()) % 64;
+        base_ = bytes_.data() + (misaligned == 0 ? 0 : 64 - misaligned);
+        for (std::size_t s = 0; s <= mask_; ++s) {
+            std::byte* set = base_ + s * stride_;
+            std::memset(set, 0xFF, order_at_);
+            for (std::size_t w = 0; w < ways; ++w)
+                set[order_at_ + w] = static_cast<std::byte>(ways - 1 - w); // way 0 is taken first
+        }
+    }
+    CacheArray(const CacheArray&) = delete;
+    CacheArray& operator=(const CacheArray&) = delete;
 
-    std::size_t entries() const { return tags_.size(); }
     /// Where a line (number, not address) is, or none.
-    std::size_t find(std::uint64_t line) const {
-        std::size_t base = (line & mask_) * ways_;
-        for (std::size_t i = base; i < base + ways_; ++i)
-            if (tags_[i] == line)
-                return i;
+    Entry find(std::uint64_t line) const {
+        const std::byte* set = set_of(line);
+        std::uint32_t wanted = tag(line);
+        auto recent = static_cast<std::uint32_t>(set[order_at_]);
+        if (tag_at(set, recent) == wanted)
+            return entry(line, recent);
+        for (std::uint32_t w = 0; w < ways_; ++w)
+            if (tag_at(set, w) == wanted)
+                return entry(line, w);
         return none;
     }
-    void touch(std::size_t entry) { used_[entry] = ++now_; }
+    /// Makes the entry the most recently used of its set.
+    void touch(Entry e) {
+        std::byte* order = base_ + (e >> 6U) * stride_ + order_at_;
+        auto way = static_cast<std::byte>(e & 63U);
+        if (order[0] == way)
+            return;
+        std::size_t i = 1;
+        while (order[i] != way)
+            ++i;
+        for (; i > 0; --i)
+            order[i] = order[i - 1];
+        order[0] = way;
+    }
     /// The entry that a line would take: an empty one, or the least recently used of its set.
-    std::size_t victim(std::uint64_t line) const {
-        std::size_t base = (line & mask_) * ways_;
-        std::size_t oldest = base;
-        for (std::size_t i = base; i < base + ways_; ++i)
-            if (used_[i] < used_[oldest])
-                oldest = i;
-        return oldest;
+    Entry oldest(std::uint64_t line) const {
+        return entry(line, static_cast<std::uint32_t>(set_of(line)[order_at_ + ways_ - 1]));
     }
-    std::uint64_t line(std::size_t entry) const { return tags_[entry]; }
-    void fill(std::size_t entry, std::uint64_t line) {
-        tags_[entry] = line;
-        touch(entry);
+    /// The number of the line in an entry, or no_line.
+    std::uint64_t line(Entry e) const {
+        std::uint32_t t = tag_at(base_ + (e >> 6U) * stride_, e & 63U);
+        return t == empty ? no_line : std::uint64_t{t} << set_bits_ | e >> 6U;
     }
-    void drop(std::size_t entry) {
-        tags_[entry] = no_line;
-        used_[entry] = 0;
+    /// Puts a line, clean and not on its way, into an entry of its set, most recently used.
+    void fill(Entry e, std::uint64_t line) {
+        set_tag(e, tag(line));
+        touch(e);
+        set_dirty(e, false);
+        set_in_flight(e, false);
+    }
+    void drop(Entry e) {
+        std::byte* set = base_ + (e >> 6U) * stride_;
+        set_tag(e, empty);
+        set_dirty(e, false);
+        set_in_flight(e, false);
+        // Oldest from now on.
+        std::byte* order = set + order_at_;
+        std::size_t i = 0;
+        while (order[i] != static_cast<std::byte>(e & 63U))
+            ++i;
+        for (; i + 1 < ways_; ++i)
+            order[i] = order[i + 1];
+        order[ways_ - 1] = static_cast<std::byte>(e & 63U);
+    }
+
+    bool dirty(Entry e) const { return flag(e, 0); }
+    bool in_flight(Entry e) const { return flag(e, 8); }
+    void set_dirty(Entry e, bool on) { set_flag(e, 0, on); }
+    void set_in_flight(Entry e, bool on) { set_flag(e, 8, on); }
+
+    /// Calls f(entry) for every line that is there.
+    template <class F> void for_each(F f) const {
+        for (std::uint32_t s = 0; s <= mask_; ++s)
+            for (std::uint32_t w = 0; w < ways_; ++w)
+                if (Entry e = s << 6U | w; line(e) != no_line)
+                    f(e);
     }
 
 private:
-    std::vector<std::uint64_t> tags_, used_;
-    std::uint64_t mask_, now_ = 0;
-    std::size_t ways_;
+    static constexpr std::uint32_t empty = ~std::uint32_t{0};
+
+    std::byte* set_of(std::uint64_t line) const { return base_ + (line & mask_) * stride_; }
+    Entry entry(std::uint64_t line, std::uint32_t way) const {
+        return static_cast<Entry>((line & mask_) << 6U) | way;
+    }
+    std::uint32_t tag(std::uint64_t line) const {
+        std::uint64_t t = line >> set_bits_;
+        if (t >= empty) [[unlikely]]
+            throw std::length_error("frame memory is larger than the simulated caches' tags can tell apart");
+        return static_cast<std::uint32_t>(t);
+    }
+    static std::uint32_t tag_at(const std::byte* set, std::uint32_t way) {
+        std::uint32_t t;
+        std::memcpy(&t, set + way * 4, 4);
+        return t;
+    }
+    void set_tag(Entry e, std::uint32_t t) {
+        std::memcpy(base_ + (e >> 6U) * stride_ + (e & 63U) * 4, &t, 4);
+    }
+    bool flag(Entry e, std::size_t which) const {
+        std::uint64_t bits;
+        std::memcpy(&bits, base_ + (e >> 6U) * stride_ + flags_at_ + which, 8);
+        return (bits >> (e & 63U) & 1U) != 0;
+    }
+    void set_flag(Entry e, std::size_t which, bool on) {
+        std::byte* at = base_ + (e >> 6U) * stride_ + flags_at_ + which;
+        std::uint64_t bits;
+        std::memcpy(&bits, at, 8);
+        std::uint64_t bit = std::uint64_t{1} << (e & 63U);
+        bits = on ? bits | bit : bits & ~bit;
+        std::memcpy(at, &bits, 8);
+    }
+
+    std::uint64_t mask_;
+    unsigned set_bits_ = 0;
+    std::uint32_t ways_;
+    std::size_t order_at_, flags_at_, stride_;
+    std::vector<std::byte> bytes_;
+    std::byte* base_;
 };
 
 } // namespace sim

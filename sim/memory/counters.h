@@ -14,9 +14,10 @@ template <class Counters> struct CounterRow {
 
 struct CacheCounters {
     std::uint64_t reads = 0, writes = 0, hits = 0, hits_in_flight = 0, misses = 0, fills = 0, write_backs = 0;
-    std::uint64_t invalidations = 0, discarded = 0, prefetches = 0, prefetches_dropped = 0, busy_cycles = 0;
+    std::uint64_t invalidations = 0, discarded = 0, prefetches = 0, prefetches_dropped = 0, busy_cycles = 0,
+                  dropped = 0;
 };
-inline constexpr std::array<CounterRow<CacheCounters>, 12> cache_counters = {{
+inline constexpr std::array<CounterRow<CacheCounters>, 13> cache_counters = {{
     {"reads", &CacheCounters::reads, "read accesses"},
     {"writes", &CacheCounters::writes, "write accesses"},
     {"hits", &CacheCounters::hits, "accesses that found their line, on its way or there"},
@@ -32,6 +33,7 @@ inline constexpr std::array<CounterRow<CacheCounters>, 12> cache_counters = {{
     {"prefetches_dropped", &CacheCounters::prefetches_dropped,
      "prefetches dropped because every MSHR was busy"},
     {"busy_cycles", &CacheCounters::busy_cycles, "port or bank cycles taken"},
+    {"dropped", &CacheCounters::dropped, "dirty lines of data that died with the frame, never written back"},
 }};
 
 struct MemoryCounters {

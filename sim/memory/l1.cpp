@@ -4,56 +4,73 @@
 
 namespace sim {
 
-/// Sends a dirty line on its way; returns when its entry is free.
-cycle L1::write_back(std::size_t entry, cycle t, std::size_t phase) {
-    std::uint64_t address = array_.line(entry) << line_shift_;
+/// An access that found its line on its way there.
+Answer L1::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present) {
+    Pool::Hold* hold = mshrs_.find(line);
+    if (hold == nullptr) {
+        array_.set_in_flight(entry, false);
+        return present;
+    }
+    if (is_ticket(hold->until) || hold->until > present.ready) {
+        ++counters_.hits_in_flight;
+        return {hold->until, hold->cause};
+    }
+    array_.set_in_flight(entry, false);
+    return present;
+}
+
+/// Sends a dirty line on its way. The buffer has room at `t`.
+void L1::write_back(CacheArray::Entry entry, cycle t, std::size_t phase) {
+    std::uint64_t line = array_.line(entry);
+    std::uint64_t address = line << line_shift_;
     ++counters_.write_backs;
     ++attribution_.cell(address, phase).l1_write_backs;
-    Pool::Grant buffer = write_backs_.take(std::max(t, lines_[entry].ready));
-    write_backs_.hold(buffer.entry, l2_.write(address, buffer.at, phase, true).ready);
-    return buffer.at;
+    Answer accepted = l2_.write(address, t, phase, true);
+    write_backs_.hold({line, t, accepted.ready, Cause::mshrs});
 }
 
 Answer L1::fill(std::uint64_t line, bool write, cycle t, std::size_t phase) {
-    Pool::Grant mshr = mshrs_.take(t);
-    cycle request = mshr.at + latency_;
-    std::size_t entry = array_.victim(line);
-    if (array_.line(entry) != CacheArray::no_line && lines_[entry].dirty)
-        request = std::max(request, write_back(entry, request, phase));
+    CacheArray::Entry entry = array_.oldest(line);
+    cycle retry = 0;
+    if (retry = mshrs_.take(t); retry != t)
+        return Answer::later(retry);
+    if (array_.dirty(entry)) {
+        if (retry = write_backs_.take(t); retry != t)
+            return Answer::later(retry);
+        write_back(entry, t + latency_, phase);
+    }
     ++counters_.fills;
-    Answer below = l2_.read(line << line_shift_, request, phase);
-    mshrs_.hold(mshr.entry, below.ready);
+    Answer below = l2_.read(line << line_shift_, t + latency_, phase);
+    mshrs_.hold({line, t, below.ready, below.from});
     array_.fill(entry, line);
-    lines_[entry] = {below.ready, below.from, write};
-    return {below.ready, below.from, mshr.at};
+    array_.set_dirty(entry, write);
+    array_.set_in_flight(entry, true);
+    return below;
 }
 
 void L1::prefetch(std::uint64_t line, cycle t, std::size_t phase) {
     if (array_.find(line) != CacheArray::none)
         return;
-    if (mshrs_.full(t)) {
+    if (fill(line, false, t, phase).retry != 0)
         ++counters_.prefetches_dropped;
-        return;
-    }
-    ++counters_.prefetches;
-    fill(line, false, t, phase);
+    else
+        ++counters_.prefetches;
 }
 
 void L1::invalidate(std::uint64_t line, cycle t, std::size_t phase) {
-    std::size_t entry = array_.find(line);
+    CacheArray::Entry entry = array_.find(line);
     if (entry == CacheArray::none)
         return;
     ++counters_.invalidations;
-    if (lines_[entry].dirty)
+    if (array_.dirty(entry))
         write_back(entry, t, phase);
-    lines_[entry] = {};
     array_.drop(entry);
 }
 
 void L1::discard(std::uint64_t line) {
-    std::size_t entry = array_.find(line);
-    if (entry != CacheArray::none && lines_[entry].dirty) {
-        lines_[entry].dirty = false;
+    CacheArray::Entry entry = array_.find(line);
+    if (entry != CacheArray::none && array_.dirty(entry)) {
+        array_.set_dirty(entry, false);
         ++counters_.discarded;
     }
 }

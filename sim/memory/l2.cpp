@@ -12,27 +12,48 @@ std::uint64_t wide(integer x) {
 
 } // namespace
 
-L2::L2(const Config& config, std::uint64_t ring_cycles, Memory& memory, Attribution& attribution)
-    : line_shift_(static_cast<unsigned>(std::countr_zero(wide(config.l2.line_bytes)))),
+L2::L2(const Config& config, std::uint32_t tile, std::uint64_t ring_cycles, Tickets& tickets,
+       Attribution& attribution)
+    : tile_(tile), line_shift_(static_cast<unsigned>(std::countr_zero(wide(config.l2.line_bytes)))),
       latency_(wide(config.l2.latency)), bank_mask_(wide(config.l2.banks) - 1),
       occupancy_(static_cast<std::uint32_t>((config.l1.line_bytes + config.l2.bank_bytes - 1) /
                                             config.l2.bank_bytes)),
       whole_lines_(config.l1.line_bytes == config.l2.line_bytes),
       array_(wide(config.l2.size_bytes / (config.l2.ways * config.l2.line_bytes)), wide(config.l2.ways)),
-      lines_(array_.entries()), banks_(wide(config.l2.banks), Calendar("L2 bank", ring_cycles)),
-      mshrs_(wide(config.l2.mshrs)), write_backs_(wide(config.l2.write_back_buffer)), memory_(memory),
-      attribution_(attribution) {}
+      banks_(wide(config.l2.banks), Calendar("L2 bank", ring_cycles)),
+      flight_limit_(wide(config.l2.mshrs) * 4 + 64), tickets_(tickets), attribution_(attribution) {}
 
-/// Sends a dirty line on its way; returns when the entry is free.
-cycle L2::evict(std::size_t entry, cycle t, std::size_t phase) {
-    std::uint64_t address = array_.line(entry) << line_shift_;
+void L2::note_write_back(std::uint64_t address, std::size_t phase) {
     Traffic& owner = attribution_.cell(address, phase);
     ++counters_.write_backs;
     ++owner.l2_write_backs;
     ++owner.memory_writes;
-    Pool::Grant buffer = write_backs_.take(std::max(t, lines_[entry].ready));
-    write_backs_.hold(buffer.entry, memory_.write(address, buffer.at));
-    return buffer.at;
+}
+
+/// When a line that is on its way comes: a cycle or an open ticket; 0 if it has long been there.
+cycle L2::arrival(std::uint64_t line) {
+    for (std::size_t i = flights_.size(); i-- > 0;)
+        if (flights_[i].line == line) {
+            Flight& f = flights_[i];
+            Answered a;
+            if (is_ticket(f.until) && tickets_.find(f.until, a))
+                f.until = a.last;
+            return f.until;
+        }
+    return 0;
+}
+
+Answer L2::in_flight(CacheArray::Entry entry, std::uint64_t line, cycle done) {
+    cycle until = arrival(line);
+    if (until > done) { // also a ticket
+        ++counters_.hits_in_flight;
+        if (is_ticket(until) &&
+            done > tickets_.floor()) // the line may be there before the bank has got round to it
+            until = tickets_.join({done, done, Cause::l2}, &until, 1);
+        return {until, Cause::memory};
+    }
+    array_.set_in_flight(entry, false);
+    return {done, Cause::l2};
 }
 
 Answer L2::access(std::uint64_t address, cycle t, std::size_t phase, bool write, bool needs_data) {
@@ -41,44 +62,66 @@ Answer L2::access(std::uint64_t address, cycle t, std::size_t phase, bool write,
     ++(write ? counters_.writes : counters_.reads);
     ++(write ? cell.l2_writes : cell.l2_reads);
     counters_.busy_cycles += occupancy_;
-    cycle start = banks_[line & bank_mask_].take_run(t, occupancy_);
-    cycle done = start + latency_;
-    std::size_t entry = array_.find(line);
+    cycle done = banks_[line & bank_mask_].take_run(t, occupancy_) + latency_;
+    CacheArray::Entry entry = array_.find(line);
     if (entry != CacheArray::none) {
         ++counters_.hits;
         array_.touch(entry);
-        Line& l = lines_[entry];
-        l.dirty |= write;
-        if (l.ready <= done)
-            return {done, Cause::l2};
-        ++counters_.hits_in_flight;
-        return {l.ready, Cause::memory};
+        if (write)
+            array_.set_dirty(entry, true);
+        if (array_.in_flight(entry)) [[unlikely]]
+            return in_flight(entry, line, done);
+        return {done, Cause::l2};
     }
     ++counters_.misses;
     ++cell.l2_misses;
-    entry = array_.victim(line);
-    if (array_.line(entry) != CacheArray::no_line && lines_[entry].dirty)
-        done = std::max(done, evict(entry, done, phase));
+    entry = array_.oldest(line);
+    Request request{done, tile_, 0};
+    if (array_.dirty(entry)) {
+        request.write = array_.line(entry) << line_shift_;
+        note_write_back(request.write, phase);
+    }
     array_.fill(entry, line);
+    array_.set_dirty(entry, write);
     if (!needs_data && whole_lines_) {
-        lines_[entry] = {done, write};
+        if (request.write != Request::nothing)
+            leave(request);
         return {done, Cause::l2};
     }
-    Pool::Grant mshr = mshrs_.take(done);
     ++counters_.fills;
     ++cell.memory_reads;
-    cycle ready = memory_.read(line << line_shift_, mshr.at);
-    mshrs_.hold(mshr.entry, ready);
-    lines_[entry] = {ready, write};
-    return {ready, Cause::memory};
+    request.read = line << line_shift_;
+    request.ticket = tickets_.open();
+    array_.set_in_flight(entry, true);
+    if (flights_.size() >= flight_limit_)
+        std::erase_if(flights_, [&](const Flight& f) {
+            Answered a;
+            return is_ticket(f.until) ? tickets_.find(f.until, a) && a.last <= t : f.until <= t;
+        });
+    flights_.push_back({line, request.ticket});
+    leave(request);
+    return {request.ticket, Cause::memory};
 }
 
 void L2::discard(std::uint64_t address) {
-    std::size_t entry = array_.find(address >> line_shift_);
-    if (entry != CacheArray::none && lines_[entry].dirty) {
-        lines_[entry].dirty = false;
+    CacheArray::Entry entry = array_.find(address >> line_shift_);
+    if (entry != CacheArray::none && array_.dirty(entry)) {
+        array_.set_dirty(entry, false);
         ++counters_.discarded;
     }
+}
+
+void L2::invalidate(std::uint64_t address, cycle t, std::size_t phase) {
+    CacheArray::Entry entry = array_.find(address >> line_shift_);
+    if (entry == CacheArray::none)
+        return;
+    ++counters_.invalidations;
+    if (array_.dirty(entry)) {
+        std::uint64_t own = array_.line(entry) << line_shift_;
+        note_write_back(own, phase);
+        leave({t, tile_, 0, own});
+    }
+    array_.drop(entry);
 }
 
 } // namespace sim

@@ -19,7 +19,8 @@ Memory::Memory(const Config& config, std::uint64_t disorder)
       burst_shift_(static_cast<unsigned>(
           std::countr_zero(wide(config.memory.bus_bytes * config.memory.burst_length)))),
       parts_(static_cast<std::uint32_t>(config.l2.line_bytes >> burst_shift_)), mapping_(config.memory),
-      timing_(config.memory), lines_(wide(config.memory.channels * config.memory.ranks)) {
+      timing_(config.memory), shortest_(shortest_read(config)),
+      lines_(wide(config.memory.channels * config.memory.ranks)) {
     channels_.reserve(wide(config.memory.channels));
     for (std::uint32_t i = 0; i < wide(config.memory.channels); ++i)
         channels_.emplace_back(i, config.memory, timing_, disorder);
@@ -36,7 +37,7 @@ cycle Memory::read(std::uint64_t address, cycle t) {
             ++lines_[p.channel * lines_.size() / channels_.size() + p.rank].reads;
         done = std::max(done, channels_[p.channel].read(p, burst + i, from, i + 1 == parts_));
     }
-    return leave(done) + back_;
+    return std::max(leave(done) + back_, t + shortest_);
 }
 
 cycle Memory::write(std::uint64_t address, cycle t) {
@@ -77,6 +78,12 @@ MemoryCounters Memory::counters() const {
 void Memory::set_log(std::vector<DramCommand>* log) {
     for (DramChannel& c : channels_)
         c.set_log(log);
+}
+
+std::uint64_t Memory::shortest_read(const Config& config) {
+    const MemoryConfig& c = config.memory;
+    integer clocks = c.tCL + c.burst_length / 2;
+    return wide(c.controller_cycles + clocks * c.clock_ps / config.chip.clock_ps);
 }
 
 std::uint64_t Memory::longest_service(const Config& config, std::uint64_t requests) {

@@ -35,6 +35,10 @@ public:
     /// lies between a request and what is booked for it, at most.
     static std::uint64_t longest_service(const Config& config, std::uint64_t requests);
 
+    /// Core cycles from an open row with nobody in the way: no read is shorter. One that the write queue
+    /// answers is held back as long, so that tiles may run by themselves for this time.
+    static std::uint64_t shortest_read(const Config& config);
+
 private:
     Clock arrival(cycle t) const { return ((t + there_) * core_ps_ + memory_ps_ - 1) / memory_ps_; }
     cycle leave(Clock t) const { return (t * memory_ps_ + core_ps_ - 1) / core_ps_; }
@@ -45,6 +49,7 @@ private:
     DramMapping mapping_;
     DramTiming timing_;
     std::vector<DramChannel> channels_;
+    cycle shortest_;
     std::vector<MemoryCounters> lines_; // reads and writes, by rank of the first burst
     Clock latest_ = 0;
 };

@@ -1,16 +1,99 @@
 // A few equal entries, each held for a time: MSHRs, write-back buffers.
 #pragma once
 
-#include "sim/core/stalls.h"
+#include "sim/memory/tickets.h"
 
 #include <algorithm>
 #include <vector>
 
 namespace sim {
 
+/// For requests that come in any order of time, held until cycles that may not be known yet. Notes whose each
+/// hold is. Remembers twice as many holds as it has entries, and some: a request that far behind finds it
+/// emptier.
 class Pool {
 public:
-    explicit Pool(std::size_t entries) : free_at_(entries, 0) {}
+    struct Hold {
+        std::uint64_t line;
+        cycle from, until; // until: a cycle or a ticket
+        Cause cause;
+    };
+
+    Pool(std::size_t entries, Tickets& tickets)
+        : entries_(entries), limit_(2 * entries + 8), tickets_(tickets) {}
+
+    /// The first cycle from `t` on at which an entry is free; unknown if that depends on open tickets.
+    cycle take(cycle t) {
+        for (;;) {
+            std::size_t held = 0;
+            cycle next = ~cycle{0};
+            bool open = false;
+            for (Hold& h : holds_) {
+                if (h.from > t)
+                    continue;
+                if (is_ticket(h.until) && !resolve(h)) {
+                    ++held;
+                    open = true;
+                } else if (h.until > t) {
+                    ++held;
+                    next = std::min(next, h.until);
+                }
+            }
+            if (held < entries_)
+                return t;
+            if (open && next > tickets_.floor())
+                return unknown;
+            t = next;
+        }
+    }
+    void hold(const Hold& h) {
+        if (holds_.size() >= limit_)
+            drop_oldest();
+        holds_.push_back(h);
+    }
+    /// The hold of a line, or nullptr: it has ended.
+    Hold* find(std::uint64_t line) {
+        for (std::size_t i = holds_.size(); i-- > 0;)
+            if (holds_[i].line == line) {
+                Hold& h = holds_[i];
+                if (is_ticket(h.until))
+                    resolve(h);
+                return &h;
+            }
+        return nullptr;
+    }
+    static constexpr cycle unknown = ~cycle{0};
+
+private:
+    bool resolve(Hold& h) {
+        Answered a;
+        if (!tickets_.find(h.until, a))
+            return false;
+        h.until = a.last;
+        h.cause = a.from;
+        return true;
+    }
+    void drop_oldest() {
+        std::size_t oldest = holds_.size();
+        for (std::size_t i = 0; i < holds_.size(); ++i) {
+            if (is_ticket(holds_[i].until) && !resolve(holds_[i]))
+                continue;
+            if (oldest == holds_.size() || holds_[i].until < holds_[oldest].until)
+                oldest = i;
+        }
+        if (oldest != holds_.size())
+            holds_.erase(holds_.begin() + static_cast<std::ptrdiff_t>(oldest));
+    }
+
+    std::size_t entries_, limit_;
+    std::vector<Hold> holds_;
+    Tickets& tickets_;
+};
+
+/// For requests that come in order of time.
+class OrderedPool {
+public:
+    explicit OrderedPool(std::size_t entries) : free_at_(entries, 0) {}
 
     struct Grant {
         cycle at;
@@ -28,9 +111,6 @@ public:
         return {free_at_[first], first};
     }
     void hold(std::size_t entry, cycle until) { free_at_[entry] = until; }
-    bool full(cycle t) const {
-        return std::all_of(free_at_.begin(), free_at_.end(), [t](cycle free) { return free > t; });
-    }
 
 private:
     std::vector<cycle> free_at_;

@@ -7,7 +7,7 @@
 #include "isa/simulated/port.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
-#include "sim/machine/machine.h"
+#include "sim/machine/engine.h"
 
 #include <gtest/gtest.h>
 
@@ -31,8 +31,8 @@ inline Config simple() {
 /// A frame memory of one region of 64 MiB.
 struct Memory {
     isa::address_space space{std::uint64_t{1} << 26};
-    std::byte* data = space.add("data", -1, std::uint64_t{1} << 24);
-    std::byte* more = space.add("more", -1, std::uint64_t{1} << 24);
+    std::byte* data = space.add("data", -1, std::uint64_t{1} << 24, true);
+    std::byte* more = space.add("more", -1, std::uint64_t{1} << 24, true);
 };
 inline Report run(const Config& c, const std::function<void(int)>& worker, int workers = 1) {
     Memory memory;
@@ -42,6 +42,10 @@ inline Report run(const Config& c, const std::function<void(int)>& worker, int w
 inline Report run_on(const Config& c, const std::function<void(std::byte*, int)>& worker, int workers = 1) {
     Memory memory;
     return Machine(c).run(memory.space, workers, {"work"}, [&](int w) { worker(memory.data, w); });
+}
+/// When a value is there; waits for the answer if that is not known yet.
+inline cycle when(const stamp& s) {
+    return is_ticket(s.last) ? running_engine->await(*running_hart, s.last).last : s.last;
 }
 inline cycle u(integer x) {
     return static_cast<cycle>(x);

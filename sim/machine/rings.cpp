@@ -1,0 +1,45 @@
+#include "sim/machine/rings.h"
+
+#include "sim/memory/memory.h"
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+std::uint64_t wide(integer x) {
+    return static_cast<std::uint64_t>(x);
+}
+
+} // namespace
+
+std::uint64_t to_core_cycles(const Config& c, integer memory_clocks) {
+    return wide((memory_clocks * c.memory.clock_ps + c.chip.clock_ps - 1) / c.chip.clock_ps);
+}
+
+std::uint64_t window_cycles(const Config& c) {
+    if (c.sim.window != 0)
+        return wide(c.sim.window);
+    // An operation may follow the last piece of its operand by as many cycles less as it has pieces (rule 1).
+    integer pieces = std::max<integer>(1, ISA_WIDTH / c.core.lanes);
+    return wide(std::max<integer>(1, static_cast<integer>(Memory::shortest_read(c)) - (pieces - 1)));
+}
+
+std::uint64_t reach_cycles(const Config& c) {
+    return booking_reach + window_cycles(c);
+}
+
+std::uint64_t ring_cycles(const Config& c) {
+    // One operation of every thread of a core, each piece on the slowest unit.
+    std::uint64_t own =
+        wide(c.chip.threads) * 64 * wide(*std::max_element(c.interval.begin(), c.interval.end())) + 4096;
+    return wide(c.sim.quantum) + window_cycles(c) + own + booking_reach + reach_cycles(c);
+}
+
+std::uint64_t l2_ring_cycles(const Config& c) {
+    // All that the cores may ask at once, one after the other, at one bank.
+    integer asked = c.chip.cores * (c.l1.mshrs + c.l1.write_back_buffer + 64);
+    return ring_cycles(c) + wide(asked * (c.l1.line_bytes / c.l2.bank_bytes + 1));
+}
+
+} // namespace sim

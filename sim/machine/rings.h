@@ -1,0 +1,25 @@
+// How far apart in time things can lie: sizes of calendars, and of windows. All from the machine's own
+// figures.
+#pragma once
+
+#include "sim/config/config.h"
+
+#include <cstdint>
+
+namespace sim {
+
+std::uint64_t to_core_cycles(const Config& config, integer memory_clocks);
+/// Cycles of a window between meetings of tiles and memory (sim.window, or what it stands for).
+std::uint64_t window_cycles(const Config& config);
+/// No operation books a core's resources farther ahead of its thread's time than this.
+inline constexpr std::uint64_t booking_reach = 32768;
+/// Cycles that accesses may wait for L1 ports before their operation holds up younger ones.
+inline constexpr std::uint64_t port_backlog = 256;
+/// How far behind its latest turn an operation may issue: younger operations of an issue window are simulated
+/// after older ones that had to wait. What the window would let issue earlier still issues then.
+std::uint64_t reach_cycles(const Config& config);
+/// The cycles between the operation that acts now and the farthest booking of a core's resources.
+std::uint64_t ring_cycles(const Config& config);
+std::uint64_t l2_ring_cycles(const Config& config);
+
+} // namespace sim

@@ -1,0 +1,263 @@
+// Words shared between workers (rule 5), waiting for them, and what workers ask of the host; with the timing
+// port's functions (isa/simulated/port.h).
+#include "sim/machine/issue.h"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace sim {
+
+/// Shared words are not reordered: they act after all earlier operations of the thread have issued, when no
+/// other thread is earlier. A load acts at its issue; only it does not wait for the others under a quantum. A
+/// release acts when the thread's stores are in the L1, a read-modify-write then and when the L2 lets it have
+/// the line. Where another tile may reach the word, it acts between windows.
+void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due ready, bool waits) {
+    bool writes = kind != isa::timing::atomic::load_acquire;
+    std::uint64_t a = address(p);
+    Scheduler& scheduler = h.tile->scheduler;
+    settle(h, ready);
+    if (writes) {
+        await_stores(h);
+        ready.later(Due(h.stored, Cause::synchronise));
+    }
+    ready.later(Due(std::max(h.now, h.issued), Cause::synchronise));
+    Issued at = issue(h, 0, 1, ready);
+    h.now = at.last;
+    finish_issue(h, at, 0);
+    count(h, 1, false);
+    ++h.counters.atomics;
+    h.acting = Due(at.last, Cause::synchronise);
+    if (scheduler.exact() || writes) {
+        Away away;
+        scheduler.wait_turn(Scheduler::key(at.last, h.number));
+    }
+    if (writes && kind != isa::timing::atomic::store_release) {
+        ++h.counters.modifications;
+        Answer line = h.tile->l2.modify(a, at.last + l1_latency_, h.phase);
+        auto [ready_at, behind] =
+            h.tile->queues.enter(a, line.ready, wide(config_.coherence.atomic_cycles), h.tile->tickets);
+        Answered there{ready_at, ready_at, line.from};
+        if (is_ticket(ready_at))
+            there = await(h, ready_at);
+        h.acting = Due(there.last + behind, behind == 0 ? there.from : Cause::synchronise);
+        Away away;
+        scheduler.wait_turn(Scheduler::key(h.acting.at(), h.number));
+    }
+    Homes::Use use = writes ? Homes::Use::writes : waits ? Homes::Use::waits : Homes::Use::looks;
+    if (!homes_.acts_at_once(a, h.tile->number, use)) {
+        h.tile->deeds.push_back({h.acting.at(), &h, {}});
+        {
+            Away away;
+            scheduler.park();
+        }
+        homes_.note(a, h.tile->number, use);
+    }
+}
+
+/// What somebody else wrote shortly before `t` is read when it becomes visible, and so is what lies in the
+/// future of a thread that a quantum let run behind.
+void Engine::check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready) {
+    const Published& published = homes_.is_chip(address) ? published_ : h.tile->published;
+    const Published::Write* w = published.find(address);
+    if (w == nullptr || w->writer == h.number)
+        return;
+    if (t < w->written)
+        ++h.counters.causality_waits;
+    ready.later(Due(w->visible, Cause::synchronise));
+}
+
+/// Other copies of the word's line go.
+void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip) {
+    std::uint64_t line = address >> line_shift_;
+    if (!chip) {
+        for (Core& core : h.tile->cores)
+            core.l1.invalidate(line, t, h.phase);
+        return;
+    }
+    for (Tile& tile : tiles_) {
+        for (Core& core : tile.cores)
+            core.l1.invalidate(line, t, h.phase);
+        if (&tile != h.tile)
+            tile.l2.invalidate(address, t, h.phase);
+    }
+}
+
+/// The word has been written: those that wait for it wake.
+void Engine::publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip) {
+    cycle oldest = written > ring_ ? written - ring_ : 0;
+    (chip ? published_ : h.tile->published).write({address, written, visible, h.number}, oldest);
+    const auto* word = reinterpret_cast<const std::int32_t*>(base_ + address);
+    auto wake = [&](Tile& tile) {
+        std::erase_if(tile.sleepers, [&](Hart* sleeper) {
+            if (sleeper->waits_for != word)
+                return false;
+            cycle at = std::max({sleeper->acting.at(), visible, chip ? window_end_ : 0});
+            sleeper->acting = Due(at, Cause::synchronise);
+            tile.scheduler.wake(Scheduler::key(at, sleeper->number));
+            return true;
+        });
+    };
+    if (!chip)
+        wake(*h.tile);
+    else
+        for (Tile& tile : tiles_)
+            wake(tile);
+}
+
+stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, bool wrote) {
+    cycle t = h.acting.at();
+    std::uint64_t a = address(p);
+    bool chip = homes_.is_chip(a);
+    cycle visibility =
+        wide(config_.coherence.visibility_cycles) + (chip ? wide(config_.coherence.remote_cycles) : 0);
+    Due ready;
+    stamp r;
+    if (kind == isa::timing::atomic::load_acquire) {
+        Data data;
+        cycle from = t;
+        touch_line(h, a >> line_shift_, false, 1, 1, from, data);
+        ready = Due(data.last, data.from);
+        check_visible(h, a, t, ready);
+        if (data.open != 0) {
+            data.first = data.last = ready.at();
+            data.from = ready.why();
+            r = loaded_ticket(h, data);
+        }
+    } else {
+        invalidate_elsewhere(h, a, t, chip);
+        if (kind == isa::timing::atomic::store_release) {
+            ++h.counters.releases;
+            h.tile->l2.write(a, t + l1_latency_, h.phase, false);
+            ready = Due(t, Cause::synchronise);
+        } else {
+            ready = h.acting;
+            check_visible(h, a, t, ready);
+            cycle longer =
+                wide(config_.coherence.atomic_cycles) + (chip ? wide(config_.coherence.remote_cycles) : 0);
+            ready = Due(ready.at() + longer, ready.why());
+        }
+        if (wrote)
+            publish(h, a, t, ready.at() + visibility, chip);
+    }
+    if (!is_ticket(r.last)) {
+        h.complete.later(ready);
+        r.first = r.last = ready.at();
+        r.cause = static_cast<std::uint8_t>(ready.why());
+    }
+    if (h.tile->scheduler.stepping()) { // the deed is done
+        Away away;
+        h.now = std::max(h.now, window_end_);
+        h.tile->scheduler.yield(Scheduler::key(window_end_, h.number));
+    }
+    return r;
+}
+
+/// Takes the issue slots of a waiting thread's looks at the word before cycle `end`: two instructions each.
+void Engine::look(Hart& sleeper, cycle end) {
+    sleeper.looks.clear();
+    for (; sleeper.next_look < end; sleeper.next_look += wide(config_.core.spin_period)) {
+        Calendar::Span s = sleeper.core->issue.take(sleeper.next_look << issue_shift_, 2);
+        sleeper.looks.push_back(s.first);
+        sleeper.looks.push_back(s.last);
+    }
+}
+
+/// Gives back what was taken for looks after the thread woke, and counts those before.
+void Engine::stop_looking(Hart& sleeper, cycle woken) {
+    for (Calendar::Slot slot : sleeper.looks)
+        if (slot >> issue_shift_ >= woken)
+            sleeper.core->issue.release(slot);
+    sleeper.looks.clear();
+}
+
+stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due ready) {
+    before_atomic(h, isa::timing::atomic::load_acquire, p, ready, true);
+    const volatile std::int32_t* word = p;
+    while (*word == value) {
+        ++h.counters.waits;
+        cycle since = std::max(h.acting.at(), h.accounted);
+        h.waits_for = p;
+        h.next_look = since + wide(config_.core.spin_period);
+        h.tile->sleepers.push_back(&h);
+        look(h, window_end_);
+        {
+            Away away;
+            h.tile->scheduler.park();
+        }
+        h.waits_for = nullptr;
+        cycle woken = h.acting.at();
+        stop_looking(h, woken);
+        if (woken > h.accounted) {
+            std::uint64_t looks = (woken - since) / wide(config_.core.spin_period);
+            h.counters.spins += looks;
+            h.counters.instructions += 2 * looks;
+            h.phase_instructions[h.phase] += 2 * looks;
+            h.account(h.accounted, woken, Cause::synchronise);
+            h.accounted = woken;
+        }
+        h.bound.later(Due(woken, Cause::synchronise));
+        h.now = std::max(h.now, woken);
+    }
+    return after_atomic(h, isa::timing::atomic::load_acquire, p, false);
+}
+
+// --- the rest
+
+void Engine::request_page(Hart& h, isa::page_service& service, std::int32_t space, std::int32_t kind,
+                          std::int32_t index) {
+    ++h.counters.pages;
+    auto request = [&service, space, kind, index] { service.make_page(space, kind, index); };
+    Away away;
+    if (tiles_.size() == 1) {
+        h.tile->scheduler.call(request);
+    } else {
+        h.tile->deeds.push_back({h.now, &h, request});
+        h.tile->scheduler.park();
+    }
+}
+
+std::size_t Engine::set_phase(Hart& h, std::size_t phase) {
+    if (phase >= phases_.size()) {
+        fmt::print(stderr, "razor-sim: broken invariant: phase {} of {}\n", phase, phases_.size());
+        std::abort();
+    }
+    return std::exchange(h.phase, phase);
+}
+
+} // namespace sim
+
+namespace isa::timing {
+
+void before_atomic(site, atomic kind, const void* p, const stamp& address, const stamp& operands) {
+    sim::Engine& engine = *sim::running_engine;
+    sim::Hart& hart = *sim::running_hart;
+    sim::Due ready = engine.begin(hart);
+    engine.need_scalar(hart, ready, address);
+    engine.need_scalar(hart, ready, operands);
+    engine.before_atomic(hart, kind, p, ready);
+}
+stamp after_atomic(site, atomic kind, const void* p, bool wrote) {
+    return sim::running_engine->after_atomic(*sim::running_hart, kind, p, wrote);
+}
+stamp wait_while(site, const std::int32_t* p, std::int32_t value, const stamp& address,
+                 const stamp& operand) {
+    sim::Engine& engine = *sim::running_engine;
+    sim::Hart& hart = *sim::running_hart;
+    sim::Due ready = engine.begin(hart);
+    engine.need_scalar(hart, ready, address);
+    engine.need_scalar(hart, ready, operand);
+    return engine.wait_while(hart, p, value, ready);
+}
+
+void request_page(void* service, std::int32_t space, std::int32_t kind, std::int32_t index) {
+    sim::running_engine->request_page(*sim::running_hart, *static_cast<isa::page_service*>(service), space,
+                                      kind, index);
+}
+std::int32_t set_phase(std::int32_t phase) {
+    return static_cast<std::int32_t>(
+        sim::running_engine->set_phase(*sim::running_hart, static_cast<std::size_t>(phase)));
+}
+
+} // namespace isa::timing

@@ -1,0 +1,47 @@
+// A tile: cores around an L2, and the fibres that run on them. Within a window of time it knows nothing of
+// other tiles.
+#pragma once
+
+#include "sim/core/core.h"
+#include "sim/core/hart.h"
+#include "sim/machine/published.h"
+#include "sim/machine/scheduler.h"
+#include "sim/machine/word_queues.h"
+
+#include <deque>
+#include <vector>
+
+namespace sim {
+
+struct Tile {
+    Tile(const Config& config, std::uint32_t number, std::uint64_t quantum, std::uint64_t l2_ring,
+         Attribution& attribution)
+        : number(number), l2(config, number, l2_ring, tickets, attribution),
+          scheduler(quantum, static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
+
+    /// Waits until a ticket is answered, or (no ticket) for the end of the window.
+    struct Parked {
+        Hart* hart;
+        cycle ticket;
+    };
+    /// Waits to act on a word, or to be given a page, that other tiles may reach too: done between windows.
+    struct Deed {
+        cycle at;
+        Hart* hart;
+        std::function<void()> request; // empty: the hart itself acts
+    };
+
+    std::uint32_t number;
+    Tickets tickets;
+    L2 l2;
+    std::deque<Core> cores;
+    std::vector<Hart*> harts;
+    Scheduler scheduler;
+    Published published; // words that only this tile has touched
+    WordQueues queues;
+    std::vector<Hart*> sleepers;
+    std::vector<Parked> parked;
+    std::vector<Deed> deeds;
+};
+
+} // namespace sim

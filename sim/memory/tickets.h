@@ -1,0 +1,110 @@
+// Times that are not known yet. What lies beyond a tile is answered at the end of a window; until then a
+// request is a ticket: a number with the top bit set, in place of a cycle. Whoever needs the cycle asks again
+// once the window has ended. A tile has tickets of its own.
+#pragma once
+
+#include "sim/core/stalls.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+namespace sim {
+
+inline constexpr cycle ticket_bit = cycle{1} << 63U;
+inline bool is_ticket(cycle c) {
+    return c >= ticket_bit;
+}
+
+/// When the first and the last part of what a ticket stands for are there, and what brought the last.
+struct Answered {
+    cycle first = 0, last = 0;
+    Cause from = Cause::memory;
+};
+
+class Tickets {
+public:
+    /// A new one, unanswered.
+    cycle open() {
+        entries_.push_back({});
+        return ticket_bit | (begin_ + entries_.size() - 1);
+    }
+    void answer(cycle ticket, cycle ready, Cause from) {
+        Entry& e = entries_[(ticket ^ ticket_bit) - begin_];
+        e.time = {ready, ready, from};
+        e.answered = true;
+    }
+    /// One for several accesses together: what is known of them, and the tickets of the rest.
+    cycle join(const Answered& known, const cycle* tickets, std::uint32_t count) {
+        Entry e;
+        e.time = known;
+        e.parts = parts_begin_ + parts_.size();
+        e.part_count = count;
+        parts_.insert(parts_.end(), tickets, tickets + count);
+        entries_.push_back(e);
+        return ticket_bit | (begin_ + entries_.size() - 1);
+    }
+    /// Whether the ticket is answered, and with what. One that was forgotten lies in the past: cycle 0.
+    bool find(cycle ticket, Answered& out) {
+        std::uint64_t number = ticket ^ ticket_bit;
+        if (number < begin_) {
+            out = {};
+            return true;
+        }
+        Entry& e = entries_[number - begin_];
+        if (!e.answered && (e.part_count == 0 || !gather(e)))
+            return false;
+        out = e.time;
+        return true;
+    }
+    /// No open ticket will be answered with an earlier cycle.
+    cycle floor() const { return floor_; }
+    void set_floor(cycle floor) { floor_ = floor; }
+    std::size_t size() const { return entries_.size(); }
+    /// Forgets the oldest answered tickets whose time has come by then: nobody's next operation is earlier.
+    void forget(cycle by) {
+        while (!entries_.empty() && entries_.front().answered && entries_.front().time.last <= by) {
+            entries_.pop_front();
+            ++begin_;
+        }
+        std::uint64_t parts = parts_begin_ + parts_.size();
+        for (const Entry& e : entries_)
+            if (e.part_count != 0) {
+                parts = e.parts;
+                break;
+            }
+        parts_.erase(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(parts - parts_begin_));
+        parts_begin_ = parts;
+    }
+
+private:
+    struct Entry {
+        Answered time;
+        std::uint64_t parts = 0;
+        std::uint32_t part_count = 0;
+        bool answered = false;
+    };
+    bool gather(Entry& e) {
+        Answered all = e.time;
+        for (std::uint64_t i = e.parts; i < e.parts + e.part_count; ++i) {
+            Answered part;
+            if (!find(parts_[i - parts_begin_], part))
+                return false;
+            all.first = part.first < all.first ? part.first : all.first;
+            if (part.last > all.last) {
+                all.last = part.last;
+                all.from = part.from;
+            }
+        }
+        e.time = all;
+        e.answered = true;
+        return true;
+    }
+
+    std::deque<Entry> entries_;
+    std::deque<cycle> parts_;
+    std::uint64_t begin_ = 0, parts_begin_ = 0;
+    cycle floor_ = 0;
+};
+
+} // namespace sim

@@ -1,0 +1,210 @@
+// Tiles, windows and tickets: windows change nothing that they need not, tiles meet only between them.
+#include "tests/sim/kernels.h"
+#include "tests/sim/machines.h"
+
+#include <map>
+
+namespace sim::test {
+namespace {
+
+using isa::shared;
+
+struct Shared {
+    Memory memory;
+    shared<std::int32_t>* word(int i) const {
+        return reinterpret_cast<shared<std::int32_t>*>(memory.data) + i * 16;
+    }
+    std::int32_t* plain() const { return reinterpret_cast<std::int32_t*>(memory.more); }
+    Report run(const Config& c, int workers, const std::function<void(int)>& f) const {
+        return Machine(c).run(memory.space, workers, {"work"}, f);
+    }
+};
+
+Config tiled(integer tiles, integer cores, integer threads) {
+    Config c;
+    c.chip.tiles = tiles;
+    c.chip.cores = cores;
+    c.chip.threads = threads;
+    c.core.window = 1;
+    return c;
+}
+
+std::string without_window(Report r) {
+    r.window = 0;
+    r.config.sim.window = 0;
+    for (CacheCounters& l2 : r.l2)
+        l2.hits_in_flight = 0; // a line that comes while its bank is busy may count or not
+    return print_json(r, false);
+}
+
+// Where operations act in source order, windows no longer than the shortest way to memory and back change no
+// digit.
+TEST(Tiles, WindowsUpToTheShortestRoundTripChangeNothing) {
+    for (integer threads : {1, 3}) {
+        std::map<integer, std::string> reports;
+        for (integer window : {1, 7, 20, 0}) {
+            Config c = tiled(1, 4, threads);
+            c.sim.window = window;
+            c.l1.mshrs = c.l1.write_back_buffer = 256;
+            Shared s;
+            reports[window] = without_window(s.run(c, static_cast<int>(4 * threads),
+                                                   [&](int w) { mixed_work(s.plain(), s.word(w), w, 60); }));
+        }
+        for (const auto& [window, text] : reports)
+            EXPECT_EQ(text, reports[0]) << "window " << window << ", " << threads << " threads";
+    }
+}
+
+TEST(Tiles, EveryTileHasItsOwnL2) {
+    Config c = tiled(4, 1, 1);
+    Shared s;
+    // All four read the same lines: four L2s miss.
+    Report r = s.run(c, 4, [&](int) {
+        for (int i = 0; i < 32; ++i)
+            load(here, s.plain() + i * 16, 4, stamp{});
+    });
+    ASSERT_EQ(r.l2.size(), 4U);
+    for (const CacheCounters& l2 : r.l2)
+        EXPECT_EQ(l2.misses, 32U);
+    EXPECT_EQ(r.memory.reads, 128U);
+    c.chip.tiles = 1;
+    c.chip.cores = 4;
+    Shared t;
+    EXPECT_EQ(t.run(c, 4,
+                    [&](int) {
+                        for (int i = 0; i < 32; ++i)
+                            load(here, t.plain() + i * 16, 4, stamp{});
+                    })
+                  .memory.reads,
+              32U);
+}
+
+TEST(Tiles, CountersReachedFromAllTilesLoseNothing) {
+    for (integer quantum : {1, 100})
+        for (integer tiles : {2, 5}) {
+            Config c = tiled(tiles, 2, 2);
+            c.sim.quantum = quantum;
+            Shared s;
+            int workers = static_cast<int>(4 * tiles);
+            Report r = s.run(c, workers, [&](int) { count_up(s.word(0), 50); });
+            EXPECT_EQ(s.word(0)->word, workers * 50);
+            EXPECT_EQ(r.core.modifications, u(workers * 50));
+            EXPECT_EQ(r.core.causality_waits, 0U);
+        }
+}
+
+TEST(Tiles, OperationsOnAWordActInOrderOfTimeAcrossTiles) {
+    Config c = tiled(4, 1, 2);
+    Shared s;
+    std::int32_t ticket[8] = {};
+    // Apart by more than a window, whoever comes first is served first.
+    s.run(c, 8, [&](int w) { ticket[w] = take_ticket(s.word(0), 400 * (8 - w)); });
+    for (int w = 0; w < 8; ++w)
+        EXPECT_EQ(ticket[w], 7 - w);
+}
+
+TEST(Tiles, WaitersInOtherTilesWakeAfterTheWordIsVisible) {
+    Config c = tiled(3, 1, 1);
+    c.coherence.visibility_cycles = 40;
+    c.coherence.remote_cycles = 200;
+    Shared s;
+    Report r = s.run(c, 3, [&](int w) {
+        if (w == 0)
+            release_after(s.word(0), 500);
+        else
+            EXPECT_EQ(await(s.word(0)), 1);
+    });
+    EXPECT_GE(r.core.waits, 2U);
+    for (const ThreadReport& t : r.threads) {
+        if (t.worker > 0) {
+            EXPECT_GE(t.finish, 740U);
+        }
+    }
+}
+
+TEST(Tiles, PublishedDataIsSeenInOtherTiles) {
+    for (integer quantum : {1, 100}) {
+        Config c = tiled(4, 2, 2);
+        c.sim.quantum = quantum;
+        Shared s;
+        std::array<std::int32_t, 16> sums{};
+        s.run(c, 16, [&](int w) {
+            if (w == 0)
+                publish_numbers(s.plain(), s.word(0), 200);
+            else
+                sums[u(w)] = sum_when_published(s.plain(), s.word(0), 200);
+        });
+        for (int w = 2; w < 16; ++w)
+            EXPECT_EQ(sums[u(w)], sums[1]);
+        EXPECT_NE(sums[1], 0);
+    }
+}
+
+TEST(Tiles, APageIsMadeBetweenWindows) {
+    struct Service : isa::page_service {
+        void make_page(std::int32_t, std::int32_t, std::int32_t index) override { made.push_back(index); }
+        std::vector<int> made;
+    } service;
+    Shared s;
+    Report r = s.run(tiled(2, 1, 1), 2, [&](int w) { ask_for_page(service, 3, w); });
+    EXPECT_EQ(service.made.size(), 6U);
+    EXPECT_EQ(r.core.pages, 6U);
+}
+
+TEST(Tiles, ADeadlockAcrossTilesIsReported) {
+    Shared s;
+    EXPECT_THROW(s.run(tiled(2, 1, 1), 2, [&](int w) { await(s.word(w)); }), Deadlock);
+}
+
+// The frame's end: what lasts is written back, what dies with the frame is not.
+TEST(Tiles, TheFramesEndDropsTransientLines) {
+    for (bool transient : {false, true}) {
+        isa::address_space space(std::uint64_t{1} << 24);
+        std::byte* data = space.add("data", -1, 65536, transient);
+        Report r = Machine(tiled(2, 1, 1)).run(space, 2, {"work"}, [&](int w) {
+            for (int i = 0; i < 10; ++i)
+                store(here, data + (w * 10 + i) * 64, 4, stamp{}, stamp{});
+        });
+        EXPECT_EQ(r.memory.writes, transient ? 0U : 20U);
+        EXPECT_EQ(r.l1_total().dropped + r.l2_total().dropped, transient ? 20U : 0U);
+        EXPECT_EQ(r.phases.back(), "frame end");
+    }
+}
+
+// A waiting thread takes issue slots from its neighbour: two in every spin_period cycles.
+TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
+    auto cycles = [](int workers, integer period) {
+        Config c = tiled(1, 1, 2);
+        c.core.spin_period = period;
+        c.core.predictor = "perfect";
+        Shared s;
+        return s.run(c, workers, [&](int w) {
+            if (w == 1) {
+                await(s.word(0));
+                return;
+            }
+            for (int i = 0; i < 5000; ++i)
+                scalar_op(operation::integer, stamp{});
+            release_after(s.word(0), 4);
+        });
+    };
+    double alone = static_cast<double>(cycles(1, 10).cycles);
+    Report spinning = cycles(2, 10);
+    EXPECT_NEAR(static_cast<double>(spinning.cycles) / alone, 1 / (1 - 2.0 / 10), 0.03);
+    EXPECT_GT(spinning.core.spins, 400U);
+    EXPECT_NEAR(static_cast<double>(cycles(2, 1000).cycles) / alone, 1.0, 0.03);
+}
+
+TEST(Tiles, TwoRunsAreEqual) {
+    auto report = [] {
+        Config c = tiled(4, 2, 2);
+        c.core.window = 8;
+        c.sim.quantum = 100;
+        Shared s;
+        return print_json(s.run(c, 16, [&](int w) { mixed_work(s.plain(), s.word(0), w, 60); }), false);
+    };
+    EXPECT_EQ(report(), report());
+}
+
+} // namespace
+} // namespace sim::test
