@@ -50,20 +50,28 @@ public:
     }
     /// Takes the first `count` free slots from `from` on, adjacent or not.
     Span take(Slot from, std::uint32_t count) {
-        unsigned bit = from % 64;
-        if (bit + count <= 64) {
-            Word& w = word(from / 64);
-            std::uint64_t wanted = (~std::uint64_t{0} >> (64 - count)) << bit;
-            if ((w.bits & wanted) == 0) {
-                w.bits |= wanted;
-                return {from, from + count - 1};
+        std::uint64_t number = from / 64;
+        std::uint64_t open = ~std::uint64_t{0} << (from % 64);
+        for (Slot first = no_slot;; ++number, open = ~std::uint64_t{0}) {
+            Word& w = word(number);
+            std::uint64_t free = ~w.bits & open;
+            if (free == 0)
+                continue;
+            auto low = static_cast<unsigned>(std::countr_zero(free));
+            first = first == no_slot ? number * 64 + low : first;
+            std::uint64_t wanted = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+            if ((free >> low & wanted) == wanted) { // all in one piece
+                w.bits |= wanted << low;
+                return {first, number * 64 + low + count - 1};
             }
+            std::uint64_t rest = free; // what stays free
+            for (; count != 0 && rest != 0; --count)
+                rest &= rest - 1;
+            std::uint64_t taken = free ^ rest;
+            w.bits |= taken;
+            if (count == 0)
+                return {first, number * 64 + 63 - static_cast<unsigned>(std::countl_zero(taken))};
         }
-        Span s{take(from), 0};
-        s.last = s.first;
-        for (std::uint32_t i = 1; i < count; ++i)
-            s.last = take(s.last + 1);
-        return s;
     }
     /// Frees a slot that was taken, unless the ring has passed it.
     void release(Slot slot) {
@@ -98,6 +106,7 @@ public:
     }
 
 private:
+    static constexpr Slot no_slot = ~Slot{0};
     struct Word {
         std::uint64_t number = 0; // which word of unbounded time it stands for
         std::uint64_t bits = 0;

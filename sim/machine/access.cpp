@@ -73,6 +73,16 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
                          Data& data) {
     std::uint32_t bytes = piece_lanes_ * 4;
     std::uint32_t slots = (std::min(bytes, line_bytes_) + port_bytes_ - 1) / port_bytes_;
+    if (lanes == all_lanes && address % bytes == 0 && bytes <= line_bytes_) [[likely]] {
+        std::uint64_t end = address + width * 4;
+        while (address < end) {
+            std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
+            auto pieces = static_cast<std::uint32_t>((next - address) / bytes);
+            touch_line(h, address >> line_shift_, write, pieces, pieces * slots, from, data);
+            address = next;
+        }
+        return;
+    }
     std::uint64_t piece_mask = ~std::uint64_t{0} >> (64 - piece_lanes_);
     std::uint64_t run_line = 0;
     std::uint32_t run = 0;
@@ -176,19 +186,18 @@ inline void Engine::stored(Hart& h, const Data& data) {
 /// Rule 3: a register that was not kept comes back through the L1, stored first if it never was.
 void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored) {
     std::uint64_t place = h.spill_base + value % wide(config_.core.spill_slots) * (width * 4);
-    std::uint64_t all = ~std::uint64_t{0} >> (64 - width);
     Due now = begin(h);
     if (unstored) {
         ++h.counters.spill_stores;
         Issued at = issue(h, 0, pieces_, now);
         Data data;
-        touch_lanes(h, place, all, true, at.first, data);
+        touch_lanes(h, place, all_lanes, true, at.first, data);
         stored(h, data);
     }
     ++h.counters.spill_loads;
     Issued at = issue(h, 0, pieces_, now);
     Data data;
-    touch_lanes(h, place, all, false, at.first, data);
+    touch_lanes(h, place, all_lanes, false, at.first, data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), true, true};
     else

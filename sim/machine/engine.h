@@ -22,6 +22,7 @@ using isa::timing::site;
 using isa::timing::stamp;
 
 inline constexpr std::uint32_t width = ISA_WIDTH; // logical lanes
+inline constexpr std::uint64_t all_lanes = ~std::uint64_t{0} >> (64U - width);
 
 /// When the first and the last machine instruction of an operation issued.
 struct Issued {

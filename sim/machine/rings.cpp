@@ -32,7 +32,7 @@ std::uint64_t reach_cycles(const Config& c) {
 std::uint64_t ring_cycles(const Config& c) {
     // One operation of every thread of a core, each piece on the slowest unit.
     std::uint64_t own =
-        wide(c.chip.threads) * 64 * wide(*std::max_element(c.interval.begin(), c.interval.end())) + 4096;
+        wide(c.chip.threads) * 64 * wide(*std::max_element(c.interval.begin(), c.interval.end())) + 1024;
     return wide(c.sim.quantum) + window_cycles(c) + own + booking_reach + reach_cycles(c);
 }
 

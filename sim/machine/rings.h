@@ -12,7 +12,7 @@ std::uint64_t to_core_cycles(const Config& config, integer memory_clocks);
 /// Cycles of a window between meetings of tiles and memory (sim.window, or what it stands for).
 std::uint64_t window_cycles(const Config& config);
 /// No operation books a core's resources farther ahead of its thread's time than this.
-inline constexpr std::uint64_t booking_reach = 32768;
+inline constexpr std::uint64_t booking_reach = 2048;
 /// Cycles that accesses may wait for L1 ports before their operation holds up younger ones.
 inline constexpr std::uint64_t port_backlog = 256;
 /// How far behind its latest turn an operation may issue: younger operations of an issue window are simulated

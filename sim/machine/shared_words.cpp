@@ -115,11 +115,11 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
     Due ready;
     stamp r;
     if (kind == isa::timing::atomic::load_acquire) {
+        check_visible(h, a, t, ready); // before the access can let others run
         Data data;
         cycle from = t;
         touch_line(h, a >> line_shift_, false, 1, 1, from, data);
-        ready = Due(data.last, data.from);
-        check_visible(h, a, t, ready);
+        ready.later(Due(data.last, data.from));
         if (data.open != 0) {
             data.first = data.last = ready.at();
             data.from = ready.why();

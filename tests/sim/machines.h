@@ -15,7 +15,6 @@ namespace sim::test {
 
 using namespace isa::timing;
 
-inline constexpr std::uint64_t all_lanes = ~std::uint64_t{0} >> (64 - ISA_WIDTH);
 inline constexpr site here{"test", 1};
 
 /// One core, one thread, one lane for each logical lane, nothing in the way.
