@@ -311,13 +311,20 @@ Report Engine::report() const {
             r.phase_instructions[i] += h.phase_instructions[i];
         }
         int number = static_cast<int>(h.number);
-        ThreadReport t{h.worker,         static_cast<int>(h.tile->number),
-                       number / threads, number % threads,
-                       h.accounted,      h.stacks};
+        ThreadReport t;
+        t.worker = h.worker;
+        t.tile = static_cast<int>(h.tile->number);
+        t.core = number / threads;
+        t.thread = number % threads;
+        t.finish = h.accounted;
+        t.instructions = h.counters.instructions;
+        t.stacks = h.stacks;
         t.stacks[h.phase][static_cast<std::size_t>(Cause::idle)] += r.cycles - h.accounted;
         r.threads.push_back(std::move(t));
     }
     r.drained = std::max(r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)));
+    for (const Tile& tile : tiles_)
+        r.drained = std::max(r.drained, tile.l2.quiet());
     return r;
 }
 

@@ -1,6 +1,7 @@
 // The report for programs.
 #include "sim/config/parameters.h"
 #include "sim/machine/derived.h"
+#include "sim/machine/limits.h"
 
 #include <nlohmann/json.hpp>
 
@@ -35,11 +36,8 @@ json stack(const Stack& s) {
 json threads(const Report& r) {
     json out = json::array();
     for (const ThreadReport& t : r.threads) {
-        json row = {{"tile", t.tile},
-                    {"core", t.core},
-                    {"thread", t.thread},
-                    {"worker", t.worker},
-                    {"finish", t.finish}};
+        json row = {{"tile", t.tile},     {"core", t.core},     {"thread", t.thread},
+                    {"worker", t.worker}, {"finish", t.finish}, {"instructions", t.instructions}};
         for (std::size_t p = 0; p < r.phases.size(); ++p)
             row["stack"][r.phases[p]] = stack(t.stacks[p]);
         out.push_back(std::move(row));
@@ -92,6 +90,12 @@ std::string print_json(const Report& r, bool with_host) {
     for (const Bandwidth& b : bandwidths(r))
         out["bandwidth"][b.level] = {
             {"achieved_gb_s", b.achieved}, {"peak_gb_s", b.peak}, {"utilisation", b.utilisation()}};
+    const std::vector<Limit> all = limits(r);
+    for (const Limit& l : all)
+        out["limits"].push_back(
+            {{"resource", l.resource}, {"cycles", l.cycles}, {"share", ratio(l.cycles, r.drained)}});
+    out["binding"] = binding(all).resource;
+    out["limiter"] = limiter(r);
     out["traffic"] = traffic(r);
     out["threads"] = threads(r);
     if (with_host)

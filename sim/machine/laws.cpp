@@ -1,4 +1,5 @@
 // What must hold of every run's numbers.
+#include "sim/machine/limits.h"
 #include "sim/machine/report.h"
 
 #include <fmt/core.h>
@@ -111,6 +112,8 @@ void check_levels(const Report& r, const CacheCounters& l1, const CacheCounters&
 }
 
 void check_use(const Report& r, const CacheCounters& l1) {
+    for (const Limit& l : limits(r))
+        at_most(l.resource, l.cycles, r.drained);
     auto cores = static_cast<std::uint64_t>(r.config.all_cores());
     at_most("issue slots used <= slots", r.core.instructions,
             r.cycles * cores * static_cast<std::uint64_t>(r.config.core.issue_width));

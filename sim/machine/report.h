@@ -52,6 +52,7 @@ struct ThreadReport {
     int worker = -1;                    // -1: none ran here
     int tile = 0, core = 0, thread = 0; // cores are numbered through all tiles
     cycle finish = 0;
+    std::uint64_t instructions = 0;
     std::vector<Stack> stacks; // by phase; sums to the run's cycles
 };
 

@@ -1,5 +1,6 @@
 // The report for people.
 #include "sim/machine/derived.h"
+#include "sim/machine/limits.h"
 
 #include <fmt/core.h>
 
@@ -60,6 +61,11 @@ void levels(std::string& out, const Report& r) {
     for (const Bandwidth& b : bandwidths(r))
         out += fmt::format("  {:<12} {:>13.3f} {:>11.3f} {:>11.1f} %\n", b.level, b.achieved, b.peak,
                            100 * b.utilisation());
+    out += "\nleast cycles, were all else free\n";
+    for (const Limit& l : limits(r))
+        out += fmt::format("  {:<14} {:>12} {:>6.1f} % of the run   {}\n", l.resource, l.cycles,
+                           100 * ratio(l.cycles, r.drained), l.meaning);
+    out += fmt::format("limited by {}\n", limiter(r));
 }
 
 template <class Name>

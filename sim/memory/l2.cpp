@@ -62,7 +62,9 @@ Answer L2::access(std::uint64_t address, cycle t, std::size_t phase, bool write,
     ++(write ? counters_.writes : counters_.reads);
     ++(write ? cell.l2_writes : cell.l2_reads);
     counters_.busy_cycles += occupancy_;
-    cycle done = banks_[line & bank_mask_].take_run(t, occupancy_) + latency_;
+    cycle start = banks_[line & bank_mask_].take_run(t, occupancy_);
+    quiet_ = std::max(quiet_, start + occupancy_);
+    cycle done = start + latency_;
     CacheArray::Entry entry = array_.find(line);
     if (entry != CacheArray::none) {
         ++counters_.hits;

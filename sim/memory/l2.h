@@ -80,6 +80,8 @@ public:
         });
     }
     const CacheCounters& counters() const { return counters_; }
+    /// From this cycle on no bank is busy.
+    cycle quiet() const { return quiet_; }
     /// What left the tile since the caller last emptied it.
     std::vector<Request>& leaving() { return leaving_; }
 
@@ -108,6 +110,7 @@ private:
     std::size_t flight_limit_;
     std::vector<Request> leaving_;
     std::uint64_t sequence_ = 0;
+    cycle quiet_ = 0;
     CacheCounters counters_;
     Tickets& tickets_;
     Attribution& attribution_;

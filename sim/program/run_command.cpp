@@ -5,6 +5,7 @@
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
 #include "razor/kernels/code_size.h"
+#include "razor/native/render.h"
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
@@ -14,6 +15,7 @@
 #include "sim/config/parameters.h"
 #include "sim/config/placement.h"
 #include "sim/machine/machine.h"
+#include "sim/program/native_run.h"
 #include "sim/program/provenance.h"
 
 #include <fmt/format.h>
@@ -21,6 +23,7 @@
 
 #include <atomic>
 #include <numeric>
+#include <optional>
 #include <thread>
 
 namespace sim {
@@ -149,6 +152,8 @@ void RunCommand::add_to(CLI::App& app) {
            "who shares a kd-tree: chip (all), tile, core, worker (nobody), or N neighbouring workers; "
            "without it, as the machine file says (kdtree.share)")
         ->type_name("WHO");
+    run.add_flag("--no-native", no_native_,
+                 "do not render the frame natively as well, to compare time and picture");
     run.add_flag("--quiet", quiet_, "show no progress");
 }
 
@@ -177,7 +182,8 @@ int RunCommand::run() const {
             razor::check_writable(file);
 
     const std::atomic<bool>& interrupted = razor::watch_interrupts();
-    razor::Frame frame(razor::build_scene(description), {.workers = workers, .tree_of_worker = trees});
+    const razor::Scene built = razor::build_scene(description);
+    razor::Frame frame(built, {.workers = workers, .tree_of_worker = trees});
     const std::vector<std::string> phases(std::begin(razor::phase_names), std::end(razor::phase_names));
     Report report;
     {
@@ -186,10 +192,20 @@ int RunCommand::run() const {
         report = machine.run(frame.memory(), workers, phases,
                              [&](int worker) { frame.render(razor::simulated::kernels, worker); });
     }
+    std::optional<NativeRun> native;
+    try {
+        if (!interrupted.load() && !no_native_)
+            native = run_native(built, frame.film(), interrupted);
+    } catch (const razor::Cancelled&) {
+        // said below
+    }
     if (interrupted.load()) {
         fmt::print(stderr, "razor-sim: interrupted; nothing written\n");
         return razor::interrupted_exit;
     }
+    if (native && !native->equal && !native->unfused)
+        throw std::logic_error(fmt::format(
+            "the simulated picture differs from that of {}; please report this command", native->isa));
 
     const razor::FrameStatistics statistics = frame.statistics();
     const razor::OutputGuard guard;
@@ -211,6 +227,8 @@ int RunCommand::run() const {
         out["renderer"] = renderer(statistics, trees);
         out["renderer"]["screen_tiles"] = frame.header().tiles;
         host["topology_page_seconds"] = statistics.page_seconds;
+        if (native)
+            host["native"] = native_json(*native, report.host_seconds);
         host["code_bytes"] = code_bytes(frame.plan());
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");
@@ -218,7 +236,8 @@ int RunCommand::run() const {
     const std::string text =
         provenance_text(machine_description) +
         frame_text(description.settings, workers, frame.header().tiles, statistics, report) +
-        print_text(report) + code_text(frame.plan());
+        print_text(report) + (native ? native_text(*native, report.host_seconds) : "") +
+        code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

@@ -30,7 +30,7 @@ private:
     razor::SceneOptions scene_;
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_;
-    bool quiet_ = false;
+    bool quiet_ = false, no_native_ = false;
 };
 
 } // namespace sim
