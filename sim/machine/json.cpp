@@ -101,8 +101,9 @@ std::string print_json(const Report& r, bool with_host) {
     if (with_host)
         out["host"] = {
             {"seconds", r.host_seconds},
-            {"vops_per_second", static_cast<double>(r.core.vops) / r.host_seconds},
-            {"instructions_per_second", static_cast<double>(r.core.instructions) / r.host_seconds}};
+            {"processor_seconds", r.processor_seconds},
+            {"vops_per_second", static_cast<double>(r.core.vops) / r.processor_seconds},
+            {"instructions_per_second", static_cast<double>(r.core.instructions) / r.processor_seconds}};
     return out.dump(2) + "\n";
 }
 

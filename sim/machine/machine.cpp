@@ -4,6 +4,7 @@
 #include "sim/machine/engine.h"
 
 #include <chrono>
+#include <ctime>
 
 namespace sim {
 namespace {
@@ -31,9 +32,11 @@ Report Machine::run(const isa::address_space& space, int workers, const std::vec
         throw std::invalid_argument("as many workers as the machine has hardware threads, at most");
     check_consistency(config_, "machine");
     auto begin = std::chrono::steady_clock::now();
+    std::clock_t worked = std::clock();
     auto engine = std::make_unique<Engine>(config_, space, workers, phases, worker);
     Running running(*engine);
     Report report = engine->run();
+    report.processor_seconds = static_cast<double>(std::clock() - worked) / CLOCKS_PER_SEC;
     report.host_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     check_laws(report);
     return report;

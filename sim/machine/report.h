@@ -72,6 +72,7 @@ struct Report {
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<Traffic> traffic;               // [structure * phases + phase]
     double host_seconds = 0;                    // apart from everything else in JSON
+    double processor_seconds = 0;               // of these, what the host's processor worked
 
     double seconds() const;
     CacheCounters l1_total() const;

@@ -129,9 +129,12 @@ std::string print_text(const Report& r) {
     stack(out, r);
     levels(out, r);
     traffic(out, r);
-    out += fmt::format("\nhost: {:.3f} s, {:.2f} million operations/s, {:.2f} million instructions/s\n",
-                       r.host_seconds, static_cast<double>(r.core.vops) / r.host_seconds * 1e-6,
-                       static_cast<double>(r.core.instructions) / r.host_seconds * 1e-6);
+    double worked = r.processor_seconds;
+    out += fmt::format(
+        "\nhost: {:.3f} s, {:.3f} s of processor time: {:.2f} million operations and {:.2f} million "
+        "instructions a second of it\n",
+        r.host_seconds, worked, static_cast<double>(r.core.vops) / worked * 1e-6,
+        static_cast<double>(r.core.instructions) / worked * 1e-6);
     return out;
 }
 
