@@ -69,6 +69,30 @@ TEST_F(Simulator, SharesTreesAsAsked) {
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
 }
 
+// 512 threads on 16 tiles: the native picture, the same report twice, and what the report says of limits and
+// the host.
+TEST_F(Simulator, RunsCopernicus) {
+    const std::string start =
+        "run --quiet --size 40x24 --spp 1 --light-samples 1 --sky-samples 1 --machine " +
+        std::string(RAZOR_SOURCE_DIR "/configs/machines/copernicus.toml ");
+    const Outcome first = simulator(start + "--json a.json");
+    ASSERT_EQ(first.code, 0) << first.err;
+    EXPECT_NE(first.out.find("\nlimited by "), std::string::npos);
+    EXPECT_NE(first.out.find("the same picture, bit for bit"), std::string::npos) << first.out;
+    const nlohmann::json all = nlohmann::json::parse(text("a.json"));
+    const nlohmann::json& native = all.at("host").at("native");
+    EXPECT_EQ(native.at("picture_equal"), true);
+    EXPECT_GT(native.at("slowdown"), 1.0);
+    ASSERT_EQ(all.at("limits").size(), 5U);
+    for (const nlohmann::json& l : all.at("limits"))
+        EXPECT_LE(l.at("cycles"), all.at("drained_cycles"));
+    EXPECT_EQ(all.at("l2_by_tile").size(), 16U);
+    EXPECT_EQ(all.at("threads").size(), 512U);
+    EXPECT_EQ(all.at("renderer").at("trees"), 16);
+    ASSERT_EQ(simulator(start + "--no-native --json b.json").code, 0);
+    EXPECT_EQ(report("b.json"), report("a.json"));
+}
+
 TEST_F(Simulator, RefusesBadMachinesAndOptions) {
     folder_.file("good.toml", "[chip]\ncores = 2\n");
     folder_.file("empty.toml", "");

@@ -6,7 +6,7 @@ compare_images=$PWD/build/release/analysis/razor-image-compare
 # Not under sanitizers: tests that run none of our code, and the longest ones' variants of the same paths.
 not_sanitized='^isa_(refused|lint)|^tree$|(Watertight|BruteForce)\..*_(stretched|bilinear)'
 scene=configs/scenes/default.toml
-machine=configs/machines/tiny.toml
+machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
 fuzz_seconds=10
 
@@ -122,14 +122,16 @@ start_benchmarks() {
 }
 
 compare_compilers() {
-    local compiler folder=build/compare
+    local compiler machine folder=build/compare
     mkdir -p $folder
-    for compiler in release clang; do
-        "build/$compiler/$simulator" run --machine $machine --scene $scene "${simulated[@]}" \
-            -o $folder/$compiler.exr --json $folder/$compiler.json >$folder/$compiler.txt
+    for machine in "${machines[@]}"; do
+        for compiler in release clang; do
+            "build/$compiler/$simulator" run --machine "$machine" --scene $scene "${simulated[@]}" \
+                -o $folder/$compiler.exr --json $folder/$compiler.json >$folder/$compiler.txt
+        done
+        tests/tools/compare_reports.py $folder/release.json $folder/clang.json
+        "$compare_images" $folder/release.exr $folder/clang.exr
     done
-    tests/tools/compare_reports.py $folder/release.json $folder/clang.json
-    "$compare_images" $folder/release.exr $folder/clang.exr
     # Every event of the simulated kernels, in order.
     CCACHE_BASEDIR=$PWD CLANGXX=clang++-14 tests/kernels/compare_compilers.sh build/compare/events
 }
