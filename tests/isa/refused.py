@@ -1,10 +1,9 @@
 #!/usr/bin/python3
-"""refused.py COMPILER SOURCE FLAG...: SOURCE compiles with CASE=0, and with no other of its cases.
+"""refused.py COMPILER SOURCE FLAG...: SOURCE compiles without its cases, and with -DCASES each of them is refused.
 
-A case counts as refused only if every error is reported on a line of that case (or in a header, called from there).
-Cases marked [simulated] are tried only where a flag says ISA_TARGET=simulated.
+A case is refused if an error is reported on one of its lines. There may be no other errors in SOURCE. Cases marked
+[simulated] are there only where a flag says ISA_TARGET=simulated.
 """
-import concurrent.futures
 import os
 import re
 import subprocess
@@ -12,43 +11,45 @@ import sys
 
 
 def cases(source):
-    """[(number, description, first line, last line)]"""
+    """[(description, first line, last line)]"""
     found = []
     for number, line in enumerate(open(source), 1):
-        m = re.match(r"#(?:el)?if CASE == (\d+)\s+// (.*)", line)
-        if found and line.startswith("#el") and found[-1][3] is None:
-            found[-1] = (*found[-1][:3], number)
+        m = re.match(r"REFUSED \{ // (.*)", line)
         if m:
-            found.append((int(m[1]), m[2].strip(), number, None))
+            found.append((m[1], number, None))
+        elif line.startswith("}") and found and found[-1][2] is None:
+            found[-1] = (*found[-1][:2], number)
     return found
 
 
-def compile_case(compiler, source, flags, case):
-    command = [compiler, *flags, "-std=c++20", "-fsyntax-only", "-w", f"-DCASE={case}", source]
+def compile_source(compiler, source, flags):
+    version = subprocess.run([compiler, "--version"], capture_output=True, text=True).stdout
+    every_error = "-ferror-limit=0" if "clang" in version else "-fmax-errors=0"
+    command = [compiler, *flags, "-std=c++20", "-fsyntax-only", "-w", every_error, source]
     done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
     return done.returncode, done.stderr
 
 
 def main():
     compiler, source, *flags = sys.argv[1:]
-    status, message = compile_case(compiler, source, flags, 0)
+    status, message = compile_source(compiler, source, flags)
     if status != 0:
-        sys.exit(f"{source} does not compile without any case:\n{message}")
+        sys.exit(f"{source} does not compile without its cases:\n{message}")
     simulated = "-DISA_TARGET=simulated" in flags
-    wanted = [c for c in cases(source) if simulated or not c[1].startswith("[simulated]")]
-    failures = 0
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        results = pool.map(lambda c: compile_case(compiler, source, flags, c[0]), wanted)
-        for (case, description, first, last), (status, message) in zip(wanted, results):
-            lines = [int(n) for n in re.findall(re.escape(os.path.basename(source)) + r":(\d+):\d+: (?:fatal )?error", message)]
-            if status == 0:
-                print(f"{source}:{first}: compiles, and must not: {description}")
-                failures += 1
-            elif not lines or any(not first < n < last for n in lines):
-                print(f"{source}:{first}: refused for another reason: {description}\n{message}")
-                failures += 1
-    print(f"{len(wanted)} cases, {failures} failures")
-    sys.exit(1 if failures or not wanted else 0)
+    wanted = [c for c in cases(source) if simulated or not c[0].startswith("[simulated]")]
+    status, message = compile_source(compiler, source, [*flags, "-DCASES"])
+    places = re.findall(r"^(?:\S*/)?" + re.escape(os.path.basename(source)) + r":(\d+):\d+: (?:fatal )?error", message, re.M)
+    lines = {int(n) for n in places}
+    compiled = [c for c in wanted if not any(c[1] < n < c[2] for n in lines)]
+    for description, first, _ in compiled:
+        print(f"{source}:{first}: compiles, and must not: {description}")
+    elsewhere = sorted(n for n in lines if not any(c[1] < n < c[2] for c in wanted))
+    for n in elsewhere:
+        print(f"{source}:{n}: an error outside of all cases")
+    if compiled or elsewhere:
+        print(message)
+    print(f"{len(wanted)} cases, {len(compiled) + len(elsewhere)} failures")
+    sys.exit(1 if compiled or elsewhere or not wanted else 0)
 
 
 main()
