@@ -44,6 +44,7 @@ struct Hart {
 
     std::size_t phase = 0;
     std::vector<Stack> stacks;
+    Stack* stack = &stacks[0]; // of the phase
     std::vector<std::uint64_t> phase_vops, phase_instructions;
     CoreCounters counters;
 
@@ -63,7 +64,12 @@ struct Hart {
     std::vector<Calendar::Slot> looks; // ... these, of the window at hand
 
     void account(cycle from, cycle to, Cause why) {
-        stacks[phase][static_cast<std::size_t>(why)] += to - from;
+        (*stack)[static_cast<std::size_t>(why)] += to - from;
+    }
+    /// Work and time count under this phase from now on.
+    void enter(std::size_t next) {
+        phase = next;
+        stack = &stacks[next];
     }
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 namespace sim {
@@ -42,8 +43,15 @@ public:
 
 private:
     void push(std::size_t out, std::uint32_t value) {
-        std::memmove(recent_.data() + 1, recent_.data(), out * sizeof(std::uint32_t));
-        recent_[0] = value;
+        std::uint32_t* recent = recent_.data();
+        if (out > 16) {
+            std::memmove(recent + 1, recent, out * sizeof(std::uint32_t));
+            recent[0] = value;
+            return;
+        }
+        std::uint32_t carried = value; // a few moves are cheaper than a call
+        for (std::size_t i = 0; i <= out; ++i)
+            std::swap(carried, recent[i]);
     }
 
     std::vector<std::uint32_t> recent_; // last used first

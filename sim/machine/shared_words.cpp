@@ -223,7 +223,9 @@ std::size_t Engine::set_phase(Hart& h, std::size_t phase) {
         fmt::print(stderr, "razor-sim: broken invariant: phase {} of {}\n", phase, phases_.size());
         std::abort();
     }
-    return std::exchange(h.phase, phase);
+    std::size_t before = h.phase;
+    h.enter(phase);
+    return before;
 }
 
 } // namespace sim
