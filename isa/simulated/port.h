@@ -16,13 +16,13 @@ namespace isa::timing {
 
 using cycle = std::uint64_t;
 
-/// When a value is there. Scalars have first == last. A default stamp is a constant: always there, in no register.
+/// When a value is there: cycles, or the machine's own tickets for cycles that it does not know yet. Scalars have
+/// first == last. A default stamp is a constant: always there, in no register.
 struct stamp {
-    cycle first = 0;          // its first sub-vector
-    cycle last = 0;           // its last sub-vector
-    std::uint32_t value = 0;  // names the value, for finite registers; 0: a constant
-    std::uint16_t ticket = 0; // 0: the cycles are known; else an open request of the core that the value lives on
-    std::uint8_t cause = 0;   // the machine's own note of what the value waited for
+    cycle first = 0;         // its first sub-vector
+    cycle last = 0;          // its last sub-vector
+    std::uint32_t value = 0; // names the value, for finite registers; 0: a constant
+    std::uint8_t cause = 0;  // the machine's own note of what the value waited for
 };
 
 /// Where in the source an access or branch stands. Both compilers give the line a call begins on.
