@@ -82,6 +82,16 @@ void check_consistency(const Config& c, const std::string& what) {
         fail(what, fmt::format("l2.line_bytes is {}, less than l1.line_bytes, {}; make it at least that",
                                c.l2.line_bytes, c.l1.line_bytes));
     check_memory(what, c);
+    constexpr double most_lines = 1 << 27; // about a gigabyte of the host's memory for their tags
+    double lines =
+        static_cast<double>(c.all_cores()) * static_cast<double>(c.l1.size_bytes / c.l1.line_bytes) +
+        static_cast<double>(c.chip.tiles) * static_cast<double>(c.l2.size_bytes / c.l2.line_bytes);
+    if (lines > most_lines)
+        fail(what,
+             fmt::format(
+                 "the caches of all cores and tiles hold {:.0f} lines together, more than the {:.0f} that "
+                 "can be simulated; lower l1.size_bytes, l2.size_bytes, chip.cores or chip.tiles",
+                 lines, most_lines));
     if (c.all_threads() > 65536)
         fail(what, fmt::format("chip.tiles x chip.cores x chip.threads is {}; it must be at most 65536",
                                c.all_threads()));

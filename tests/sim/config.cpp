@@ -35,6 +35,7 @@ TEST(MachineFile, MistakesAreOneClearLine) {
         {"[core]\nscalar_overhead = nan\n", "m.toml:2:19:", "must be from 0"},
         {"[l1]\nsize_bytes = 1000\n", "m.toml:", "do not divide"},
         {"[l1]\nsize_bytes = 12288\n", "m.toml:", "power of two"},
+        {"[chip]\ncores = 1024\n[l1]\nsize_bytes = \"64MiB\"\n", "m.toml:", "lines together"},
         {"[l2]\nline_bytes = 32\n", "m.toml:", "(l1.line_bytes from default, l2.line_bytes from m.toml:2)"},
         {"[memory]\nbus_bytes = 16\n", "m.toml:", "more than l2.line_bytes"},
         {"[memory]\nrow_bytes = 1\n", "m.toml:2:13:", "must be from 64"},
