@@ -72,6 +72,7 @@ std::string print_json(const Report& r, bool with_host) {
     out["workers"] = r.workers;
     out["cycles"] = r.cycles;
     out["drained_cycles"] = r.drained;
+    out["window_cycles"] = r.window;
     out["seconds"] = r.seconds();
     out["coherence_of_plain_data"] = "not modelled";
     out["core"] = counters(r.core, core_counters);

@@ -14,7 +14,11 @@ void overview(std::string& out, const Report& r) {
     out += fmt::format("workers               {:>14}   on {} tiles x {} cores x {} threads\n", r.workers,
                        r.config.chip.tiles, r.config.chip.cores, r.config.chip.threads);
     out += fmt::format("order of threads      {:>14}   {}\n", r.config.sim.quantum,
-                       r.config.sim.quantum <= 1 ? "(exact, operation by operation)" : "(cycles a window)");
+                       r.config.sim.quantum <= 1
+                           ? "exact, operation by operation within a tile"
+                           : "cycles by which those of a tile may run ahead of each other");
+    out +=
+        fmt::format("windows               {:>14}   cycles, after which tiles and memory meet\n", r.window);
     out += fmt::format("instructions          {:>14}   {:.3f} a cycle and core\n", r.core.instructions,
                        ratio(r.core.instructions, r.cycles * cores));
     for (const auto& row : core_counters)
