@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
+
 namespace razor {
 namespace {
 
@@ -32,25 +34,26 @@ TEST_F(Simulator, SharesTreesAsAsked) {
     const std::string start = std::string("run --quiet --scene s.toml --size 33x33 --spp 1 --sky-samples 1 "
                                           "--light-samples 1 --edge-pixels 4 --machine ") +
                               tiny + " ";
-    ASSERT_EQ(simulator(start + "-o first.exr").code, 0);
     struct Case {
         const char *options, *share;
         int trees;
+        bool twice = false;
     };
     // tiny has 4 cores of 2 threads.
     const Case cases[] = {
         {"", "chip", 1},
         {"--share tile", "tile", 1},
         {"--share core", "core", 4},
-        {"--share core --workers 5", "core", 4},
+        {"--share core --workers 5", "core", 4, true},
         {"--share core --workers 5 -g chip.placement=pack", "core", 3},
         {"--share worker", "worker", 8},
         {"--share worker -g chip.placement=pack", "worker", 8},
-        {"--share 3", "3", 3},
+        {"--share 3", "3", 3, true},
         {"--share 3 -g chip.placement=pack", "3", 3},
         {"-g kdtree.share=2", "2", 4},
-        {"-g kdtree.share=worker --share core", "core", 4},
+        {"-g kdtree.share=worker --share core", "core", 4, true},
     };
+    std::optional<Film> first;
     for (const Case& c : cases) {
         SCOPED_TRACE(c.options);
         const Outcome result = simulator(start + c.options + " -o a.exr --json a.json");
@@ -59,11 +62,15 @@ TEST_F(Simulator, SharesTreesAsAsked) {
         EXPECT_EQ(a.at("options").at("share"), c.share);
         EXPECT_EQ(a.at("renderer").at("trees"), c.trees);
         EXPECT_EQ(a.at("renderer").at("tree_of_worker").size(), a.at("workers"));
-        const Film expected = read_exr(folder_ / "first.exr"), got = read_exr(folder_ / "a.exr");
-        for (const Plane& plane : expected.planes)
-            EXPECT_EQ(got.find(plane.name)->values, plane.values) << plane.name;
-        ASSERT_EQ(simulator(start + c.options + " --json b.json").code, 0);
-        EXPECT_EQ(report("b.json"), a);
+        const Film picture = read_exr(folder_ / "a.exr");
+        if (!first)
+            first = picture;
+        for (const Plane& plane : first->planes)
+            EXPECT_EQ(picture.find(plane.name)->values, plane.values) << plane.name;
+        if (c.twice) {
+            ASSERT_EQ(simulator(start + c.options + " --json b.json").code, 0);
+            EXPECT_EQ(report("b.json"), a);
+        }
     }
     EXPECT_EQ(report("a.json").at("renderer").at("tree_of_worker"),
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
