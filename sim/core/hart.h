@@ -63,9 +63,7 @@ struct Hart {
     cycle next_look = 0;               // at the word, in issue slots taken in advance ...
     std::vector<Calendar::Slot> looks; // ... these, of the window at hand
 
-    void account(cycle from, cycle to, Cause why) {
-        (*stack)[static_cast<std::size_t>(why)] += to - from;
-    }
+    void account(cycle from, cycle to, Cause why) { (*stack)[static_cast<std::size_t>(why)] += to - from; }
     /// Work and time count under this phase from now on.
     void enter(std::size_t next) {
         phase = next;
