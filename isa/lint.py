@@ -402,12 +402,12 @@ class Lint:
 
     def recursion(self):
         def reaches(start):
-            seen, todo = set(), list(self.calls[start])
-            while todo:
-                k = todo.pop()
+            seen, pending = set(), list(self.calls[start])
+            while pending:
+                k = pending.pop()
                 if k in self.calls and k not in seen:
                     seen.add(k)
-                    todo.extend(self.calls[k])
+                    pending.extend(self.calls[k])
             return start in seen
         for key, (path, line, allowed) in self.defined.items():
             if key[0] not in OVERLOADED and reaches(key) and "recursion" not in allowed.get(line, ()):
