@@ -243,7 +243,9 @@ void add_simulation(Table& t) {
     using C = SimulationConfig;
     auto s = &Config::sim;
     t.add("sim.quantum", s, &C::quantum, "cycles", 1, 0, 100000,
-          "threads run ahead of each other inside windows this long; 0 or 1: ordered operation by operation");
+          "threads of a tile run ahead of each other for so long at most; as long as a window or longer: "
+          "each runs "
+          "a whole window in turn; 0 or 1: ordered operation by operation");
     t.add(
         "sim.window", s, &C::window, "cycles", 0, 0, 100000,
         "tiles and memory meet at the ends of windows this long; 0: as long as changes nothing, the shortest "

@@ -72,8 +72,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
     spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
     for (integer t = 0; t < config.chip.tiles; ++t) {
-        Tile& tile = tiles_.emplace_back(config, narrow(t), wide(config.sim.quantum), l2_ring_cycles(config),
-                                         attribution_);
+        Tile& tile =
+            tiles_.emplace_back(config, narrow(t), window_cycles_, l2_ring_cycles(config), attribution_);
         for (integer c = 0; c < config.chip.cores; ++c) {
             Core& core = tile.cores.emplace_back(config, ring_, tile.l2, tile.tickets, attribution_);
             for (integer i = 0; i < config.chip.threads; ++i) {

@@ -43,6 +43,8 @@ void Scheduler::go_on(Key k) {
     current_ = static_cast<std::uint32_t>(k & ((Key{1} << thread_bits) - 1));
     if (exact())
         horizon_ = queue_.empty() ? limit_ - 1 : std::min(limit_ - 1, queue_.front());
+    else if (whole_windows_)
+        horizon_ = limit_ - 1;
     else
         horizon_ = std::min(limit_, key((cycle_of(k) / quantum_ + 1) * quantum_, 0)) - 1;
 }

@@ -1,7 +1,8 @@
 // Order among the hardware threads of a tile. All are fibres on one host thread; the one that runs goes on
 // until its next operation lies behind the horizon, then the earliest other one runs. With exact order the
 // horizon is the next thread's operation; with a quantum it is the end of the quantum that the operation lies
-// in. No thread passes the end of the window that run() was given. Keys order by (cycle, core, thread).
+// in. No thread passes the end of the window that run() was given, and a quantum that is no shorter than a
+// window does not cut it: each thread has all of it in turn. Keys order by (cycle, core, thread).
 #pragma once
 
 #include "sim/core/fibre.h"
@@ -23,8 +24,9 @@ public:
     static Key key(cycle t, std::uint32_t thread) { return t << thread_bits | thread; }
     static cycle cycle_of(Key k) { return k >> thread_bits; }
 
-    Scheduler(std::uint64_t quantum, std::size_t stack_bytes)
-        : quantum_(quantum), stack_bytes_(stack_bytes) {}
+    /// `quantum` and `window` in cycles.
+    Scheduler(std::uint64_t quantum, std::uint64_t window, std::size_t stack_bytes)
+        : quantum_(quantum), whole_windows_(quantum >= window), stack_bytes_(stack_bytes) {}
 
     /// Adds a thread (ascending numbers, all before run()).
     void add(std::uint32_t thread, std::function<void()> body);
@@ -74,6 +76,7 @@ private:
     void body(const std::function<void()>& work);
 
     std::uint64_t quantum_;
+    bool whole_windows_;
     std::size_t stack_bytes_;
     std::vector<Key> queue_; // a heap, smallest first: every thread that could run but does not
     std::vector<std::unique_ptr<Thread>> threads_; // by number; null where there is none

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace sim {
 namespace {
 
@@ -13,7 +15,8 @@ void overview(std::string& out, const Report& r) {
                        1e3 / static_cast<double>(r.config.chip.clock_ps));
     out += fmt::format("workers               {:>14}   on {} tiles x {} cores x {} threads\n", r.workers,
                        r.config.chip.tiles, r.config.chip.cores, r.config.chip.threads);
-    out += fmt::format("order of threads      {:>14}   {}\n", r.config.sim.quantum,
+    out += fmt::format("order of threads      {:>14}   {}\n",
+                       std::min(static_cast<std::uint64_t>(r.config.sim.quantum), r.window),
                        r.config.sim.quantum <= 1
                            ? "exact, operation by operation within a tile"
                            : "cycles by which those of a tile may run ahead of each other");

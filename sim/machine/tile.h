@@ -14,10 +14,11 @@
 namespace sim {
 
 struct Tile {
-    Tile(const Config& config, std::uint32_t number, std::uint64_t quantum, std::uint64_t l2_ring,
+    Tile(const Config& config, std::uint32_t number, std::uint64_t window, std::uint64_t l2_ring,
          Attribution& attribution)
         : number(number), l2(config, number, l2_ring, tickets, attribution),
-          scheduler(quantum, static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
+          scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
+                    static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
 
     /// Waits until a ticket is answered, or (no ticket) for the end of the window.
     struct Parked {

@@ -196,6 +196,23 @@ TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
     EXPECT_NEAR(static_cast<double>(cycles(2, 1000).cycles) / alone, 1.0, 0.03);
 }
 
+// A quantum that is no shorter than a window does not cut it, wherever its multiples lie.
+TEST(Tiles, LongQuantaAreWholeWindows) {
+    std::map<integer, std::string> reports;
+    for (integer quantum : {40, 61, 100, 100000, 39}) {
+        Config c = tiled(2, 2, 3);
+        c.sim.window = 40;
+        c.sim.quantum = quantum;
+        Shared s;
+        Report r = s.run(c, 12, [&](int w) { mixed_work(s.plain(), s.word(0), w, 60); });
+        r.config.sim.quantum = 0;
+        reports[quantum] = print_json(r, false);
+    }
+    for (integer quantum : {61, 100, 100000})
+        EXPECT_EQ(reports[quantum], reports[40]) << "quantum " << quantum;
+    EXPECT_NE(reports[39], reports[40]);
+}
+
 TEST(Tiles, TwoRunsAreEqual) {
     auto report = [] {
         Config c = tiled(4, 2, 2);
