@@ -1,12 +1,17 @@
 // Tags of a set-associative cache with least-recently-used replacement, and two flags a line. Knows nothing
-// of time or data. A set lies in consecutive memory of the host: 64 bytes for eight ways.
+// of time or data. A set lies in consecutive memory of the host, 64 bytes for eight ways: the tags, filled up
+// to groups of four; the ways, last used first, a byte each; the flags.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 namespace sim {
 
@@ -18,7 +23,7 @@ public:
 
     /// `sets` is a power of two, at most 2^25; at most 64 ways.
     CacheArray(std::size_t sets, std::size_t ways)
-        : mask_(sets - 1), ways_(static_cast<std::uint32_t>(ways)), order_at_(ways * 4),
+        : mask_(sets - 1), ways_(static_cast<std::uint32_t>(ways)), order_at_((ways + 3) / 4 * 16),
           flags_at_((order_at_ + ways + 7) / 8 * 8), stride_((flags_at_ + 16 + 15) / 16 * 16),
           bytes_(sets * stride_ + 64) {
         while ((std::size_t{1} << set_bits_) < sets)
@@ -42,9 +47,9 @@ public:
         auto recent = static_cast<std::uint32_t>(set[order_at_]);
         if (tag_at(set, recent) == wanted)
             return entry(line, recent);
-        for (std::uint32_t w = 0; w < ways_; ++w)
-            if (tag_at(set, w) == wanted)
-                return entry(line, w);
+        for (std::uint32_t w = 0; w < ways_; w += 4)
+            if (std::uint32_t equal = equal_tags(set + w * 4, wanted); equal != 0)
+                return entry(line, w + static_cast<std::uint32_t>(std::countr_zero(equal)));
         return none;
     }
     /// Makes the entry the most recently used of its set.
@@ -53,6 +58,19 @@ public:
         auto way = static_cast<std::byte>(e & 63U);
         if (order[0] == way)
             return;
+        if (std::endian::native == std::endian::little && ways_ <= 8) {
+            // All at once: bytes below that of the way move up by one. The bytes above are other ways or
+            // unused.
+            constexpr std::uint64_t ones = 0x0101010101010101U, tops = ones << 7U;
+            std::uint64_t all;
+            std::memcpy(&all, order, 8);
+            std::uint64_t differ = all ^ ones * (e & 63U);
+            auto top = static_cast<unsigned>(std::countr_zero((differ - ones) & ~differ & tops));
+            std::uint64_t moved = (std::uint64_t{2} << top) - 1; // up to and with the way's byte
+            all = (all & ~moved) | (all << 8U & moved) | (e & 63U);
+            std::memcpy(order, &all, 8);
+            return;
+        }
         std::size_t i = 1;
         while (order[i] != way)
             ++i;
@@ -116,6 +134,19 @@ private:
         if (t >= empty) [[unlikely]]
             throw std::length_error("frame memory is larger than the simulated caches' tags can tell apart");
         return static_cast<std::uint32_t>(t);
+    }
+    /// Which of four consecutive tags are `wanted`: one bit each.
+    static std::uint32_t equal_tags(const std::byte* tags, std::uint32_t wanted) {
+#ifdef __SSE2__
+        __m128i four = _mm_load_si128(reinterpret_cast<const __m128i*>(tags));
+        __m128i equal = _mm_cmpeq_epi32(four, _mm_set1_epi32(static_cast<int>(wanted)));
+        return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(equal)));
+#else
+        std::uint32_t equal = 0;
+        for (std::uint32_t w = 0; w < 4; ++w)
+            equal |= static_cast<std::uint32_t>(tag_at(tags, w) == wanted) << w;
+        return equal;
+#endif
     }
     static std::uint32_t tag_at(const std::byte* set, std::uint32_t way) {
         std::uint32_t t;
