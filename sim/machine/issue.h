@@ -115,13 +115,16 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
             data.granted = std::max(data.granted, at);
             a = core.l1.access(line, write, accesses, at, h.phase);
         }
+    cycle last = (s.last >> port_shift_) + l1_latency_; // through the ports
     if (is_ticket(a.ready)) {
         data.tickets[data.open++] = a.ready;
-        return;
+        if (last <= h.tile->tickets.floor())
+            return;
+    } else {
+        last = std::max(a.ready, last);
+        data.first = std::min(data.first, a.ready);
     }
-    cycle last = std::max(a.ready, (s.last >> port_shift_) + l1_latency_);
-    data.first = std::min(data.first, a.ready);
-    if (last > data.last) {
+    if (last > data.last || (last == data.last && a.from > data.from)) {
         data.last = last;
         data.from = a.from;
     }

@@ -11,7 +11,11 @@ Answer L1::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present
         array_.set_in_flight(entry, false);
         return present;
     }
-    if (is_ticket(hold->until) || hold->until > present.ready) {
+    if (is_ticket(hold->until)) { // the line may be there before the access
+        ++counters_.hits_in_flight;
+        return {tickets_.no_earlier(hold->until, present.ready, present.from), hold->cause};
+    }
+    if (hold->until > present.ready) {
         ++counters_.hits_in_flight;
         return {hold->until, hold->cause};
     }

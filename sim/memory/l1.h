@@ -20,8 +20,8 @@ public:
           array_(static_cast<std::size_t>(config.l1.size_bytes / (config.l1.ways * config.l1.line_bytes)),
                  static_cast<std::size_t>(config.l1.ways)),
           mshrs_(static_cast<std::size_t>(config.l1.mshrs), tickets),
-          write_backs_(static_cast<std::size_t>(config.l1.write_back_buffer), tickets), l2_(l2),
-          attribution_(attribution) {}
+          write_backs_(static_cast<std::size_t>(config.l1.write_back_buffer), tickets), tickets_(tickets),
+          l2_(l2), attribution_(attribution) {}
 
     unsigned line_shift() const { return line_shift_; }
 
@@ -80,6 +80,7 @@ private:
     CacheArray array_;
     Pool mshrs_, write_backs_;
     CacheCounters counters_;
+    Tickets& tickets_;
     L2& l2_;
     Attribution& attribution_;
 };

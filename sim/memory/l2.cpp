@@ -47,9 +47,8 @@ Answer L2::in_flight(CacheArray::Entry entry, std::uint64_t line, cycle done) {
     cycle until = arrival(line);
     if (until > done) { // also a ticket
         ++counters_.hits_in_flight;
-        if (is_ticket(until) &&
-            done > tickets_.floor()) // the line may be there before the bank has got round to it
-            until = tickets_.join({done, done, Cause::l2}, &until, 1);
+        if (is_ticket(until)) // the line may be there before the bank has got round to it
+            until = tickets_.no_earlier(until, done, Cause::l2);
         return {until, Cause::memory};
     }
     array_.set_in_flight(entry, false);

@@ -44,6 +44,15 @@ public:
         entries_.push_back(e);
         return ticket_bit | (begin_ + entries_.size() - 1);
     }
+    /// One for the same as `ticket`, but for what is there at `least` at the earliest. Without need if no
+    /// open ticket will be answered that early.
+    cycle no_earlier(cycle ticket, cycle least, Cause from) {
+        if (least <= floor_)
+            return ticket;
+        cycle bounded = join({least, least, from}, &ticket, 1);
+        entries_.back().bounded = true;
+        return bounded;
+    }
     /// Whether the ticket is answered, and with what. One that was forgotten lies in the past: cycle 0.
     bool find(cycle ticket, Answered& out) {
         std::uint64_t number = ticket ^ ticket_bit;
@@ -82,6 +91,7 @@ private:
         Answered time;
         std::uint64_t parts = 0;
         std::uint32_t part_count = 0;
+        bool bounded = false; // its part counts from `time` on
         bool answered = false;
     };
     bool gather(Entry& e) {
@@ -90,8 +100,9 @@ private:
             Answered part;
             if (!find(parts_[i - parts_begin_], part))
                 return false;
-            all.first = part.first < all.first ? part.first : all.first;
-            if (part.last > all.last) {
+            if (e.bounded ? part.first > all.first : part.first < all.first)
+                all.first = part.first;
+            if (part.last > all.last || (part.last == all.last && part.from > all.from && !e.bounded)) {
                 all.last = part.last;
                 all.from = part.from;
             }

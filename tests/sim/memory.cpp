@@ -151,6 +151,33 @@ TEST(Caches, HitsUnderAMissMerge) {
     EXPECT_EQ(r.l2_total().reads, 1U);
 }
 
+// The line comes in the same window, but the load that hits it has to wait for the ports for longer.
+TEST(Caches, HitsUnderAMissWaitForThePorts) {
+    Config c = equal_clocks();
+    c.l1.port_bytes = 4;
+    const int between = 5;
+    const int slots = std::min(ISA_WIDTH, 16); // of what one line has of a vector
+    const std::uint64_t line_lanes = (std::uint64_t{1} << slots) - 1;
+    stamp miss;
+    Answered hit;
+    run_on(c, [&](std::byte* base, int) {
+        std::byte* there = base + 65536;
+        load_vector(here, there, all_lanes, stamp{}, stamp{});
+        stamp begin{1000, 1000};
+        miss = load_vector(here, base, line_lanes, begin, stamp{});
+        for (int i = 0; i < between; ++i)
+            load_vector(here, there, all_lanes, begin, stamp{});
+        stamp later = load_vector(here, base, line_lanes, begin, stamp{});
+        ASSERT_TRUE(is_ticket(miss.last) && is_ticket(later.last));
+        hit = running_engine->await(*running_hart, later.last);
+        miss.last = when(miss);
+    });
+    cycle port = 1000 + u(slots + between * ISA_WIDTH); // a slot a cycle, taken in order
+    EXPECT_LT(miss.last, port);
+    EXPECT_EQ(hit.first, port + u(c.l1.latency));
+    EXPECT_EQ(hit.last, port + u(slots - 1 + c.l1.latency));
+}
+
 TEST(Caches, VectorAccessesCountInstructionsAndLines) {
     Config c = equal_clocks();
     c.core.lanes = 4;
