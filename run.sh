@@ -21,11 +21,10 @@ say "building in build/release (the first time some minutes)"
 if [[ ! -e build/release/build.ninja ]]; then
     configure release build/release -DRAZOR_TESTS=OFF
 fi
-compile build/release razor razor-sim razor-image-compare
+compile build/release razor razor-sim
 
 razor=build/release/razor/program/razor
 simulator=build/release/sim/program/razor-sim
-compare=build/release/analysis/razor-image-compare
 mkdir -p out
 
 # SSE4 rounds unfused multiply-adds twice; `plain`, AVX2, AVX-512 and the simulated machine give the same bits.
@@ -43,5 +42,5 @@ say "simulated picture, $simulated_size, $simulated_samples sample(s) a pixel, o
 
 say "the same picture natively: out/native.exr; are both the same, bit for bit?"
 "$razor" render "$scene" --size "$simulated_size" --spp "$simulated_samples" --isa "$isa" --quiet -o out/native.exr
-"$compare" out/native.exr out/simulated.exr
+"$razor" compare --identical out/native.exr out/simulated.exr
 say "done: pictures, report.txt and report.json are in out/"

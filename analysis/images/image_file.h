@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace analysis {
@@ -24,6 +25,9 @@ struct Channel {
 struct ImageFile {
     int width = 0, height = 0;
     std::vector<Channel> channels; // sorted by name
+
+    /// The channel of that name, or null.
+    const Channel* find(std::string_view name) const;
 };
 
 /// A file that cannot be read; what() is one line.

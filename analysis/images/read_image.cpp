@@ -3,6 +3,7 @@
 #include <Imath/half.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -20,6 +21,12 @@ double Channel::value(std::size_t i) const {
         return double{static_cast<float>(value)};
     }
     return static_cast<double>(bits[i]);
+}
+
+const Channel* ImageFile::find(std::string_view name) const {
+    const auto found = std::find_if(channels.begin(), channels.end(),
+                                    [&](const Channel& channel) { return channel.name == name; });
+    return found == channels.end() ? nullptr : &*found;
 }
 
 ImageFile read_image(const std::filesystem::path& path) {

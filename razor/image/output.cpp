@@ -31,8 +31,12 @@ void check_output(const std::filesystem::path& path) {
     check_writable(path);
 }
 
+bool is_png(const std::filesystem::path& path) {
+    return extension_of(path) == ".png";
+}
+
 void write_image(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes) {
-    if (extension_of(path) == ".png") {
+    if (is_png(path)) {
         write_png(path, film, attributes);
     } else {
         write_exr(path, film, attributes);

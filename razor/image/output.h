@@ -11,6 +11,9 @@ namespace razor {
 /// rendering.
 void check_output(const std::filesystem::path& path);
 
+/// Whether the extension is .png, in letters of any case.
+bool is_png(const std::filesystem::path& path);
+
 /// Writes the picture in the format of the extension; the file is whole or not there.
 void write_image(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes);
 

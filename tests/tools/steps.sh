@@ -2,7 +2,6 @@
 
 razor=razor/program/razor # within a build folder
 simulator=sim/program/razor-sim
-compare_images=$PWD/build/release/analysis/razor-image-compare
 # Not under sanitizers: tests that run none of our code, and the longest ones' variants of the same paths.
 not_sanitized='^isa_(refused|lint)|^tree$|(Watertight|BruteForce)\..*_(stretched|bilinear)'
 scene=configs/scenes/default.toml
@@ -130,7 +129,7 @@ compare_compilers() {
                 -o $folder/$compiler.exr --json $folder/$compiler.json >$folder/$compiler.txt
         done
         tests/tools/compare_reports.py $folder/release.json $folder/clang.json
-        "$compare_images" $folder/release.exr $folder/clang.exr
+        "build/release/$razor" compare --identical $folder/release.exr $folder/clang.exr
     done
     # Every event of the simulated kernels, in order.
     CCACHE_BASEDIR=$PWD CLANGXX=clang++-14 tests/kernels/compare_compilers.sh build/compare/events
@@ -154,7 +153,7 @@ render_shared_trees() {
         TSAN_OPTIONS=halt_on_error=1 "build/tsan/$razor" render $scene --size 96x96 --spp $samples --threads 5 --share chip \
             --quiet -o build/tsan/picture.exr
         "build/release/$razor" render $scene --size 96x96 --spp $samples --isa avx2 --quiet -o build/release/picture.exr
-        "$compare_images" build/release/picture.exr build/tsan/picture.exr
+        "build/release/$razor" compare --identical build/release/picture.exr build/tsan/picture.exr
     done
 }
 
@@ -165,5 +164,5 @@ render_width() {
     compile "$folder" razor
     "$folder/$razor" render $scene --size 256x192 --quiet -o "$folder/picture.exr"
     "build/release/$razor" render $scene --size 256x192 --isa avx2 --quiet -o build/release/picture.exr
-    "$compare_images" build/release/picture.exr "$folder/picture.exr"
+    "build/release/$razor" compare --identical build/release/picture.exr "$folder/picture.exr"
 }
