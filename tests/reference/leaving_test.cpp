@@ -129,10 +129,10 @@ TEST_P(LeavingConvex, NoChildMeetsWhatItLeaves) {
     EXPECT_GT(at_once, rays / 20);
     EXPECT_GT(apart_only, 0);           // why the bound alone will not do
     EXPECT_LT(height, 0.3 * footprint); // contact shadows are kept beyond a part of the target edge
+    RecordProperty("rays", rays);
+    RecordProperty("shadowed_at_once", at_once);
+    RecordProperty("shadowed_beyond_the_bound", apart_only);
     RecordProperty("clearance_of_target_edge", std::to_string(height / footprint));
-    std::printf(
-        "rays %d, false shadows: %d at once, %d beyond the bound, %d clear; clearance %.3f of the edge\n",
-        rays, at_once, apart_only, cleared, height / footprint);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, LeavingConvex,

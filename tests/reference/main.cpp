@@ -9,8 +9,8 @@
 namespace razor::reference {
 namespace {
 
-const std::vector<double> growths{-1, -0.1, 0, 0.01, 0.1, 0.4, 0.8, 1.6, 4, 10};
-const std::vector<double> footprints{0.5, 1, 4}; // in e0
+std::vector<double> growths{-1, -0.1, 0, 0.01, 0.1, 0.4, 0.8, 1.6, 4, 10};
+std::vector<double> footprints{0.5, 1, 4}; // in e0
 
 std::string title(const Setting& s) {
     return fmt::format("{}, exponents {}, e0 {}, cap {}, morph in the last {} of an octave", s.scene,
@@ -91,6 +91,9 @@ int main_(int argc, char** argv) {
     app.add_option("--scheme", schemes, "schemes of the tables of escapes and continuity")
         ->check(CLI::IsMember(scheme_names()));
     app.add_option("--rays", rays, "of each scheme and growth")->check(CLI::Range(1, 100'000'000));
+    app.add_option("--growth", growths, "of the footprint along a ray");
+    app.add_option("--footprint", footprints, "at the origin, in target edges of level 0")
+        ->check(CLI::NonNegativeNumber);
     app.add_option("--origins", setting.origins, "of rays; a quarter of them outside")
         ->check(CLI::Range(1, 100'000));
     app.add_option("--seed", setting.seed);
@@ -101,7 +104,11 @@ int main_(int argc, char** argv) {
     app.add_option("--cap", cap, "of growth (gradation cap)")->check(CLI::PositiveNumber);
     app.add_option("--part", setting.part, "of an octave that morphs")->check(CLI::Range(0.001, 1.0));
     app.add_option("--side", setting.side, "quads along a block")->check(CLI::IsMember({1, 2, 4, 8, 16}));
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
     if (cap > 0)
         setting.cap = cap;
     for (const std::string& scene : scenes) {
