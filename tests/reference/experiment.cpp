@@ -38,11 +38,9 @@ double nearest_unpaired(const Ray& ray, const Soup& soup) {
         if (c.t > 0)
             t.push_back(c.t);
     std::sort(t.begin(), t.end());
-    for (std::size_t i = 0; i < t.size(); ++i) {
+    for (std::size_t i = 0; i < t.size(); i += 2)
         if (i + 1 == t.size() || t[i + 1] - t[i] > same_distance)
             return t[i];
-        ++i;
-    }
     return std::numeric_limits<double>::infinity();
 }
 
