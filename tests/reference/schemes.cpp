@@ -179,9 +179,9 @@ Structures::Structures(const Levels& l, int side)
 }
 
 const std::vector<std::string>& scheme_names() {
-    static const std::vector<std::string> names{"recursive", "projected", "walk",   "finer-box",
-                                                "unclosed",  "discrete",  "patch",  "camera",
-                                                "fixed",     "paper",     "printed"};
+    static const std::vector<std::string> names{"recursive", "projected", "walk",   "finer-box", "unclosed",
+                                                "discrete",  "patch",     "camera", "fixed:0",   "fixed:1",
+                                                "fixed:2",   "paper",     "printed"};
     return names;
 }
 
@@ -220,8 +220,8 @@ std::unique_ptr<Tracer> make_tracer(const std::string& scheme, const Structures&
         fixed.origin = {0.3, 0.2, 2.5};
         return of(recursive_soup(s, Surface(s.levels, fixed)));
     }
-    if (scheme == "fixed")
-        return of(discrete_soup(s.levels, std::min(1, s.levels.top())));
+    if (scheme.starts_with("fixed:") && scheme.size() == 7 && scheme[6] >= '0' && scheme[6] <= '9')
+        return of(discrete_soup(s.levels, std::min(scheme[6] - '0', s.levels.top())));
     if (scheme == "paper" || scheme == "printed")
         return std::make_unique<Paper>(s, view, scheme == "printed");
     throw std::invalid_argument("no scheme is called " + scheme);

@@ -8,7 +8,7 @@
 //   discrete    a block's level is whole: its weights rounded to 0 or 1; each block as it is at its level
 //   patch       one level a patch, by its least footprint
 //   camera      the recursive surface of one fixed viewpoint, for every ray
-//   fixed       one level for all
+//   fixed:k     level k everywhere, k = 0 ... 9
 //   paper       "Razor" (Djeu et al., TOG 2011), equations 1-6: inside the stretch of the ray that belongs to
 //   a
 //               pair of levels, fine vertices are blended towards the coarse mesh by their projection on the

@@ -118,7 +118,7 @@ TEST(Schemes, OnePairOfLevelsAtATimeLeaks) {
 }
 
 TEST(Schemes, OneViewForAllRaysIsClosed) {
-    for (const char* scheme : {"camera", "fixed"}) {
+    for (const char* scheme : {"camera", "fixed:0", "fixed:2"}) {
         Counts c = sum_over(many("torus", true), scheme, {0.4}, {1});
         EXPECT_EQ(c.escapes + c.uneven + c.open, 0) << scheme;
     }
