@@ -16,10 +16,11 @@
 //
 // That bound alone does not end false self-shadowing: a convex body's triangulation has reflex edges, and the
 // facet that was hit, blended, may be tilted against its neighbours. What does: begin above the plane through
-// the hit, with the facet's normal, that has the neighbourhood below it. Whatever the child's growth, its
-// vertices are means of vertices at some level, so they are below that plane too (`clearance`). On a convex
-// body what rises above the facet's plane is a cap about the facet; R, how far the anchors are that the hit
-// triangle is blended from, measures the facet, and twice R covers the cap.
+// the hit, with the facet's normal, that has the neighbourhood below it. Whatever the child's growth, each of
+// its vertices is a convex combination of vertices at some level, so it is below that plane too
+// (`clearance`). On a convex body what rises above the facet's plane is a cap about the facet; R, how far the
+// anchors are that the hit triangle is blended from, measures the facet. That twice R covers the cap is
+// measured, not proved.
 #pragma once
 
 #include "tests/reference/schemes.h"
