@@ -106,6 +106,13 @@ struct Frame::Impl {
     int nodes_each = 0, grid_lines_each = 0, list_lines_each = 0; // arena sizes of a worker
     Plan plan = plan_flat;
     std::int64_t undrawn = 0;
+    struct {
+        std::size_t patches = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
+    } total; // over the instances
+
+    const Topology& topology_of(const Instance& instance) const {
+        return topologies[static_cast<std::size_t>(instance.mesh)];
+    }
 
     template <class T>
     T* region(const char* structure, int owner, std::size_t count, bool transient = false) {
@@ -128,6 +135,7 @@ struct Frame::Impl {
     int first_node(int w) const {
         return w * (nodes_each + coloured_lines * nodes_a_line) + colour(w, colour_nodes) * nodes_a_line;
     }
+    void count_records(const Scene& scene);
     void place_scene(const Scene& scene);
     void place_topology();
     void place_workers();
@@ -141,17 +149,17 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     for (const Mesh& mesh : meshes) {
         validate_mesh(mesh);
         topologies.push_back(analyse_topology(mesh));
-        undrawn += topologies.back().undrawn_faces;
     }
     trees = count_trees(options);
     geometry = locate_scene(scene);
+    count_records(scene);
     pages = std::make_unique<PageStore>(meshes, topologies);
     counters.resize(static_cast<std::size_t>(options.workers));
     std::uint64_t scene_bytes = 0;
-    for (const Topology& t : topologies)
-        scene_bytes += t.patches.size() *
-                           (sizeof(PatchRecord) + 64 + sizeof(OpenPatch) * static_cast<std::size_t>(trees)) +
-                       t.controls.size() * 4 + (t.faces.size() + t.points.size() + t.curves.size()) * 64;
+    scene_bytes +=
+        total.patches * (sizeof(PatchRecord) + 64 + sizeof(OpenPatch) * static_cast<std::size_t>(trees)) +
+        total.controls * 4 + (total.faces + total.points + total.curves) * 64 +
+        geometry.instances.size() * sizeof(MeshRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(pages->span_bytes() + all_grids + all_nodes + all_lists +
@@ -165,68 +173,83 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     reset();
 }
 
+/// Every instance has records of its own; what they say of the surface's topology is its mesh's.
+void Frame::Impl::count_records(const Scene& scene) {
+    for (const Instance& i : geometry.instances) {
+        const Topology& t = topology_of(i);
+        total.patches += t.patches.size();
+        total.faces += t.faces.size();
+        total.controls += t.controls.size();
+        total.face_curves += t.face_curves.size();
+        total.points += t.points.size();
+        total.curves += t.curves.size();
+        undrawn += t.undrawn_faces;
+    }
+    if (total.patches == 0)
+        throw UserError(fmt::format(
+            "{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
+            scene.name));
+    if (total.patches > (std::size_t{1} << 30))
+        throw UserError(fmt::format("{}: {} patches are too many; at most 2^30", scene.name, total.patches));
+    // Gathers index coordinates by signed 32-bit words; all else is counted in records.
+    constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+    if (std::max({total.faces, total.controls, total.face_curves, total.points * 3, total.curves}) > most)
+        throw UserError(
+            fmt::format("{}: the control points of all {} instances are more than can be numbered; "
+                        "place fewer copies",
+                        scene.name, geometry.instances.size()));
+}
+
 void Frame::Impl::place_scene(const Scene& scene) {
     header = region<FrameHeader>("scene graph", -1, 1);
     new (header) FrameHeader{};
-    auto* records = region<MeshRecord>("scene graph", -1, meshes.size());
-    header->meshes.set(records);
-    std::size_t patches = 0, points = 0;
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-        MeshRecord& r = records[m];
+    auto* record = region<MeshRecord>("scene graph", -1, geometry.instances.size());
+    header->meshes.set(record);
+    std::size_t patches = 0;
+    for (const Instance& i : geometry.instances) {
+        const Topology& t = topology_of(i);
+        MeshRecord& r = *record++;
         for (int k = 0; k < 3; ++k)
-            r.origin[k] = geometry.mesh_origins[m][k];
-        r.edge_length = static_cast<float>(geometry.edge_lengths[m]);
-        r.max_exponent = topologies[m].max_exponent;
+            r.origin[k] = i.origin[k];
+        r.edge_length = static_cast<float>(i.edge_length);
+        r.max_exponent = t.max_exponent;
         r.first_patch = static_cast<std::int32_t>(patches);
-        r.patch_count = static_cast<std::int32_t>(topologies[m].patches.size());
+        r.patch_count = static_cast<std::int32_t>(t.patches.size());
         glm::vec3 albedo(0.7F);
-        auto material = static_cast<std::size_t>(meshes[m].material);
+        auto material = static_cast<std::size_t>(i.material);
         if (material < scene.materials.size())
             albedo = scene.materials[material].albedo;
         for (int k = 0; k < 3; ++k)
             r.albedo[k] = albedo[k];
-        patches += topologies[m].patches.size();
-        points += meshes[m].points.size();
-        for (const PatchRecord& p : topologies[m].patches)
+        patches += t.patches.size();
+    }
+    for (const Instance& i : geometry.instances)
+        for (const PatchRecord& p : topology_of(i).patches)
             if (p.kind == PatchKind::catmull_clark || p.kind == PatchKind::bilinear)
                 plan = plan_hanging;
-    }
-    if (patches == 0)
-        throw UserError(fmt::format(
-            "{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
-            scene.name));
-    if (patches > (std::size_t{1} << 30))
-        throw UserError(fmt::format("{}: {} patches are too many; at most 2^30", scene.name, patches));
     header->patch_count = static_cast<std::int32_t>(patches);
     header->refit_chunks = static_cast<std::int32_t>((patches + refit_patches - 1) / refit_patches);
     header->bounds_stride = header->refit_chunks * refit_patches;
     header->bounds.set(region<float>("scene graph", -1, static_cast<std::size_t>(header->bounds_stride) * 6));
-    auto* xyz = region<float>("control points", -1, points * 3);
+    auto* xyz = region<float>("control points", -1, total.points * 3);
     header->points.set(xyz);
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-        glm::dvec3 origin = geometry.origin + glm::dvec3(geometry.mesh_origins[m]);
-        for (const glm::dvec3& p : meshes[m].points)
+    for (const Instance& i : geometry.instances) {
+        const Placer place(geometry, i);
+        for (const glm::dvec3& point : meshes[static_cast<std::size_t>(i.mesh)].points) {
+            const glm::dvec3 p = place(point);
             for (int k = 0; k < 3; ++k)
-                *xyz++ = static_cast<float>(p[k] - origin[k]);
+                *xyz++ = static_cast<float>(p[k]);
+        }
     }
 }
 
 void Frame::Impl::place_topology() {
-    std::size_t patches = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
-    for (const Topology& t : topologies) {
-        patches += t.patches.size();
-        faces += t.faces.size();
-        controls += t.controls.size();
-        face_curves += t.face_curves.size();
-        points += t.points.size();
-        curves += t.curves.size();
-    }
-    auto* patch = region<PatchRecord>("scene graph", -1, patches);
-    auto* face = region<FaceRecord>("topology", -1, faces);
-    auto* control = region<std::int32_t>("topology", -1, controls);
-    auto* face_curve = region<std::int32_t>("topology", -1, face_curves);
-    auto* point = region<VertexRecord>("topology", -1, points);
-    auto* curve = region<CurveRecord>("topology", -1, curves);
+    auto* patch = region<PatchRecord>("scene graph", -1, total.patches);
+    auto* face = region<FaceRecord>("topology", -1, total.faces);
+    auto* control = region<std::int32_t>("topology", -1, total.controls);
+    auto* face_curve = region<std::int32_t>("topology", -1, total.face_curves);
+    auto* point = region<VertexRecord>("topology", -1, total.points);
+    auto* curve = region<CurveRecord>("topology", -1, total.curves);
     auto* classes = region<ClassRecord>("topology", -1, pages->class_count());
     header->patches.set(patch);
     header->faces.set(face);
@@ -235,12 +258,20 @@ void Frame::Impl::place_topology() {
     header->vertices.set(point);
     header->curves.set(curve);
     header->classes.set(classes);
-    // Each mesh numbers from 0: move its numbers behind those of the meshes before.
-    int base_face = 0, base_control = 0, base_face_curve = 0, base_point = 0, base_curve = 0, base_class = 0;
-    for (std::size_t m = 0; m < topologies.size(); ++m) {
-        const Topology& t = topologies[m];
+    std::vector<int> first_class; // of each mesh: all its instances ask for the same pages
+    int base_class = 0;
+    for (const Topology& t : topologies) {
+        first_class.push_back(base_class);
+        base_class += static_cast<int>(t.classes.size());
+    }
+    // Each mesh numbers from 0: move an instance's numbers behind those of the instances before.
+    int base_face = 0, base_control = 0, base_face_curve = 0, base_point = 0, base_curve = 0;
+    for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
+        const Instance& instance = geometry.instances[n];
+        const Topology& t = topology_of(instance);
+        base_class = first_class[static_cast<std::size_t>(instance.mesh)];
         for (PatchRecord p : t.patches) {
-            p.mesh = static_cast<int>(m);
+            p.mesh = static_cast<int>(n);
             p.face += base_face;
             bool part = (p.side_flags[0] & side_half) != 0;
             for (int& c : p.side_curve)
@@ -277,7 +308,6 @@ void Frame::Impl::place_topology() {
         base_face_curve += static_cast<int>(t.face_curves.size());
         base_point += static_cast<int>(t.points.size());
         base_curve += static_cast<int>(t.curves.size());
-        base_class += static_cast<int>(t.classes.size());
     }
     pages->lay_out(region<Line>("topology pages", -1, pages->span_bytes() / line_bytes), classes);
 }
@@ -487,6 +517,8 @@ FrameStatistics Frame::statistics() const {
     for (const Counters& c : impl_->counters)
         s.counters += c;
     s.trees = impl_->trees;
+    s.meshes = static_cast<std::int64_t>(impl_->meshes.size());
+    s.instances = static_cast<std::int64_t>(impl_->geometry.instances.size());
     s.patches = static_cast<std::int64_t>(impl_->header->patch_count) * impl_->trees;
     s.undrawn_faces = impl_->undrawn;
     for (int w = 0; w < impl_->options.workers; ++w) {

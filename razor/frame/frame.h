@@ -28,8 +28,9 @@ struct FrameOptions {
 struct FrameStatistics {
     Counters counters; // summed over workers
     std::int64_t trees = 0;
-    std::int64_t patches = 0;       // of the scene, times the trees
-    std::int64_t undrawn_faces = 0; // holes and the like
+    std::int64_t meshes = 0, instances = 0; // analysed once each; drawn
+    std::int64_t patches = 0;               // of the scene, times the trees
+    std::int64_t undrawn_faces = 0;         // holes and the like
     std::int64_t inner_nodes = 0, leaves = 0;
     std::int64_t unsplit_nodes = 0;                              // nodes that no ray entered
     std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // built this frame

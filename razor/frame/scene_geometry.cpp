@@ -1,5 +1,8 @@
 #include "razor/frame/scene_geometry.h"
 
+#include "razor/scene/error.h"
+
+#include <fmt/core.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -10,15 +13,6 @@
 namespace razor {
 
 namespace {
-
-struct Box {
-    glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
-    void add(const glm::dvec3& p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    glm::dvec3 centre() const { return low * 0.5 + high * 0.5; }
-};
 
 double distance_to(const Box& b, const glm::dvec3& p) {
     return glm::length(p - glm::clamp(p, b.low, b.high));
@@ -45,26 +39,48 @@ double nearest_power_of_two(double length) {
 
 SceneGeometry locate_scene(const Scene& scene) {
     SceneGeometry g;
+    const SceneGraph graph = drawn_graph(scene.graph, scene.meshes.size());
+    std::vector<Box> of_meshes;
+    for (const Mesh& mesh : scene.meshes)
+        of_meshes.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
+    FlatGraph flat;
+    try {
+        flat = flatten(graph, of_meshes);
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("{}: {}", scene.name, error.what()));
+    }
     Box all;
     std::vector<Box> boxes;
-    for (const Mesh& mesh : scene.meshes) {
+    for (const FlatInstance& i : flat.instances) {
+        const Affine& world = flat.nodes[static_cast<std::size_t>(i.node)].world;
         Box box;
-        for (const glm::dvec3& p : mesh.points)
-            box.add(p);
-        all.add(box.low);
-        all.add(box.high);
+        for (const glm::dvec3& p : scene.meshes[static_cast<std::size_t>(i.mesh)].points)
+            box.add(world(p));
+        all.add(box);
         boxes.push_back(box);
     }
     g.origin = all.centre();
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        const Mesh& mesh = scene.meshes[i];
-        g.mesh_origins.emplace_back(boxes[i].centre() - g.origin);
-        double length = mesh.edge_length > 0 ? mesh.edge_length : automatic_edge_length(scene, boxes[i]);
-        g.edge_lengths.push_back(nearest_power_of_two(length));
+    for (std::size_t n = 0; n < flat.instances.size(); ++n) {
+        const FlatInstance& i = flat.instances[n];
+        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(i.mesh)];
+        Instance placed;
+        placed.mesh = i.mesh;
+        placed.material = i.material >= 0 ? i.material : mesh.material;
+        placed.world = flat.nodes[static_cast<std::size_t>(i.node)].world;
+        placed.origin = glm::vec3(boxes[n].centre() - g.origin);
+        double length = mesh.edge_length > 0 ? mesh.edge_length : automatic_edge_length(scene, boxes[n]);
+        placed.edge_length = std::clamp(
+            std::ldexp(nearest_power_of_two(length * i.rate), i.level_offset) * i.scale, 1e-30, 1e30);
+        g.instances.push_back(placed);
     }
     g.reach = glm::length(all.high - all.low) + glm::length(scene.camera.position - g.origin);
     g.reach = std::max(g.reach, 1e-30);
     return g;
+}
+
+Placer::Placer(const SceneGeometry& geometry, const Instance& instance)
+    : relative_(instance.world), moved_only_(instance.world.linear == glm::dmat3(1)) {
+    relative_.translation -= geometry.origin + glm::dvec3(instance.origin);
 }
 
 } // namespace razor

@@ -17,6 +17,7 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
     const Counters& c = f.counters;
     json["target"] = {{"isa", s.isa}, {"width", s.width_lanes}, {"threads", s.threads}};
     json["plan"] = f.plan;
+    json["scene"] = {{"meshes", f.meshes}, {"instances", f.instances}};
     nlohmann::ordered_json& counters = json["counters"];
     for_each_counter(c, [&](const char* name, std::int64_t value) { counters[name] = value; });
     json["utilisation"] = {{"camera_packets", share(c.camera_rays, c.camera_packets * s.width_lanes)},

@@ -1,7 +1,9 @@
 #include "razor/scene/description.h"
 
+#include "razor/scene/error.h"
 #include "razor/scene/obj_reader.h"
 #include "razor/scene/shapes/shapes.h"
+#include "razor/scene/text_file.h"
 #include "razor/scene/words.h"
 
 #include <fmt/format.h>
@@ -11,22 +13,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
+#include <unordered_map>
 
 namespace razor {
 namespace {
-
-/// Cosine and sine of an angle in degrees, exact at multiples of 90.
-std::pair<double, double> cos_sin_degrees(double angle) {
-    const double turn = std::remainder(angle, 360.0);
-    if (std::fmod(turn, 90.0) == 0) {
-        constexpr int cosines[] = {1, 0, -1, 0};
-        const int quarter = (static_cast<int>(turn / 90.0) + 4) % 4;
-        return {cosines[quarter], cosines[(quarter + 3) % 4]};
-    }
-    const double radians = turn * (std::numbers::pi / 180.0);
-    return {std::cos(radians), std::sin(radians)};
-}
 
 glm::dvec3 rotated(glm::dvec3 p, int axis, double degrees) {
     const auto [c, s] = cos_sin_degrees(degrees);
@@ -77,14 +67,163 @@ bool is_whole(std::string_view shape, std::string_view parameter) {
     return false;
 }
 
+int material_index(const SceneDescription& description, std::string_view name) {
+    const auto material = std::find_if(description.materials.begin(), description.materials.end(),
+                                       [&](const Material& m) { return m.name == name; });
+    return static_cast<int>(std::distance(description.materials.begin(), material));
+}
+
+class GraphBuilder {
+public:
+    explicit GraphBuilder(const SceneDescription& description) : description_(description) {
+        for (std::size_t m = 0; m < description.meshes.size(); ++m) {
+            meshes_.try_emplace(description.meshes[m].name, static_cast<int>(m));
+            files_.try_emplace(description.meshes[m].file, static_cast<int>(m));
+        }
+        for (std::size_t g = 0; g < description.groups.size(); ++g) {
+            groups_.try_emplace(description.groups[g].name, static_cast<int>(g) + 1);
+        }
+        placed_.resize(description.meshes.size());
+    }
+
+    SceneGraph build() {
+        if (description_.objects.empty() && description_.groups.empty()) {
+            return {};
+        }
+        graph_.groups.resize(description_.groups.size() + 1);
+        graph_.groups[0] = {"scene", {}};
+        for (std::size_t g = 0; g < description_.groups.size(); ++g) {
+            graph_.groups[g + 1].name = description_.groups[g].name;
+            add_objects(g + 1, description_.groups[g].objects);
+        }
+        add_objects(0, description_.objects);
+        std::vector<Placement> root;
+        for (std::size_t m = 0; m < placed_.size(); ++m) {
+            if (!placed_[m]) {
+                root.push_back(
+                    {.name = description_.meshes[m].name, .mesh = static_cast<int>(m), .local = {}});
+            }
+        }
+        std::vector<Placement>& objects = graph_.groups[0].placements;
+        root.insert(root.end(), std::make_move_iterator(objects.begin()),
+                    std::make_move_iterator(objects.end()));
+        objects = std::move(root);
+        return std::move(graph_);
+    }
+
+private:
+    using Names = std::unordered_map<std::string, int>;
+
+    static int find(const Names& names, const std::string& name, std::string_view kind) {
+        const auto found = names.find(name);
+        if (found == names.end()) {
+            throw UserError(fmt::format("an object places the {} '{}', which does not exist; add it", kind,
+                                        printable(name)));
+        }
+        return found->second;
+    }
+
+    int place_mesh(int mesh) {
+        placed_[static_cast<std::size_t>(mesh)] = true;
+        return mesh;
+    }
+
+    void add_objects(std::size_t group, const std::vector<ObjectDescription>& objects) {
+        for (const ObjectDescription& object : objects) {
+            Placement placement{.name = object.name,
+                                .local = object.transform,
+                                .copies = object.copies,
+                                .spacing = object.spacing,
+                                .level_offset = object.level_offset,
+                                .rate = object.rate};
+            if (!object.material.empty()) {
+                placement.material = material_index(description_, object.material);
+            }
+            if (object.table) {
+                placement.group = add_table(object);
+            } else if (!object.group.empty()) {
+                placement.group = find(groups_, object.group, "group");
+            } else {
+                placement.mesh = place_mesh(find(meshes_, object.mesh, "mesh"));
+            }
+            graph_.groups[group].placements.push_back(std::move(placement));
+        }
+    }
+
+    /// A group of the table's rows; one a table, however often it is placed.
+    int add_table(const ObjectDescription& object) {
+        const auto [entry, is_new] =
+            tables_.try_emplace(object.table.get(), static_cast<int>(graph_.groups.size()));
+        if (is_new) {
+            Group group{object.instances, {}};
+            std::vector<int> meshes;
+            for (const std::string& file : object.table->files) {
+                meshes.push_back(place_mesh(find(files_, file, "mesh file")));
+            }
+            for (const InstanceRow& row : object.table->rows) {
+                group.placements.push_back({.name = fmt::format("line {}", row.line),
+                                            .mesh = meshes[static_cast<std::size_t>(row.file)],
+                                            .local = row.transform});
+            }
+            graph_.groups.push_back(std::move(group));
+        }
+        return entry->second;
+    }
+
+    const SceneDescription& description_;
+    SceneGraph graph_;
+    Names meshes_, files_, groups_;
+    std::unordered_map<const InstanceTable*, int> tables_;
+    std::vector<bool> placed_;
+};
+
+void print_object(std::string& text, const ObjectDescription& object, std::string_view header) {
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "\n[[{}]]\nname = {}\n", header, toml_text(object.name));
+    if (!object.instances.empty()) {
+        fmt::format_to(out, "instances = {}\n", toml_text(object.instances));
+    } else if (!object.group.empty()) {
+        fmt::format_to(out, "group = {}\n", toml_text(object.group));
+    } else {
+        fmt::format_to(out, "mesh = {}\n", toml_text(object.mesh));
+    }
+    if (!object.material.empty()) {
+        fmt::format_to(out, "material = {}\n", toml_text(object.material));
+    }
+    const Transform& t = object.transform;
+    if (t.matrix) {
+        const auto row = [&](int i) {
+            const glm::dmat3& m = t.matrix->linear;
+            return fmt::format("[{}, {}, {}, {}]", number(m[0][i]), number(m[1][i]), number(m[2][i]),
+                               number(t.matrix->translation[i]));
+        };
+        fmt::format_to(out, "matrix = [{}, {}, {}]\n", row(0), row(1), row(2));
+    } else {
+        fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\n", vector3(t.scale), vector3(t.rotate),
+                       vector3(t.translate));
+    }
+    fmt::format_to(out, "array = [{}, {}, {}]\nspacing = {}\nlevel_offset = {}\nrate = {}\n", object.copies.x,
+                   object.copies.y, object.copies.z, vector3(object.spacing), object.level_offset,
+                   number(object.rate));
+}
+
 } // namespace
 
 void load_cage(MeshDescription& mesh) {
+    CageCache none;
+    load_cage(mesh, none);
+}
+
+void load_cage(MeshDescription& mesh, CageCache& cages) {
     if (mesh.file.empty()) {
         mesh.cage = std::make_shared<const Mesh>(make_shape(mesh.shape, mesh.parameters));
-    } else {
-        mesh.cage = std::make_shared<const Mesh>(read_obj(mesh.file));
+        return;
     }
+    std::shared_ptr<const Mesh>& cage = cages[mesh.file];
+    if (!cage) {
+        cage = std::make_shared<const Mesh>(read_obj(mesh.file));
+    }
+    mesh.cage = cage;
 }
 
 std::vector<glm::dvec3> placed_points(const MeshDescription& mesh) {
@@ -102,6 +241,18 @@ std::vector<glm::dvec3> placed_points(const MeshDescription& mesh) {
     return points;
 }
 
+std::vector<Box> mesh_bounds(const SceneDescription& description) {
+    std::vector<Box> bounds;
+    for (const MeshDescription& mesh : description.meshes) {
+        bounds.push_back(bounds_of_used_points(placed_points(mesh), mesh.cage->face_vertices));
+    }
+    return bounds;
+}
+
+SceneGraph build_graph(const SceneDescription& description) {
+    return GraphBuilder(description).build();
+}
+
 Scene build_scene(const SceneDescription& description) {
     Scene scene;
     scene.name = description.name;
@@ -116,11 +267,10 @@ Scene build_scene(const SceneDescription& description) {
         mesh.scheme = source.scheme;
         mesh.edge_length = source.edge_length;
         mesh.points = placed_points(source);
-        const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
-                                           [&](const Material& m) { return m.name == source.material; });
-        mesh.material = static_cast<int>(std::distance(scene.materials.begin(), material));
+        mesh.material = material_index(description, source.material);
         scene.meshes.push_back(std::move(mesh));
     }
+    scene.graph = build_graph(description);
     return scene;
 }
 
@@ -166,6 +316,15 @@ std::string to_toml(const SceneDescription& description) {
                                is_whole(mesh.shape, name) ? fmt::format("{:.0f}", value) : number(value));
             }
         }
+    }
+    for (const GroupDescription& group : description.groups) {
+        fmt::format_to(out, "\n[[group]]\nname = {}\n", toml_text(group.name));
+        for (const ObjectDescription& object : group.objects) {
+            print_object(text, object, "group.object");
+        }
+    }
+    for (const ObjectDescription& object : description.objects) {
+        print_object(text, object, "object");
     }
     return text;
 }

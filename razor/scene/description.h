@@ -2,17 +2,20 @@
 // --print-config prints and what outputs embed; build_scene() makes the renderer's Scene from it.
 #pragma once
 
+#include "razor/scene/graph/flatten.h"
+#include "razor/scene/instance_table.h"
 #include "razor/scene/scene.h"
 
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace razor {
 
 /// One cage, where it comes from and where it goes. A point p lands at translate + Rz Ry Rx (scale p), in
-/// double precision.
+/// double precision; objects place what has so become of it.
 struct MeshDescription {
     std::string name;
     std::string file;                                       // absolute path of an OBJ file, or empty: a shape
@@ -27,6 +30,28 @@ struct MeshDescription {
     std::shared_ptr<const Mesh> cage; // as read or generated, before scale, rotate and translate
 };
 
+/// Puts a mesh, a group, or all rows of a table of instances somewhere, once or as a regular array.
+struct ObjectDescription {
+    std::string name;
+    std::string mesh, group;                    // name of what is placed, or empty
+    std::string instances;                      // absolute path of a table, or empty
+    std::shared_ptr<const InstanceTable> table; // as read from there
+    std::string material;                       // of all below that states none itself; empty: as it has
+    Transform transform;
+    glm::ivec3 copies{1, 1, 1};  // see Placement
+    glm::dvec3 spacing{0, 0, 0}; // units of the group that holds the object
+    int level_offset = 0;
+    double rate = 1;
+};
+
+/// Objects that other objects place together; not drawn by itself.
+struct GroupDescription {
+    std::string name;
+    std::vector<ObjectDescription> objects;
+};
+
+/// A mesh that some object places (by name, or as a row of a table) is drawn there only; every other mesh is
+/// drawn where it stands.
 struct SceneDescription {
     std::string name;
     Settings settings;
@@ -35,13 +60,26 @@ struct SceneDescription {
     std::vector<RectangleLight> lights;
     std::vector<Material> materials;
     std::vector<MeshDescription> meshes;
+    std::vector<GroupDescription> groups;
+    std::vector<ObjectDescription> objects;
 };
+
+/// Cages by the file they were read from: no file is read twice.
+using CageCache = std::unordered_map<std::string, std::shared_ptr<const Mesh>>;
 
 /// Reads or generates the cage of a mesh whose file or shape and parameters are set. Throws UserError.
 void load_cage(MeshDescription& mesh);
+void load_cage(MeshDescription& mesh, CageCache& cages);
 
 /// The cage's points where the scene has them.
 std::vector<glm::dvec3> placed_points(const MeshDescription& mesh);
+
+/// Of the points that faces use, where each mesh stands before objects place it.
+std::vector<Box> mesh_bounds(const SceneDescription& description);
+
+/// Where the meshes are drawn. Of two meshes read from one file, tables place the first. Empty where there
+/// are neither objects nor groups. Throws UserError for names that are not there.
+SceneGraph build_graph(const SceneDescription& description);
 
 Scene build_scene(const SceneDescription& description);
 

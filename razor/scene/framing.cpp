@@ -2,6 +2,7 @@
 
 #include "razor/scene/error.h"
 #include "razor/scene/obj_reader.h"
+#include "razor/scene/scene_objects.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ struct Extent {
     double lowest = 0;
 };
 
-/// The points of a mesh that faces use, where the scene has them.
+/// The points of a mesh that faces use, before objects place it.
 std::vector<glm::dvec3> used_points(const MeshDescription& mesh) {
     std::vector<bool> used(mesh.cage->points.size());
     for (const int corner : mesh.cage->face_vertices) {
@@ -43,25 +44,51 @@ std::vector<glm::dvec3> used_points(const MeshDescription& mesh) {
     return points;
 }
 
-std::vector<glm::dvec3> used_points(const SceneDescription& scene) {
-    std::vector<glm::dvec3> points;
-    for (const MeshDescription& mesh : scene.meshes) {
-        const std::vector<glm::dvec3> of_mesh = used_points(mesh);
-        points.insert(points.end(), of_mesh.begin(), of_mesh.end());
-    }
-    return points;
-}
+/// The points that faces use, where the scene has them. Those of instances are made when visited: there may
+/// be too many to keep.
+class PointCloud {
+public:
+    explicit PointCloud(const MeshDescription& mesh) : points_{used_points(mesh)}, places_{{0, {}}} {}
 
-Extent extent_of(const std::vector<glm::dvec3>& points) {
-    if (points.empty()) {
+    explicit PointCloud(const SceneDescription& scene) {
+        for (const MeshDescription& mesh : scene.meshes) {
+            points_.push_back(used_points(mesh));
+        }
+        const SceneGraph graph = build_graph(scene);
+        if (graph.groups.empty()) {
+            for (std::size_t m = 0; m < points_.size(); ++m) {
+                places_.push_back({m, {}});
+            }
+            return;
+        }
+        const FlatGraph flat = flatten(graph, mesh_bounds(scene));
+        for (const FlatInstance& instance : flat.instances) {
+            places_.push_back({static_cast<std::size_t>(instance.mesh),
+                               flat.nodes[static_cast<std::size_t>(instance.node)].world});
+        }
+    }
+
+    template <class Visit> void for_each(const Visit& visit) const {
+        for (const auto& [mesh, world] : places_) {
+            for (const glm::dvec3& p : points_[mesh]) {
+                visit(world(p));
+            }
+        }
+    }
+
+private:
+    std::vector<std::vector<glm::dvec3>> points_; // of each mesh
+    std::vector<std::pair<std::size_t, Affine>> places_;
+};
+
+Extent extent_of(const PointCloud& points) {
+    Box box;
+    points.for_each([&](const glm::dvec3& p) { box.add(p); });
+    if (box.empty()) {
         return {};
     }
-    glm::dvec3 least = points.front();
-    glm::dvec3 most = points.front();
-    for (const glm::dvec3& p : points) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
+    const glm::dvec3& least = box.low;
+    const glm::dvec3& most = box.high;
     // Halves first: the difference of two large numbers may overflow.
     const glm::dvec3 half = 0.5 * most - 0.5 * least;
     Extent extent{0.5 * least + 0.5 * most, std::hypot(half.x, half.y, half.z), least.y};
@@ -80,7 +107,7 @@ glm::dvec3 camera_direction() {
             std::cos(elevation) * std::cos(azimuth)};
 }
 
-Camera camera_for(const std::vector<glm::dvec3>& points, const Settings& settings) {
+Camera camera_for(const PointCloud& points, const Settings& settings) {
     const Extent extent = extent_of(points);
     const glm::dvec3 towards = camera_direction();
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), towards));
@@ -88,12 +115,12 @@ Camera camera_for(const std::vector<glm::dvec3>& points, const Settings& setting
     const double half_height = std::tan(glm::radians(0.5 * fov_degrees)) / margin;
     const double half_width = half_height * settings.width / settings.height;
     double distance = 0.2 * extent.radius;
-    for (const glm::dvec3& p : points) {
+    points.for_each([&](const glm::dvec3& p) {
         const glm::dvec3 from_centre = p - extent.centre;
         const double ahead = glm::dot(from_centre, towards);
         distance = std::max({distance, ahead + std::abs(glm::dot(from_centre, right)) / half_width,
                              ahead + std::abs(glm::dot(from_centre, up)) / half_height});
-    }
+    });
     Camera camera;
     camera.target = extent.centre;
     camera.position = extent.centre + distance * towards;
@@ -140,19 +167,36 @@ MeshDescription floor_under(const Extent& extent) {
     return floor;
 }
 
+SceneDescription empty_scene(const FramingOptions& options) {
+    SceneDescription scene;
+    scene.settings = options.settings;
+    scene.materials = {{"model", {0.72F, 0.66F, 0.60F}}};
+    return scene;
+}
+
+void light_and_frame(SceneDescription& scene, const FramingOptions& options) {
+    const PointCloud points(scene);
+    const Extent extent = extent_of(points);
+    scene.camera = camera_for(points, scene.settings);
+    scene.lights = {light_for(extent)};
+    scene.sky = sky_radiance;
+    if (options.floor) {
+        scene.materials.push_back({"floor", {0.50F, 0.49F, 0.48F}});
+        scene.meshes.push_back(floor_under(extent));
+    }
+}
+
 } // namespace
 
 SceneDescription frame_model(const std::filesystem::path& path, const FramingOptions& options) {
-    SceneDescription scene;
-    scene.settings = options.settings;
-    MeshDescription model;
+    SceneDescription scene = empty_scene(options);
+    MeshDescription& model = scene.meshes.emplace_back();
     model.file = std::filesystem::absolute(path).lexically_normal().string();
     model.cage = std::make_shared<const Mesh>(read_obj(path));
     model.name = model.cage->name;
     model.scheme = options.scheme;
     model.material = "model";
     scene.name = model.name;
-    scene.materials = {{"model", {0.72F, 0.66F, 0.60F}}};
     if (options.up == Up::z) {
         model.rotate.x = -90;
     }
@@ -164,24 +208,38 @@ SceneDescription frame_model(const std::filesystem::path& path, const FramingOpt
             }
         }
     }
-    model.scale = glm::dvec3(scale_for(extent_of(used_points(model)).radius));
-    const Extent extent = extent_of(used_points(model));
-    scene.meshes.push_back(std::move(model));
-    place_camera(scene);
-    place_light_and_sky(scene);
-    if (options.floor) {
-        scene.materials.push_back({"floor", {0.50F, 0.49F, 0.48F}});
-        scene.meshes.push_back(floor_under(extent));
+    model.scale = glm::dvec3(scale_for(extent_of(PointCloud(model)).radius));
+    light_and_frame(scene, options);
+    return scene;
+}
+
+SceneDescription frame_instances(const std::filesystem::path& path, const FramingOptions& options) {
+    SceneDescription scene = empty_scene(options);
+    ObjectDescription& object = scene.objects.emplace_back();
+    object.instances = std::filesystem::absolute(path).lexically_normal().string();
+    object.table = std::make_shared<const InstanceTable>(read_instance_table(path));
+    object.name = path.stem().string();
+    scene.name = object.name;
+    CageCache cages;
+    add_table_meshes(scene, *object.table, path.string(), options.scheme, "model", cages);
+    if (options.up == Up::z) {
+        object.transform.rotate.x = -90;
+    }
+    try {
+        object.transform.scale = glm::dvec3(scale_for(extent_of(PointCloud(scene)).radius));
+        light_and_frame(scene, options);
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("{}: {}", printable(path.string(), 1000), error.what()));
     }
     return scene;
 }
 
 void place_camera(SceneDescription& scene) {
-    scene.camera = camera_for(used_points(scene), scene.settings);
+    scene.camera = camera_for(PointCloud(scene), scene.settings);
 }
 
 void place_light_and_sky(SceneDescription& scene) {
-    scene.lights = {light_for(extent_of(used_points(scene)))};
+    scene.lights = {light_for(extent_of(PointCloud(scene)))};
     scene.sky = sky_radiance;
 }
 

@@ -24,6 +24,9 @@ struct FramingOptions {
 /// 1e30.
 SceneDescription frame_model(const std::filesystem::path& path, const FramingOptions& options);
 
+/// The same for a table of instances.
+SceneDescription frame_instances(const std::filesystem::path& path, const FramingOptions& options);
+
 /// Places the camera so that all faces of all meshes are in the picture.
 void place_camera(SceneDescription& scene);
 

@@ -11,5 +11,11 @@ inline constexpr Range size_range{1, 32768};          // pixels, width and heigh
 inline constexpr Range samples_range{1, 65536};       // a pixel
 inline constexpr Range shadow_samples_range{1, 4096}; // a hit, to the light or the sky
 inline constexpr Range edge_pixels_range{0.01, 1e4};
+inline constexpr Range coordinate_range{-1e30, 1e30};
+inline constexpr Range angle_range{-1e6, 1e6};   // degrees
+inline constexpr Range scale_range{1e-30, 1e30}; // of what is not mirrored
+inline constexpr Range rate_range{1e-3, 1e3};    // factor on a target edge length
+inline constexpr Range level_offset_range{-32, 32};
+inline constexpr Range copies_range{1, 1000000}; // of an array, along one axis
 
 } // namespace razor

@@ -3,6 +3,8 @@
 // double-precision origin is subtracted from each mesh before anything becomes single precision.
 #pragma once
 
+#include "razor/scene/graph/graph.h"
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -91,6 +93,7 @@ struct Settings {
 struct Scene {
     std::string name;
     std::vector<Mesh> meshes;
+    SceneGraph graph; // where they are drawn; without groups: each once, where its points lie
     std::vector<Material> materials;
     std::vector<RectangleLight> lights; // at most one for now
     glm::vec3 sky{0};                   // constant radiance

@@ -4,6 +4,7 @@
 #include "razor/scene/framing.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/scene_objects.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/toml_table.h"
@@ -18,7 +19,6 @@
 namespace razor {
 namespace {
 
-constexpr Range coordinates{-1e30, 1e30};
 constexpr Range radiances{0, 1e9};
 
 void check_names(const std::vector<std::string>& names, std::string_view name, const TomlTable& table) {
@@ -42,9 +42,9 @@ Settings read_settings(TomlTable table) {
 
 Camera read_camera(TomlTable table) {
     Camera camera;
-    camera.position = table.vector("position", camera.position, coordinates);
-    camera.target = table.vector("target", camera.target, coordinates);
-    camera.up = table.vector("up", camera.up, coordinates);
+    camera.position = table.vector("position", camera.position, coordinate_range);
+    camera.target = table.vector("target", camera.target, coordinate_range);
+    camera.up = table.vector("up", camera.up, coordinate_range);
     camera.fov_degrees = table.number("fov", camera.fov_degrees, {1e-3, 179});
     table.finish();
     if (camera.position == camera.target) {
@@ -59,9 +59,9 @@ Camera read_camera(TomlTable table) {
 
 RectangleLight read_light(TomlTable table) {
     RectangleLight light;
-    light.corner = table.vector("corner", light.corner, coordinates);
-    light.edge_u = table.vector("edge_u", light.edge_u, coordinates);
-    light.edge_v = table.vector("edge_v", light.edge_v, coordinates);
+    light.corner = table.vector("corner", light.corner, coordinate_range);
+    light.edge_u = table.vector("edge_u", light.edge_u, coordinate_range);
+    light.edge_v = table.vector("edge_v", light.edge_v, coordinate_range);
     light.radiance = glm::vec3(table.vector_or_number("radiance", glm::dvec3(light.radiance), radiances));
     table.finish();
     if (light.edge_u == glm::dvec3(0) || light.edge_v == glm::dvec3(0) ||
@@ -104,7 +104,7 @@ void read_shape(TomlTable& table, MeshDescription& mesh) {
 }
 
 MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
-                          const std::filesystem::path& folder) {
+                          const std::filesystem::path& folder, CageCache& cages) {
     MeshDescription mesh;
     mesh.name = table.text("name", "");
     const std::string file = table.text("file", "");
@@ -121,9 +121,9 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
     std::transform(scheme_words.begin(), scheme_words.end(), schemes.begin(),
                    [](const auto& word) { return word.first; });
     mesh.scheme = scheme_words[table.choice("scheme", 0, schemes)].second;
-    mesh.scale = table.vector_or_number("scale", mesh.scale, {1e-30, 1e30});
-    mesh.rotate = table.vector("rotate", mesh.rotate, {-1e6, 1e6});
-    mesh.translate = table.vector("translate", mesh.translate, coordinates);
+    mesh.scale = table.vector_or_number("scale", mesh.scale, scale_range);
+    mesh.rotate = table.vector("rotate", mesh.rotate, angle_range);
+    mesh.translate = table.vector("translate", mesh.translate, coordinate_range);
     mesh.edge_length = table.number("edge_length", mesh.edge_length, {0, 1e30});
 
     std::vector<std::string_view> names;
@@ -136,7 +136,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         if (table.has("file") && file.empty()) {
             throw UserError("the file name is empty; give an OBJ file");
         }
-        load_cage(mesh);
+        load_cage(mesh, cages);
     } catch (const UserError& error) {
         table.fail(table.has("file") ? "file" : "shape", error.what());
     }
@@ -169,9 +169,11 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     if (scene.materials.empty()) {
         scene.materials.push_back({.name = "default", .albedo = Material{}.albedo});
     }
+    CageCache cages;
     for (TomlTable& mesh : root.tables("mesh")) {
-        scene.meshes.push_back(read_mesh(std::move(mesh), scene.materials, folder));
+        scene.meshes.push_back(read_mesh(std::move(mesh), scene.materials, folder, cages));
     }
+    read_objects(root, scene, folder, cages);
     root.finish();
     if (scene.meshes.empty()) {
         root.fail("mesh", "no meshes; write at least one [[mesh]]");
@@ -213,7 +215,7 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
 }
 
 bool is_model_file(const std::filesystem::path& path) {
-    return extension_of(path) == ".obj";
+    return extension_of(path) == ".obj" || extension_of(path) == ".instances";
 }
 
 SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing) {
@@ -221,14 +223,15 @@ SceneDescription describe(const std::filesystem::path& path, const FramingOption
         return read_scene_file(path);
     }
     if (is_model_file(path)) {
-        return frame_model(path, framing);
+        return extension_of(path) == ".obj" ? frame_model(path, framing) : frame_instances(path, framing);
     }
     if (std::filesystem::is_directory(path)) {
-        throw UserError(fmt::format("{}: is a directory; give a file ending in .toml or .obj",
+        throw UserError(fmt::format("{}: is a directory; give a file ending in .toml, .obj or .instances",
                                     printable(path.string(), 1000)));
     }
-    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in .toml or .obj",
-                                printable(path.string(), 1000)));
+    throw UserError(
+        fmt::format("{}: neither a scene file nor a model; give a file ending in .toml, .obj or .instances",
+                    printable(path.string(), 1000)));
 }
 
 Scene load_scene(const std::filesystem::path& path) {

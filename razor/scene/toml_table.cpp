@@ -134,6 +134,48 @@ glm::dvec3 TomlTable::vector(std::string_view key, const glm::dvec3& preset, Ran
     return result;
 }
 
+glm::ivec3 TomlTable::whole_vector(std::string_view key, const glm::ivec3& preset, Range range) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return preset;
+    }
+    const toml::array* const array = node->as_array();
+    if (array == nullptr || array->size() != 3) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write three whole numbers [a, b, c]", full(key), described(*node)));
+    }
+    glm::ivec3 result;
+    for (int i = 0; i < 3; ++i) {
+        result[i] = checked_whole((*array)[static_cast<std::size_t>(i)], full(key), range);
+    }
+    return result;
+}
+
+std::optional<std::array<std::array<double, 4>, 3>> TomlTable::rows_of_four(std::string_view key,
+                                                                            Range range) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return std::nullopt;
+    }
+    constexpr std::string_view mend = "write three rows of four numbers [[a, b, c, d], [...], [...]]";
+    const toml::array* const rows = node->as_array();
+    if (rows == nullptr || rows->size() != 3) {
+        fail_at(file_name_, node->source(), fmt::format("{} is {}; {}", full(key), described(*node), mend));
+    }
+    std::array<std::array<double, 4>, 3> result{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const toml::array* const row = (*rows)[i].as_array();
+        if (row == nullptr || row->size() != 4) {
+            fail_at(file_name_, (*rows)[i].source(),
+                    fmt::format("a row of {} is {}; {}", full(key), described((*rows)[i]), mend));
+        }
+        for (std::size_t j = 0; j < 4; ++j) {
+            result[i][j] = checked((*row)[j], full(key), range);
+        }
+    }
+    return result;
+}
+
 glm::dvec3 TomlTable::vector_or_number(std::string_view key, const glm::dvec3& preset, Range range) {
     if (table_ != nullptr && table_->contains(key) && table_->get(key)->is_number()) {
         return glm::dvec3(number(key, 0, range));

@@ -7,6 +7,8 @@
 #include <glm/vec3.hpp>
 #include <toml++/toml.h>
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +39,10 @@ public:
     glm::dvec3 vector(std::string_view key, const glm::dvec3& preset, Range range);
     /// Three numbers, or one that stands for all three.
     glm::dvec3 vector_or_number(std::string_view key, const glm::dvec3& preset, Range range);
+    /// Three whole numbers.
+    glm::ivec3 whole_vector(std::string_view key, const glm::ivec3& preset, Range range);
+    /// Three rows of four numbers, where `key` is stated.
+    std::optional<std::array<std::array<double, 4>, 3>> rows_of_four(std::string_view key, Range range);
     /// The index of the value in `words`.
     std::size_t choice(std::string_view key, std::size_t preset, std::span<const std::string_view> words);
     /// A table inside this one.
