@@ -74,7 +74,7 @@ private:
         const std::string name = table.text(key, "");
         const auto times = std::count(names.begin(), names.end(), name);
         if (times > 1) {
-            table.fail(key, fmt::format("{} {}s are called '{}'; give them names of their own", times, key,
+            table.fail(key, fmt::format("{} [[{}]] are called '{}'; give them names of their own", times, key,
                                         printable(name)));
         }
         if (names.empty()) {

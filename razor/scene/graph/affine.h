@@ -44,7 +44,7 @@ struct Transform {
     glm::dvec3 scale{1, 1, 1};     // not zero; negative mirrors
     glm::dvec3 rotate{0, 0, 0};    // degrees, about x, then y, then z; quarter turns are exact
     glm::dvec3 translate{0, 0, 0}; // units of the parent
-    std::optional<Affine> matrix;
+    std::optional<Affine> matrix{};
 };
 
 Affine to_affine(const Transform& transform);

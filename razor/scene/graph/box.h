@@ -33,7 +33,8 @@ struct Box {
 };
 
 /// Holds map(p) for every p in `box`, rounding included, and grows by 1/256 of its largest extent: as much
-/// as the frame grows the boxes of patches, so that it holds those too (razor/kernels/refit.h).
+/// as the frame grows the boxes of patches, so that it holds those too, before they are rounded
+/// (razor/kernels/refit.h).
 Box bounds_of_image(const Affine& map, const Box& box);
 
 /// The box of the points that faces use. A Catmull-Clark limit surface lies in their hull (subdivision masks

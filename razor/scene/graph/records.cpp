@@ -28,11 +28,12 @@ void put_rows(float (&rows)[9], const glm::dmat3& m) {
 GraphNodeRecord pack_node(const FlatNode& node, const glm::dvec3& origin) {
     GraphNodeRecord record{};
     for (int axis = 0; axis < 3; ++axis) {
-        // The difference is rounded once in double: a step outwards makes up for it.
         const double low = node.bounds.low[axis] - origin[axis];
         const double high = node.bounds.high[axis] - origin[axis];
-        record.low[axis] = below(std::nextafter(low, -std::numeric_limits<double>::infinity()));
-        record.high[axis] = above(std::nextafter(high, std::numeric_limits<double>::infinity()));
+        // More than control points, patches' boxes and grids can be off in single precision.
+        const double slack = 1e-6 * std::max(std::abs(low), std::abs(high));
+        record.low[axis] = below(low - slack);
+        record.high[axis] = above(high + slack);
     }
     record.first_child = node.first_child;
     record.child_count = node.child_count;

@@ -10,7 +10,8 @@
 
 namespace razor {
 
-/// Box in scene coordinates (world minus the scene's origin), rounded outwards: it holds the double one.
+/// Box in scene coordinates (world minus the scene's origin). It holds the double one, and whatever becomes
+/// of what lies in it in single precision: patches' boxes as the frame refits them, and their grids.
 struct GraphNodeRecord {
     float low[3], high[3];
     std::int32_t first_child; // children are consecutive

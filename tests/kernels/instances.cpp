@@ -1,0 +1,324 @@
+// Scene graphs as frames see them: the pictures of models written out where the graph puts them, levels of
+// detail, shared topology, bounds.
+#include "tests/kernels/cages.h"
+#include "tests/kernels/targets.h"
+#include "tests/scene/temporary_folder.h"
+
+#include "razor/native/render.h"
+#include "razor/scene/graph/records.h"
+#include "razor/scene/obj_reader.h"
+#include "razor/scene/scene_file.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace razor::test {
+namespace {
+
+const KernelTable& best_target() {
+    return *native_targets().back();
+}
+
+std::vector<float> rendered(const Scene& scene, const KernelTable& kernels) {
+    Frame frame(scene, {});
+    frame.render(kernels, 0);
+    const FrameHeader& h = frame.header();
+    const float* film = h.film.get();
+    return {film, film + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes};
+}
+
+std::size_t hit_pixels(const Scene& scene, const std::vector<float>& film) {
+    const auto pixels =
+        static_cast<std::size_t>(scene.settings.width) * static_cast<std::size_t>(scene.settings.height);
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < pixels; ++i)
+        hits += std::isfinite(film[film_depth * pixels + i]) ? 1 : 0;
+    return hits;
+}
+
+std::size_t differing_bits(const std::vector<float>& a, const std::vector<float>& b) {
+    if (a.size() != b.size())
+        return std::max(a.size(), b.size());
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        n += std::memcmp(&a[i], &b[i], sizeof(float)) != 0 ? 1 : 0;
+    return n;
+}
+
+/// Coordinates become multiples of 2^-12, so that moving by such multiples, doubling and quarter turns are
+/// exact.
+Mesh snapped(Mesh mesh) {
+    for (glm::dvec3& p : mesh.points)
+        p = glm::round(p * 4096.0) / 4096.0;
+    return mesh;
+}
+
+FlatGraph flattened(const Scene& scene) {
+    std::vector<Box> boxes;
+    for (const Mesh& mesh : scene.meshes)
+        boxes.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
+    return flatten(drawn_graph(scene.graph, scene.meshes.size()), boxes);
+}
+
+const Affine& world_of(const FlatGraph& flat, const FlatInstance& instance) {
+    return flat.nodes[static_cast<std::size_t>(instance.node)].world;
+}
+
+/// The same scene without a graph: every instance a model of its own, written to an OBJ file where it stands
+/// and read again.
+Scene written_out(const Scene& scene, const TemporaryFolder& folder) {
+    Scene result = scene;
+    result.graph = {};
+    result.meshes.clear();
+    const FlatGraph flat = flattened(scene);
+    for (const FlatInstance& instance : flat.instances) {
+        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        std::string text;
+        for (const glm::dvec3& point : mesh.points) {
+            const glm::dvec3 p = world_of(flat, instance)(point);
+            text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+        }
+        std::size_t corner = 0;
+        for (const int size : mesh.face_sizes) {
+            text += 'f';
+            for (int i = 0; i < size; ++i)
+                text += fmt::format(" {}", mesh.face_vertices[corner++] + 1);
+            text += '\n';
+        }
+        Mesh copy = read_obj(folder.file("copy.obj", text));
+        copy.scheme = mesh.scheme;
+        copy.edge_length = mesh.edge_length;
+        copy.material = instance.material >= 0 ? instance.material : mesh.material;
+        result.meshes.push_back(copy);
+    }
+    return result;
+}
+
+Placement place(const Transform& local) {
+    return {.name = "mesh", .mesh = 0, .local = local};
+}
+
+/// A mesh many times: nested, in an array, mirrored, turned by quarters, at scales of powers of two.
+Scene crowd(const Mesh& mesh) {
+    Scene scene = scene_of(snapped(mesh), 40);
+    SceneGraph& graph = scene.graph;
+    graph.groups = {{"scene", {}}, {"pair", {}}};
+    graph.groups[1].placements = {
+        place({}), place({.scale = {-1, 1, 1}, .rotate = {0, 90, 0}, .translate = {0, 2.5, 0}})};
+    Placement row{.name = "row", .group = 1, .local = {.scale = glm::dvec3(0.5), .rotate = {0, 0, -90}}};
+    row.local.translate = {-2.25, 0.125, 0};
+    row.copies = {2, 1, 2};
+    row.spacing = {1.75, 0, -1.5};
+    graph.groups[0].placements = {row, place({.scale = glm::dvec3(2), .translate = {0.5, -5, -1}})};
+    Placement red = place({.scale = glm::dvec3(0.25), .rotate = {90, 0, 90}, .translate = {1.5, 0.5, 2}});
+    scene.materials.push_back({"red", {0.9F, 0.1F, 0.1F}});
+    red.material = 1;
+    graph.groups[0].placements.push_back(red);
+    return scene;
+}
+
+std::vector<Scene> crowds() {
+    std::vector<Scene> all;
+    for (const Mesh& mesh :
+         {cube_cage(), urchin_cage(), bilinear(torus_cage(9, 6)), bilinear(stretched(cube_cage()))})
+        all.push_back(crowd(mesh));
+    all.push_back(all.front());
+    all.back().meshes[0].edge_length = 0; // as the camera sees it
+    return all;
+}
+
+TEST(Instances, LookLikeModelsWrittenOut) {
+    const TemporaryFolder folder;
+    for (const Scene& scene : crowds()) {
+        const Scene copies = written_out(scene, folder);
+        ASSERT_EQ(copies.meshes.size(), 10U);
+        for (const KernelTable* target : all_targets()) {
+            const std::vector<float> film = rendered(scene, *target);
+            EXPECT_GT(hit_pixels(scene, film), 150U) << scene.name;
+            EXPECT_EQ(differing_bits(film, rendered(copies, *target)), 0U)
+                << scene.name << ", " << target->name;
+        }
+    }
+}
+
+/// Any turn and distance: control points may differ by single-precision rounding of what double precision
+/// rounded before.
+TEST(Instances, LookNearlyLikeModelsWrittenOutWhereRoundingDiffers) {
+    const TemporaryFolder folder;
+    std::mt19937 random(3); // NOLINT(cert-msc32-c,cert-msc51-cpp)
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (const Mesh& mesh : {cube_cage(), urchin_cage(), bilinear(torus_cage(9, 6))}) {
+        Scene scene = scene_of(mesh, 40);
+        scene.graph.groups = {{"scene", {}}};
+        for (int i = 0; i < 6; ++i)
+            scene.graph.groups[0].placements.push_back(
+                place({.scale = glm::dvec3(i % 2 == 0 ? 0.5 : -0.5),
+                       .rotate = 180.0 * glm::dvec3(any(random), any(random), any(random)),
+                       .translate = 1.5 * glm::dvec3(any(random), any(random), any(random))}));
+        const std::vector<float> film = rendered(scene, best_target());
+        const std::vector<float> expected = rendered(written_out(scene, folder), best_target());
+        EXPECT_GT(hit_pixels(scene, film), 100U);
+        const std::size_t pixels = film.size() / film_planes;
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const float a = film[film_depth * pixels + i];
+            const float b = expected[film_depth * pixels + i];
+            moved += a == b || std::abs(a - b) <= 1e-5F * b ? 0 : 1;
+        }
+        EXPECT_LE(moved, pixels / 200) << scene.name;
+    }
+}
+
+TEST(Instances, TargetEdgesFollowOffsetsRatesAndScale) {
+    const auto edge = [](const Transform& local, int level_offset, double rate, double stated) {
+        Scene scene = scene_of(cube_cage(), 40);
+        scene.meshes[0].edge_length = stated;
+        Placement p = place(local);
+        p.level_offset = level_offset;
+        p.rate = rate;
+        scene.graph.groups = {{"scene", {p}}};
+        Frame frame(scene, {});
+        return frame.header().meshes.get()[0].edge_length;
+    };
+    EXPECT_EQ(edge({}, 0, 1, 0.25), 0.25F);
+    EXPECT_EQ(edge({}, 3, 1, 0.25), 2.0F);
+    EXPECT_EQ(edge({}, -3, 1, 0.25), 0.03125F);
+    EXPECT_EQ(edge({}, 0, 1.4, 0.25), 0.25F) << "rounded with the length it multiplies";
+    EXPECT_EQ(edge({}, 0, 1.5, 0.25), 0.5F);
+    EXPECT_EQ(edge({}, 0, 1.5, 0.2), 0.25F) << "0.3 rounds down";
+    EXPECT_EQ(edge({.scale = glm::dvec3(8)}, 0, 1, 0.25), 0.25F) << "world units";
+    EXPECT_EQ(edge({.scale = glm::dvec3(8), .rotate = {10, 20, 30}}, 0, 1, 0.25), 0.25F);
+    // Scaled by 1.25, the mesh is diced as if by 1: instances of nearby scale share levels.
+    EXPECT_EQ(edge({.scale = glm::dvec3(1.25)}, 0, 1, 0.25), 0.25F * 1.25F);
+    EXPECT_EQ(edge({.scale = {1, 1.75, 0.1}}, 0, 1, 0.25), 0.25F * 1.75F / 2);
+    EXPECT_EQ(edge({}, 0, 2, 0), 2 * edge({}, 0, 1, 0));
+
+    // And as a picture: one level up is the mesh diced at twice the length.
+    Scene coarse = scene_of(urchin_cage(), 40);
+    coarse.graph.groups = {{"scene", {place({})}}};
+    coarse.graph.groups[0].placements[0].level_offset = 1;
+    Scene twice = scene_of(urchin_cage(), 20);
+    EXPECT_EQ(differing_bits(rendered(coarse, best_target()), rendered(twice, best_target())), 0U);
+    EXPECT_GT(
+        differing_bits(rendered(coarse, best_target()), rendered(scene_of(urchin_cage(), 40), best_target())),
+        0U);
+}
+
+TEST(Instances, ShareTopologyAndItsPages) {
+    const auto statistics = [](int copies) {
+        Scene scene = scene_of(urchin_cage(), 40);
+        Placement p = place({});
+        p.copies = {copies, 1, 1};
+        p.spacing = {4, 0, 0};
+        scene.graph.groups = {{"scene", {p}}};
+        Frame frame(scene, {});
+        frame.build_all(best_target());
+        return frame.statistics();
+    };
+    const FrameStatistics one = statistics(1);
+    const FrameStatistics many = statistics(9);
+    EXPECT_GT(one.page_bytes, 0);
+    EXPECT_EQ(many.page_bytes, one.page_bytes);
+    EXPECT_EQ(many.meshes, 1);
+    EXPECT_EQ(many.instances, 9);
+    EXPECT_EQ(many.patches, 9 * one.patches);
+    EXPECT_EQ(many.counters.patches_opened, 9 * one.counters.patches_opened);
+}
+
+TEST(Instances, LieInTheirBounds) {
+    std::mt19937 random(8); // NOLINT(cert-msc32-c,cert-msc51-cpp)
+    std::uniform_real_distribution<double> any(-1, 1);
+    std::size_t vertices = 0;
+    for (const Mesh& mesh : {cube_cage(), stretched(urchin_cage()), bilinear(torus_cage(9, 6))}) {
+        Scene scene = scene_of(mesh, 30);
+        scene.graph.groups = {{"scene", {}}};
+        for (int i = 0; i < 12; ++i) {
+            Affine map{glm::dmat3(0), 20.0 * glm::dvec3(any(random), any(random), any(random))};
+            for (int column = 0; column < 3; ++column)
+                map.linear[column] = glm::dvec3(any(random), any(random), any(random));
+            if (!is_degenerate(map.linear))
+                scene.graph.groups[0].placements.push_back(place({.matrix = map}));
+        }
+        const FlatGraph flat = flattened(scene);
+        Frame frame(scene, {});
+        frame.build_all(best_target());
+        const FrameHeader& h = frame.header();
+        const GraphRecords records = pack(flat, std::vector<glm::dvec3>{glm::dvec3(0)}, frame.origin());
+        const auto inside = [&](int instance, const glm::dvec3& point) {
+            const auto node =
+                static_cast<std::size_t>(flat.instances[static_cast<std::size_t>(instance)].node);
+            const GraphNodeRecord& r = records.nodes[node];
+            return Box{{r.low[0], r.low[1], r.low[2]}, {r.high[0], r.high[1], r.high[2]}}.contains(point);
+        };
+        for (int p = 0; p < h.patch_count; ++p) {
+            const int instance = h.patches.get()[p].mesh;
+            const float* bounds = h.bounds.get() + p;
+            const std::ptrdiff_t stride = h.bounds_stride;
+            EXPECT_TRUE(inside(instance, {bounds[0], bounds[stride], bounds[2 * stride]}));
+            EXPECT_TRUE(inside(instance, {bounds[3 * stride], bounds[4 * stride], bounds[5 * stride]}));
+            const float* origin = h.meshes.get()[instance].origin;
+            const OpenPatch& open = h.trees.get()[0].patches.get()[p];
+            for (int b = 0; b < open.blocks; ++b) {
+                const Line* line =
+                    h.grids.get() + open.first_line + static_cast<std::ptrdiff_t>(b) * open.block_lines;
+                const auto& block = *reinterpret_cast<const BlockHeader*>(line);
+                const auto* x = reinterpret_cast<const float*>(line) + block_header_words;
+                for (int v = 0; v < (block.quads_u + 1) * (block.quads_v + 1); ++v, ++vertices)
+                    ASSERT_TRUE(
+                        inside(instance, {double{x[v]} + origin[0], double{x[v + block.stride]} + origin[1],
+                                          double{x[v + 2 * block.stride]} + origin[2]}));
+            }
+        }
+    }
+    EXPECT_GT(vertices, 20000U);
+}
+
+/// A unit cube 1e12 away, where double precision is 1e-4 fine: its edges keep their lengths.
+TEST(Instances, KeepTheirShapeFarAway) {
+    Scene scene = scene_of(snapped(cube_cage()), 40);
+    scene.graph.groups = {{"scene", {place({.rotate = {0, 90, 0}, .translate = {1e12 + 0.3, 0.1, 7}})}}};
+    Frame frame(scene, {});
+    const float* points = frame.header().points.get();
+    const std::vector<glm::dvec3>& cage = scene.meshes[0].points;
+    for (std::size_t i = 0; i < cage.size(); ++i) {
+        const glm::dvec3 turned(cage[i].z, cage[i].y, -cage[i].x);
+        const glm::dvec3 first(cage[0].z, cage[0].y, -cage[0].x);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(static_cast<double>(points[3 * i + static_cast<std::size_t>(k)]) - points[k],
+                        (turned - first)[k], 1e-6);
+    }
+}
+
+TEST(Instances, CityLooksLikeModelsWrittenOut) {
+    const std::filesystem::path table =
+        std::filesystem::path(RAZOR_SHARED_SCENES) / "kenney_city/city.instances";
+    if (!std::filesystem::exists(table))
+        GTEST_SKIP() << "no shared scene " << table;
+    FramingOptions framing;
+    framing.scheme = Scheme::bilinear;
+    framing.settings = {.width = 96, .height = 64, .samples = 1, .light_samples = 1, .sky_samples = 1};
+    const Scene scene = build_scene(describe(table, framing));
+    EXPECT_EQ(scene.meshes.size(), 16U) << "15 models and the floor";
+    const TemporaryFolder folder;
+    const std::vector<float> film = rendered(scene, best_target());
+    const std::vector<float> expected = rendered(written_out(scene, folder), best_target());
+    EXPECT_GT(hit_pixels(scene, film), 96U * 64U / 2);
+    const std::size_t pixels = film.size() / film_planes;
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float a = film[film_depth * pixels + i];
+        const float b = expected[film_depth * pixels + i];
+        moved += a == b || std::abs(a - b) <= 1e-5F * b ? 0 : 1;
+    }
+    EXPECT_LE(moved, pixels / 1000);
+    Frame frame(scene, {});
+    EXPECT_EQ(frame.statistics().instances, 122);
+}
+
+} // namespace
+} // namespace razor::test
