@@ -234,7 +234,7 @@ void Frame::Impl::place_scene(const Scene& scene) {
     auto* xyz = region<float>("control points", -1, total.points * 3);
     header->points.set(xyz);
     for (const Instance& i : geometry.instances) {
-        const Placer place(geometry, i);
+        const Affine place = relative_to_origin(geometry, i);
         for (const glm::dvec3& point : meshes[static_cast<std::size_t>(i.mesh)].points) {
             const glm::dvec3 p = place(point);
             for (int k = 0; k < 3; ++k)

@@ -78,9 +78,9 @@ SceneGeometry locate_scene(const Scene& scene) {
     return g;
 }
 
-Placer::Placer(const SceneGeometry& geometry, const Instance& instance)
-    : relative_(instance.world), moved_only_(instance.world.linear == glm::dmat3(1)) {
-    relative_.translation -= geometry.origin + glm::dvec3(instance.origin);
+Affine relative_to_origin(const SceneGeometry& geometry, const Instance& instance) {
+    return {instance.world.linear,
+            instance.world.translation - (geometry.origin + glm::dvec3(instance.origin))};
 }
 
 } // namespace razor

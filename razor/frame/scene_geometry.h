@@ -26,19 +26,9 @@ struct SceneGeometry {
 /// The meshes must be valid. Throws UserError where the graph cannot be laid out (see flatten()).
 SceneGeometry locate_scene(const Scene& scene);
 
-/// A point of an instance's mesh relative to the instance's origin. Relative in double precision too: what is
-/// small and far away keeps its shape.
-class Placer {
-public:
-    Placer(const SceneGeometry& geometry, const Instance& instance);
-    glm::dvec3 operator()(const glm::dvec3& p) const {
-        return moved_only_ ? p + relative_.translation : relative_(p);
-    }
-
-private:
-    Affine relative_;
-    bool moved_only_;
-};
+/// From the points of an instance's mesh to those relative to the instance's origin. The origin is taken from
+/// the translation, not from the points: what is small and far away keeps its shape.
+Affine relative_to_origin(const SceneGeometry& geometry, const Instance& instance);
 
 /// The power of two nearest to `length` in the logarithm; length > 0.
 double nearest_power_of_two(double length);

@@ -113,10 +113,12 @@ private:
         read_instances(table, object);
         table.finish();
         for (int axis = 0; axis < 3; ++axis) {
-            if (object.copies[axis] > 1 && object.spacing[axis] == 0 && object.spacing == glm::dvec3(0)) {
+            if (object.copies[axis] > 1 && object.spacing[axis] == 0) {
                 table.fail(
                     "array",
-                    "an array without spacing puts all copies in one place; write spacing = [x, y, z]");
+                    fmt::format("an array of {} along {} without spacing there puts copies in one place; "
+                                "write spacing = [x, y, z]",
+                                object.copies[axis], "xyz"[axis]));
             }
         }
         if (object.name.empty()) {

@@ -220,7 +220,12 @@ TEST(Instances, ShareTopologyAndItsPages) {
         frame.build_all(best_target());
         return frame.statistics();
     };
+    Scene apart = scene_of(urchin_cage(), 40);
+    apart.meshes.resize(9, apart.meshes[0]);
+    Frame nine(apart, {});
+    nine.build_all(best_target());
     const FrameStatistics one = statistics(1);
+    EXPECT_EQ(nine.statistics().page_bytes, 9 * one.page_bytes) << "meshes of their own do not";
     const FrameStatistics many = statistics(9);
     EXPECT_GT(one.page_bytes, 0);
     EXPECT_EQ(many.page_bytes, one.page_bytes);
@@ -281,7 +286,9 @@ TEST(Instances, LieInTheirBounds) {
 /// A unit cube 1e12 away, where double precision is 1e-4 fine: its edges keep their lengths.
 TEST(Instances, KeepTheirShapeFarAway) {
     Scene scene = scene_of(snapped(cube_cage()), 40);
-    scene.graph.groups = {{"scene", {place({.rotate = {0, 90, 0}, .translate = {1e12 + 0.3, 0.1, 7}})}}};
+    scene.graph.groups = {
+        {"scene",
+         {place({.scale = glm::dvec3(0.37), .rotate = {0, 90, 0}, .translate = {1e12 + 0.3, 0.1, 7}})}}};
     Frame frame(scene, {});
     const float* points = frame.header().points.get();
     const std::vector<glm::dvec3>& cage = scene.meshes[0].points;
@@ -290,8 +297,25 @@ TEST(Instances, KeepTheirShapeFarAway) {
         const glm::dvec3 first(cage[0].z, cage[0].y, -cage[0].x);
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(static_cast<double>(points[3 * i + static_cast<std::size_t>(k)]) - points[k],
-                        (turned - first)[k], 1e-6);
+                        0.37 * (turned - first)[k], 1e-6);
     }
+}
+
+TEST(Instances, StandWhereDoublePrecisionPutsThem) {
+    Scene scene = scene_of(cube_cage(), 40);
+    scene.graph.groups = {{"scene",
+                           {place({.rotate = {10, 20, 30}, .translate = {1000.3, 0.1, 7.7}}),
+                            place({.scale = {0.3, -0.7, 1.1}, .translate = {-57.7, 3.3, 0.9}})}}};
+    const FlatGraph flat = flattened(scene);
+    Frame frame(scene, {});
+    const float* p = frame.header().points.get();
+    for (std::size_t i = 0; i < 2; ++i)
+        for (const glm::dvec3& point : scene.meshes[0].points) {
+            const glm::dvec3 expected = world_of(flat, flat.instances[i])(point);
+            const float* origin = frame.header().meshes.get()[i].origin;
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(frame.origin()[k] + origin[k] + *p++, expected[k], 5e-7);
+        }
 }
 
 TEST(Instances, CityLooksLikeModelsWrittenOut) {

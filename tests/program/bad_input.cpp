@@ -32,6 +32,19 @@ protected:
         folder_.file("key.toml", "[settings]\nsamlpes = 3\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("type.toml", "[settings]\nsamples = \"3\"\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("range.toml", "[settings]\nsize = [0, 5]\n[[mesh]]\nfile = \"good.obj\"\n");
+        folder_.file("good.instances", "good.obj 0 0 0\ngood.obj 1 2 3 90 0.5\n");
+        folder_.file("empty.instances", "");
+        folder_.file("random.instances", noise);
+        folder_.file("row.instances", "good.obj 0 0 0\ngood.obj 0 0\n");
+        folder_.file("lost.instances", "good.obj 0 0 0\nlost.obj 0 0 0\n");
+        folder_.file("far.instances", "good.obj 1e19 0 0\n");
+        folder_.file("flat.toml",
+                     "[[mesh]]\nname = \"a\"\nfile = \"good.obj\"\n[[object]]\nmesh = \"a\"\nscale = 0\n");
+        folder_.file("cycle.toml", "[[group]]\nname = \"a\"\n[[group.object]]\ngroup = \"a\"\n");
+        folder_.file(
+            "many.toml",
+            "[[mesh]]\nname = \"a\"\nfile = \"good.obj\"\n[[object]]\nmesh = \"a\"\narray = [3000, 3000, "
+            "1]\nspacing = [1, 1, 1]\n");
         folder_.file("lost.toml", "[[mesh]]\nfile = \"lost.obj\"\n");
         std::filesystem::create_directory(folder_ / "folder.obj");
         std::filesystem::create_directory(folder_ / "folder.toml");
@@ -73,6 +86,14 @@ TEST_F(Razor, RefusesBadInput) {
         {"type.toml", "type.toml:2:11: settings.samples is text"},
         {"range.toml", "range.toml:2:9: settings.size = 0 is out of range"},
         {"lost.toml", "lost.obj: no such file"},
+        {"empty.instances", "empty.instances: is empty"},
+        {"random.instances", "random.instances:"},
+        {"row.instances", "row.instances:2: 2 numbers after the file name"},
+        {"lost.instances", "lost.instances:2: "},
+        {"far.instances", "far.instances: object 'far/line 1' reaches beyond 1e+18"},
+        {"flat.toml", "flat.toml:6:9: the object's scale flattens it"},
+        {"cycle.toml", "cycle.toml:2:8: groups contain each other ('a' in 'a')"},
+        {"many.toml", "many.toml:4:1: the scene graph has more than 4194304 instances"},
         {"good.obj --size 0x5", "--size"},
         {"good.obj --size 512", "--size '512'"},
         {"good.obj --size 5x-5", "--size"},
@@ -148,6 +169,8 @@ TEST_F(Razor, WritesPicturesAndStatistics) {
         EXPECT_NE(film.find(plane.name), nullptr) << plane.name;
     }
     EXPECT_TRUE(std::filesystem::exists(folder_ / "b.png"));
+    EXPECT_EQ(razor("render good.instances --size 20x10 --spp 1 -o i.exr").code, 0);
+    EXPECT_EQ(read_exr(folder_ / "i.exr").width, 20);
     std::ifstream file(folder_ / "s.json");
     const nlohmann::json statistics = nlohmann::json::parse(file);
     EXPECT_EQ(statistics.at("options").at("threads"), 2);
