@@ -157,27 +157,33 @@ TEST(Tiles, ADeadlockAcrossTilesIsReported) {
     EXPECT_THROW(s.run(tiled(2, 1, 1), 2, [&](int w) { await(s.word(w)); }), Deadlock);
 }
 
-// The frame's end: what lasts is written back, what dies with the frame is not.
+// The frame's end: what lasts is written back, what dies with the frame is not, from L1s and L2s.
 TEST(Tiles, TheFramesEndDropsTransientLines) {
+    Config c = tiled(2, 1, 1);
+    auto in_l1 = static_cast<int>(c.l1.size_bytes / c.l1.line_bytes);
+    int lines = 3 * in_l1; // a tile: two thirds of them have been written back to its L2
+    ASSERT_LT(lines * c.l1.line_bytes, c.l2.size_bytes);
     for (bool transient : {false, true}) {
         isa::address_space space(std::uint64_t{1} << 24);
-        std::byte* data = space.add("data", -1, 65536, transient);
-        Report r = Machine(tiled(2, 1, 1)).run(space, 2, {"work"}, [&](int w) {
-            for (int i = 0; i < 10; ++i)
-                store(here, data + (w * 10 + i) * 64, 4, stamp{}, stamp{});
+        std::byte* data = space.add("data", -1, std::uint64_t{1} << 20, transient);
+        Report r = Machine(c).run(space, 2, {"work"}, [&](int w) {
+            for (int i = 0; i < lines; ++i)
+                store(here, data + (w * lines + i) * c.l1.line_bytes, 4, stamp{}, stamp{});
         });
-        EXPECT_EQ(r.memory.writes, transient ? 0U : 20U);
-        EXPECT_EQ(r.l1_total().dropped + r.l2_total().dropped, transient ? 20U : 0U);
+        EXPECT_EQ(r.memory.writes, transient ? 0U : u(2 * lines));
+        EXPECT_EQ(r.l1_total().dropped, transient ? u(2 * in_l1) : 0U);
+        EXPECT_EQ(r.l2_total().dropped, transient ? u(2 * (lines - in_l1)) : 0U);
         EXPECT_EQ(r.phases.back(), "frame end");
     }
 }
 
 // A waiting thread takes issue slots from its neighbour: two in every spin_period cycles.
 TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
-    auto cycles = [](int workers, integer period) {
+    auto cycles = [](int workers, integer period, int after = 0) {
         Config c = tiled(1, 1, 2);
         c.core.spin_period = period;
         c.core.predictor = "perfect";
+        c.sim.window = 20000;
         Shared s;
         return s.run(c, workers, [&](int w) {
             if (w == 1) {
@@ -187,6 +193,8 @@ TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
             for (int i = 0; i < 5000; ++i)
                 scalar_op(operation::integer, stamp{});
             release_after(s.word(0), 4);
+            for (int i = 0; i < after; ++i)
+                scalar_op(operation::integer, stamp{});
         });
     };
     double alone = static_cast<double>(cycles(1, 10).cycles);
@@ -194,6 +202,8 @@ TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
     EXPECT_NEAR(static_cast<double>(spinning.cycles) / alone, 1 / (1 - 2.0 / 10), 0.03);
     EXPECT_GT(spinning.core.spins, 400U);
     EXPECT_NEAR(static_cast<double>(cycles(2, 1000).cycles) / alone, 1.0, 0.03);
+    // The rest of the window is free again once it has woken.
+    EXPECT_NEAR(static_cast<double>(cycles(2, 10, 5000).cycles - spinning.cycles), 5000, 150);
 }
 
 // A quantum that is no shorter than a window does not cut it, wherever its multiples lie.
