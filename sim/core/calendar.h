@@ -1,8 +1,10 @@
 // Which slots of a resource are taken: one bit a slot, in a ring. Requests may come out of time order
 // (threads run ahead of each other, and what lies downstream is booked for the future), so that a free gap
-// before a later booking stays usable. The ring must span everything booked at one time; a request for a slot
-// that the ring has passed is a broken invariant.
+// before a later booking stays usable. The ring grows with the time between the earliest cycle that anybody
+// may still ask for and the latest that somebody did; a request before the earliest is a broken invariant.
 #pragma once
+
+#include "sim/core/stalls.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,7 +13,7 @@
 
 namespace sim {
 
-[[noreturn]] void calendar_too_short(const char* name, std::uint64_t slot, std::uint64_t ring);
+[[noreturn]] void calendar_has_passed(const char* name, std::uint64_t slot, std::uint64_t earliest);
 
 class Calendar {
 public:
@@ -21,16 +23,15 @@ public:
     };
 
     /// `per_cycle` slots a cycle exist; the slots of a cycle are numbered from cycle <<
-    /// log2_group(per_cycle).
-    Calendar(const char* name, std::uint64_t ring_cycles, unsigned per_cycle = 1)
-        : words_(std::bit_ceil((ring_cycles << log2_group(per_cycle)) / 64 + 2)), mask_(words_.size() - 1),
-          name_(name) {
-        unsigned group = 1U << log2_group(per_cycle);
+    /// log2_group(per_cycle). Nobody asks for cycles before `earliest`, which its owner moves on.
+    Calendar(const char* name, const cycle& earliest, unsigned per_cycle = 1)
+        : earliest_(&earliest), shift_(log2_group(per_cycle)), name_(name) {
+        unsigned group = 1U << shift_;
         for (unsigned bit = 0; bit < 64; ++bit)
             if (bit % group >= per_cycle)
                 absent_ |= std::uint64_t{1} << bit;
-        for (Word& w : words_)
-            w.bits = absent_;
+        words_.assign(16, absent_);
+        mask_ = words_.size() - 1;
     }
     static unsigned log2_group(unsigned per_cycle) {
         return static_cast<unsigned>(std::bit_width(per_cycle - 1));
@@ -40,10 +41,10 @@ public:
     Slot take(Slot from) {
         for (std::uint64_t number = from / 64, open = ~std::uint64_t{0} << (from % 64);;
              ++number, open = ~std::uint64_t{0}) {
-            Word& w = word(number);
-            std::uint64_t free = ~w.bits & open;
+            std::uint64_t& w = word(number);
+            std::uint64_t free = ~w & open;
             if (free != 0) {
-                w.bits |= free & (~free + 1);
+                w |= free & (~free + 1);
                 return number * 64 + static_cast<unsigned>(std::countr_zero(free));
             }
         }
@@ -53,32 +54,28 @@ public:
         std::uint64_t number = from / 64;
         std::uint64_t open = ~std::uint64_t{0} << (from % 64);
         for (Slot first = no_slot;; ++number, open = ~std::uint64_t{0}) {
-            Word& w = word(number);
-            std::uint64_t free = ~w.bits & open;
+            std::uint64_t& w = word(number);
+            std::uint64_t free = ~w & open;
             if (free == 0)
                 continue;
             auto low = static_cast<unsigned>(std::countr_zero(free));
             first = first == no_slot ? number * 64 + low : first;
             std::uint64_t wanted = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
             if ((free >> low & wanted) == wanted) { // all in one piece
-                w.bits |= wanted << low;
+                w |= wanted << low;
                 return {first, number * 64 + low + count - 1};
             }
             std::uint64_t rest = free; // what stays free
             for (; count != 0 && rest != 0; --count)
                 rest &= rest - 1;
             std::uint64_t taken = free ^ rest;
-            w.bits |= taken;
+            w |= taken;
             if (count == 0)
                 return {first, number * 64 + 63 - static_cast<unsigned>(std::countl_zero(taken))};
         }
     }
-    /// Frees a slot that was taken, unless the ring has passed it.
-    void release(Slot slot) {
-        Word& w = words_[slot / 64 & mask_];
-        if (w.number == slot / 64)
-            w.bits &= ~(std::uint64_t{1} << (slot % 64));
-    }
+    /// Frees a slot that was taken.
+    void release(Slot slot) { word(slot / 64) &= ~(std::uint64_t{1} << (slot % 64)); }
     /// The first of `length` adjacent free slots from `from` on; takes none.
     Slot find_run(Slot from, std::uint32_t length) {
         for (Slot end = from + length;;) {
@@ -93,7 +90,7 @@ public:
         for (Slot s = from; s < from + length;) {
             unsigned bit = s % 64;
             auto n = static_cast<unsigned>(std::min<std::uint64_t>(64 - bit, from + length - s));
-            word(s / 64).bits |= (~std::uint64_t{0} >> (64 - n)) << bit;
+            word(s / 64) |= (~std::uint64_t{0} >> (64 - n)) << bit;
             s += n;
         }
     }
@@ -107,24 +104,17 @@ public:
 
 private:
     static constexpr Slot no_slot = ~Slot{0};
-    struct Word {
-        std::uint64_t number = 0; // which word of unbounded time it stands for
-        std::uint64_t bits = 0;
-    };
 
-    Word& word(std::uint64_t number) {
-        Word& w = words_[number & mask_];
-        if (w.number != number) [[unlikely]] {
-            if (w.number > number)
-                calendar_too_short(name_, number * 64, words_.size() * 64);
-            w = {number, absent_};
-        }
-        return w;
+    std::uint64_t& word(std::uint64_t number) {
+        if (number - first_ > mask_) [[unlikely]] // also what is earlier than the first
+            move_on(number);
+        return words_[number & mask_];
     }
+    void move_on(std::uint64_t number);
     /// The last taken slot in [from, end), or `end`.
     Slot last_busy(Slot from, Slot end) {
         for (std::uint64_t number = (end - 1) / 64;; --number) {
-            std::uint64_t seen = word(number).bits;
+            std::uint64_t seen = word(number);
             if (number == (end - 1) / 64)
                 seen &= ~std::uint64_t{0} >> (63 - (end - 1) % 64);
             if (number == from / 64)
@@ -136,8 +126,12 @@ private:
         }
     }
 
-    std::vector<Word> words_;
-    std::uint64_t mask_, absent_ = 0;
+    std::vector<std::uint64_t> words_; // a power of two
+    std::uint64_t mask_;
+    std::uint64_t first_ = 0; // the number, in unbounded time, of the ring's earliest word
+    std::uint64_t absent_ = 0;
+    const cycle* earliest_;
+    unsigned shift_;
     const char* name_;
 };
 

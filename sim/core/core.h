@@ -13,14 +13,14 @@ namespace sim {
 struct Hart;
 
 struct Core {
-    Core(const Config& config, std::uint64_t ring, L2& l2, Tickets& tickets, Attribution& attribution)
-        : issue("issue slots", ring, static_cast<unsigned>(config.core.issue_width)),
-          ports("L1 ports", ring, static_cast<unsigned>(config.l1.ports)),
+    Core(const Config& config, const cycle& earliest, L2& l2, Tickets& tickets, Attribution& attribution)
+        : issue("issue slots", earliest, static_cast<unsigned>(config.core.issue_width)),
+          ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)),
           predictor(static_cast<unsigned>(config.core.predictor_history)),
           l1(config, l2, tickets, attribution) {
         for (std::size_t i = 0; i < units.size(); ++i)
             if (config.interval[i] > 1)
-                units[i].emplace("unit", ring);
+                units[i].emplace("unit", earliest);
     }
 
     Calendar issue, ports;

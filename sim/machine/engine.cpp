@@ -13,15 +13,6 @@ namespace sim {
 Engine* running_engine = nullptr;
 Hart* running_hart = nullptr;
 
-void calendar_too_short(const char* name, std::uint64_t slot, std::uint64_t ring) {
-    fmt::print(
-        stderr,
-        "razor-sim: broken invariant: the calendar of {} spans {} slots and was asked for slot {}, which it "
-        "has passed\n",
-        name, ring, slot);
-    std::abort();
-}
-
 void Engine::outside(const void* p) {
     fmt::print(stderr, "razor-sim: broken invariant: a kernel touched {}, which is not in frame memory\n", p);
     std::abort();
@@ -59,9 +50,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                   : config.core.predictor == "perfect" ? Prediction::perfect
                                                        : Prediction::counters),
       base_(space.base()), window_cycles_(window_cycles(config)),
-      shortest_read_(Memory::shortest_read(config)), reach_(reach_cycles(config)), ring_(ring_cycles(config)),
-      space_(space), phases_(with_frame_end(phases)), attribution_(space, phases_.size()),
-      homes_(space, config.chip.tiles),
+      shortest_read_(Memory::shortest_read(config)), reach_(reach_cycles(config)), space_(space),
+      phases_(with_frame_end(phases)), attribution_(space, phases_.size()), homes_(space, config.chip.tiles),
       beyond_(config, [this](std::uint32_t tile, cycle ticket,
                              cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
       workers_(workers) {
@@ -72,10 +62,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
     spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
     for (integer t = 0; t < config.chip.tiles; ++t) {
-        Tile& tile =
-            tiles_.emplace_back(config, narrow(t), window_cycles_, l2_ring_cycles(config), attribution_);
+        Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, attribution_);
         for (integer c = 0; c < config.chip.cores; ++c) {
-            Core& core = tile.cores.emplace_back(config, ring_, tile.l2, tile.tickets, attribution_);
+            Core& core = tile.cores.emplace_back(config, tile.earliest, tile.l2, tile.tickets, attribution_);
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, phases_.size());
@@ -163,6 +152,7 @@ void Engine::perform_deeds() {
 /// did meanwhile.
 void Engine::resume(Hart& h) {
     h.now = std::max(h.now, window_end_);
+    come_back(h, window_end_);
     h.tile->scheduler.wake(Scheduler::key(window_end_, h.number));
 }
 
@@ -172,8 +162,6 @@ void Engine::answer_parked(Tile& tile) {
         Answered a{};
         if (p.ticket != 0 && !tile.tickets.find(p.ticket, a))
             return false;
-        if (window_end_ > reach_)
-            p.hart->bound.later(Due(window_end_ - reach_, Cause::slots));
         resume(*p.hart);
         return true;
     });
@@ -203,6 +191,9 @@ bool Engine::run_window() {
         return false;
     window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
     set_floors(next);
+    cycle begin = window_end_ - window_cycles_;
+    for (Tile& tile : tiles_)
+        tile.earliest = begin > reach_ ? begin - reach_ : 0;
     run_tiles();
     if (!failure_)
         perform_deeds();

@@ -111,6 +111,11 @@ private:
     void await_stores(Hart& h);
     void settle_loads(Hart& h);
 
+    /// For a thread that others have overtaken meanwhile, up to cycle `t`.
+    void come_back(Hart& h, cycle t) const {
+        if (t > reach_)
+            h.bound.later(Due(t - reach_, Cause::slots));
+    }
     cycle turn(Hart& h, cycle t);
     cycle hold_core(Hart& h, cycle t);
     Issued issue(Hart& h, int kind, std::uint32_t instructions, Due ready);
@@ -175,7 +180,6 @@ private:
     std::uint64_t window_cycles_; // of the windows in which tiles run by themselves
     std::uint64_t shortest_read_;
     std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
-    std::uint64_t ring_;  // cycles that one thread's operations may lie behind another's bookings
     const isa::address_space& space_;
     std::vector<std::string> phases_; // the caller's, and the end of the frame
     Attribution attribution_;

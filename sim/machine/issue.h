@@ -12,8 +12,7 @@ inline cycle Engine::turn(Hart& h, cycle t) {
     if (k > h.tile->scheduler.horizon()) {
         Away away;
         h.tile->scheduler.yield(k);
-        if (t > reach_)
-            h.bound.later(Due(t - reach_, Cause::slots));
+        come_back(h, t);
     }
     h.now = std::max(h.now, t);
     return t;

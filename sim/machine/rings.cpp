@@ -29,17 +29,4 @@ std::uint64_t reach_cycles(const Config& c) {
     return booking_reach + window_cycles(c);
 }
 
-std::uint64_t ring_cycles(const Config& c) {
-    // One operation of every thread of a core, each piece on the slowest unit.
-    std::uint64_t own =
-        wide(c.chip.threads) * 64 * wide(*std::max_element(c.interval.begin(), c.interval.end())) + 1024;
-    return wide(c.sim.quantum) + window_cycles(c) + own + booking_reach + reach_cycles(c);
-}
-
-std::uint64_t l2_ring_cycles(const Config& c) {
-    // All that the cores may ask at once, one after the other, at one bank.
-    integer asked = c.chip.cores * (c.l1.mshrs + c.l1.write_back_buffer + 64);
-    return ring_cycles(c) + wide(asked * (c.l1.line_bytes / c.l2.bank_bytes + 1));
-}
-
 } // namespace sim

@@ -1,5 +1,4 @@
-// How far apart in time things can lie: sizes of calendars, and of windows. All from the machine's own
-// figures.
+// How far apart in time things can lie, and how long windows are. All from the machine's own figures.
 #pragma once
 
 #include "sim/config/config.h"
@@ -18,8 +17,5 @@ inline constexpr std::uint64_t port_backlog = 256;
 /// How far behind its latest turn an operation may issue: younger operations of an issue window are simulated
 /// after older ones that had to wait. What the window would let issue earlier still issues then.
 std::uint64_t reach_cycles(const Config& config);
-/// The cycles between the operation that acts now and the farthest booking of a core's resources.
-std::uint64_t ring_cycles(const Config& config);
-std::uint64_t l2_ring_cycles(const Config& config);
 
 } // namespace sim

@@ -17,6 +17,11 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     bool writes = kind != isa::timing::atomic::load_acquire;
     std::uint64_t a = address(p);
     Scheduler& scheduler = h.tile->scheduler;
+    auto catch_up =
+        [&h](cycle t) { // what is independent of the word does not stay behind for as long as it waits
+            if (t > booking_reach)
+                h.bound.later(Due(t - booking_reach, Cause::synchronise));
+        };
     settle(h, ready);
     if (writes) {
         await_stores(h);
@@ -32,6 +37,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     if (scheduler.exact() || writes) {
         Away away;
         scheduler.wait_turn(Scheduler::key(at.last, h.number));
+        catch_up(at.last);
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
@@ -44,6 +50,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
         h.acting = Due(there.last + behind, behind == 0 ? there.from : Cause::synchronise);
         Away away;
         scheduler.wait_turn(Scheduler::key(h.acting.at(), h.number));
+        catch_up(h.acting.at());
     }
     Homes::Use use = writes ? Homes::Use::writes : waits ? Homes::Use::waits : Homes::Use::looks;
     if (!homes_.acts_at_once(a, h.tile->number, use)) {
@@ -86,8 +93,7 @@ void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool 
 
 /// The word has been written: those that wait for it wake.
 void Engine::publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip) {
-    cycle oldest = written > ring_ ? written - ring_ : 0;
-    (chip ? published_ : h.tile->published).write({address, written, visible, h.number}, oldest);
+    (chip ? published_ : h.tile->published).write({address, written, visible, h.number}, h.tile->earliest);
     const auto* word = reinterpret_cast<const std::int32_t*>(base_ + address);
     auto wake = [&](Tile& tile) {
         std::erase_if(tile.sleepers, [&](Hart* sleeper) {
@@ -149,6 +155,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
     if (h.tile->scheduler.stepping()) { // the deed is done
         Away away;
         h.now = std::max(h.now, window_end_);
+        come_back(h, window_end_);
         h.tile->scheduler.yield(Scheduler::key(window_end_, h.number));
     }
     return r;
@@ -157,6 +164,11 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
 /// Takes the issue slots of a waiting thread's looks at the word before cycle `end`: two instructions each.
 void Engine::look(Hart& sleeper, cycle end) {
     sleeper.looks.clear();
+    cycle earliest = sleeper.tile->earliest;
+    if (sleeper.next_look < earliest) { // nothing happened for long: nobody asks for these slots
+        auto period = wide(config_.core.spin_period);
+        sleeper.next_look += (earliest - sleeper.next_look + period - 1) / period * period;
+    }
     for (; sleeper.next_look < end; sleeper.next_look += wide(config_.core.spin_period)) {
         Calendar::Span s = sleeper.core->issue.take(sleeper.next_look << issue_shift_, 2);
         sleeper.looks.push_back(s.first);

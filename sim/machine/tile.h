@@ -14,9 +14,8 @@
 namespace sim {
 
 struct Tile {
-    Tile(const Config& config, std::uint32_t number, std::uint64_t window, std::uint64_t l2_ring,
-         Attribution& attribution)
-        : number(number), l2(config, number, l2_ring, tickets, attribution),
+    Tile(const Config& config, std::uint32_t number, std::uint64_t window, Attribution& attribution)
+        : number(number), l2(config, number, earliest, tickets, attribution),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
                     static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
 
@@ -33,6 +32,7 @@ struct Tile {
     };
 
     std::uint32_t number;
+    cycle earliest = 0; // no operation from now on acts before
     Tickets tickets;
     L2 l2;
     std::deque<Core> cores;

@@ -81,7 +81,7 @@ private:
         Bits* w = &words_[(number & mask_) * size_];
         if (w[0] != number) [[unlikely]] {
             if (w[0] > number)
-                calendar_too_short("memory commands", number * 64, (mask_ + 1) * 64);
+                calendar_has_passed("memory commands", number * 64, kept_ * 64);
             if (w[0] >= kept_)
                 return grown(number);
             renew(w, number);

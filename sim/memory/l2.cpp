@@ -12,7 +12,7 @@ std::uint64_t wide(integer x) {
 
 } // namespace
 
-L2::L2(const Config& config, std::uint32_t tile, std::uint64_t ring_cycles, Tickets& tickets,
+L2::L2(const Config& config, std::uint32_t tile, const cycle& earliest, Tickets& tickets,
        Attribution& attribution)
     : tile_(tile), line_shift_(static_cast<unsigned>(std::countr_zero(wide(config.l2.line_bytes)))),
       latency_(wide(config.l2.latency)), bank_mask_(wide(config.l2.banks) - 1),
@@ -20,7 +20,7 @@ L2::L2(const Config& config, std::uint32_t tile, std::uint64_t ring_cycles, Tick
                                             config.l2.bank_bytes)),
       whole_lines_(config.l1.line_bytes == config.l2.line_bytes),
       array_(wide(config.l2.size_bytes / (config.l2.ways * config.l2.line_bytes)), wide(config.l2.ways)),
-      banks_(wide(config.l2.banks), Calendar("L2 bank", ring_cycles)),
+      banks_(wide(config.l2.banks), Calendar("L2 bank", earliest)),
       flight_limit_(wide(config.l2.mshrs) * 4 + 64), tickets_(tickets), attribution_(attribution) {}
 
 void L2::note_write_back(std::uint64_t address, std::size_t phase) {

@@ -42,7 +42,7 @@ struct Request {
 
 class L2 {
 public:
-    L2(const Config& config, std::uint32_t tile, std::uint64_t ring_cycles, Tickets& tickets,
+    L2(const Config& config, std::uint32_t tile, const cycle& earliest, Tickets& tickets,
        Attribution& attribution);
 
     /// A line of the level above, at any byte address in it.

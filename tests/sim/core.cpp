@@ -244,5 +244,61 @@ TEST(Core, ScalarOverheadAddsInstructions) {
     EXPECT_EQ(r.core.instructions, u(n + n * 3 / 2));
 }
 
+// As far ahead as an issue window of operations can book a unit.
+TEST(Core, ABacklogMayBeAsLongAsTheIssueWindow) {
+    Config c = simple();
+    c.core.window = 1024;
+    c.interval[static_cast<std::size_t>(operation::divide)] = 50;
+    c.latency[static_cast<std::size_t>(operation::divide)] = 50;
+    Report r = run(c, [](int) {
+        for (int i = 0; i < 3000; ++i)
+            scalar_op(operation::divide, stamp{});
+    });
+    EXPECT_EQ(r.cycles, 3000U * 50);
+}
+
+// Looks at a word count, but take no slots, where nobody does anything for long.
+TEST(Core, AThreadMayWaitWhileTimeJumps) {
+    Config c = simple();
+    c.chip.threads = 2;
+    c.core.spin_period = 10;
+    c.coherence.atomic_cycles = 30000;
+    Report r = run_on(
+        c,
+        [](std::byte* base, int w) {
+            auto* words = reinterpret_cast<std::int32_t*>(base);
+            if (w == 1) {
+                wait_while(here, words, 0, stamp{}, stamp{});
+                return;
+            }
+            before_atomic(here, atomic::fetch_add, words + 32, stamp{}, stamp{});
+            stamp s = after_atomic(here, atomic::fetch_add, words + 32, true);
+            before_atomic(here, atomic::store_release, words, stamp{}, s);
+            *words = 1;
+            after_atomic(here, atomic::store_release, words, true);
+        },
+        2);
+    EXPECT_NEAR(static_cast<double>(r.core.spins), 3000, 20);
+}
+
+// What is independent of a word issues no earlier than others' bookings are remembered.
+TEST(Core, AfterALongWaitForAWordTimeHasPassed) {
+    Config c = simple();
+    c.chip.threads = 2;
+    c.core.window = 64;
+    c.coherence.atomic_cycles = 30000;
+    Report r = run_on(
+        c,
+        [](std::byte* base, int w) {
+            before_atomic(here, atomic::fetch_add, base, stamp{}, stamp{});
+            after_atomic(here, atomic::fetch_add, base, true);
+            for (int i = 0; i < (w == 0 ? 60000 : 10); ++i)
+                scalar_op(operation::integer, stamp{});
+        },
+        2);
+    EXPECT_GT(r.threads[1].finish, 30000U);
+    EXPECT_LT(r.threads[1].finish, 30000U * 2 + 1000);
+}
+
 } // namespace
 } // namespace sim::test

@@ -1,0 +1,37 @@
+#include "sim/core/calendar.h"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace sim {
+
+void calendar_has_passed(const char* name, std::uint64_t slot, std::uint64_t earliest) {
+    fmt::print(stderr,
+               "razor-sim: broken invariant: the calendar of {} was asked for slot {}, and nobody should ask "
+               "for any "
+               "before {}\n",
+               name, slot, earliest);
+    std::abort();
+}
+
+/// Lets the ring begin with the earliest word that may be asked for, and makes it long enough for `number`.
+void Calendar::move_on(std::uint64_t number) {
+    std::uint64_t earliest = (*earliest_ << shift_) / 64;
+    if (number < first_ || number < earliest)
+        calendar_has_passed(name_, number * 64, earliest * 64);
+    std::uint64_t next = std::max(first_ + words_.size(), earliest); // not in the ring yet
+    if (number - earliest > mask_) {
+        std::vector<std::uint64_t> longer(std::bit_ceil(number - earliest + 1), absent_);
+        for (std::uint64_t n = earliest; n < next; ++n)
+            longer[n & (longer.size() - 1)] = words_[n & mask_];
+        words_ = std::move(longer);
+        mask_ = words_.size() - 1;
+    }
+    for (; next <= earliest + mask_; ++next)
+        words_[next & mask_] = absent_;
+    first_ = earliest;
+}
+
+} // namespace sim

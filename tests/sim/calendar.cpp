@@ -1,0 +1,66 @@
+// Calendars of slots against a set of the slots that are taken.
+#include "sim/core/calendar.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace sim::test {
+namespace {
+
+// Requests spread farther and farther apart and the earliest moves on.
+TEST(Calendar, EqualsASetOfSlots) {
+    std::mt19937 random(11);
+    for (unsigned per_cycle : {1U, 3U}) {
+        cycle earliest = 0;
+        Calendar calendar("test", earliest, per_cycle);
+        unsigned shift = Calendar::log2_group(per_cycle);
+        std::set<std::uint64_t> taken;
+        auto free = [&](std::uint64_t s) { return s % (1U << shift) < per_cycle && taken.count(s) == 0; };
+        for (int i = 0; i < 20000; ++i) {
+            std::uint64_t spread = 50 + static_cast<std::uint64_t>(i);
+            std::uint64_t from = (earliest + random() % spread) << shift;
+            std::uint64_t want = from;
+            if (per_cycle == 1 && random() % 4 == 0) {
+                auto length = static_cast<std::uint32_t>(1 + random() % 100);
+                auto busy = [&] {
+                    auto next = taken.lower_bound(want);
+                    return next != taken.end() && *next < want + length;
+                };
+                while (busy())
+                    want = *taken.lower_bound(want) + 1;
+                ASSERT_EQ(calendar.take_run(from, length), want) << i;
+                for (std::uint32_t k = 0; k < length; ++k)
+                    taken.insert(want + k);
+            } else {
+                auto count = static_cast<std::uint32_t>(1 + random() % 20);
+                Calendar::Span span = calendar.take(from, count);
+                for (std::uint32_t k = 0; k < count; ++k, ++want) {
+                    while (!free(want))
+                        ++want;
+                    taken.insert(want);
+                    if (k == 0) {
+                        ASSERT_EQ(span.first, want) << i;
+                    }
+                }
+                ASSERT_EQ(span.last, want - 1) << i;
+            }
+            earliest += random() % 100;
+        }
+    }
+}
+
+TEST(CalendarDeathTest, WhatHasPassedIsNotAskedFor) {
+    cycle earliest = 0;
+    Calendar calendar("test", earliest);
+    calendar.take(100000);
+    calendar.take(0); // not before the earliest
+    earliest = 5000;
+    calendar.take(1000000);
+    calendar.take(5000);
+    EXPECT_DEATH(calendar.take(4900), "broken invariant: the calendar of test was asked for slot 4864");
+}
+
+} // namespace
+} // namespace sim::test
