@@ -9,8 +9,8 @@
 #include "sim/machine/beyond.h"
 #include "sim/machine/homes.h"
 #include "sim/machine/machine.h"
-#include "sim/machine/rings.h"
 #include "sim/machine/tile.h"
+#include "sim/machine/windows.h"
 
 #include <deque>
 #include <memory>

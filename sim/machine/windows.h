@@ -10,7 +10,7 @@ namespace sim {
 std::uint64_t to_core_cycles(const Config& config, integer memory_clocks);
 /// Cycles of a window between meetings of tiles and memory (sim.window, or what it stands for).
 std::uint64_t window_cycles(const Config& config);
-/// No operation books a core's resources farther ahead of its thread's time than this.
+/// No operation asks for a core's resources farther ahead of its thread's time than this.
 inline constexpr std::uint64_t booking_reach = 2048;
 /// Cycles that accesses may wait for L1 ports before their operation holds up younger ones.
 inline constexpr std::uint64_t port_backlog = 256;

@@ -1,4 +1,4 @@
-#include "sim/machine/rings.h"
+#include "sim/machine/windows.h"
 
 #include "sim/memory/memory.h"
 
