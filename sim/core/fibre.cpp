@@ -10,6 +10,7 @@
 #endif
 #endif
 #if defined(SIM_ADDRESS_SANITIZER)
+#include <sanitizer/asan_interface.h>
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -22,6 +23,13 @@ void announce([[maybe_unused]] void** fake_stack, [[maybe_unused]] const void* s
               [[maybe_unused]] std::size_t bytes) {
 #if defined(SIM_ADDRESS_SANITIZER)
     __sanitizer_start_switch_fiber(fake_stack, stack, bytes);
+#endif
+}
+
+/// Forgets what earlier stacks at the same place left marked.
+void clean([[maybe_unused]] const void* stack, [[maybe_unused]] std::size_t bytes) {
+#if defined(SIM_ADDRESS_SANITIZER)
+    __asan_unpoison_memory_region(stack, bytes);
 #endif
 }
 
@@ -43,6 +51,7 @@ Fibre::Fibre(std::size_t stack_bytes, std::function<void()> body, Fibre& home) {
     void* const top = static_cast<std::byte*>(memory.sp) - colour;
     stack_ = static_cast<const std::byte*>(memory.sp) - memory.size;
     stack_bytes_ = memory.size;
+    clean(stack_, stack_bytes_);
     auto run = [this, body = std::move(body), &home](boost::context::fiber&& from) {
         arrive(std::move(from), &leaving->stack_, &leaving->stack_bytes_);
         body();
