@@ -69,22 +69,34 @@ Config random_machine(std::mt19937& random) {
     c.memory.write_high = pick(1, c.memory.write_queue);
     c.memory.write_low = pick(0, c.memory.write_high - 1);
     c.sim.quantum = std::array<integer, 5>{0, 1, 10, 100, 5000}[random() % 5];
+    c.sim.window = pick(0, 2) == 0 ? power(0, 12) : 0;
+    c.chip.tiles = pick(1, 3);
+    c.core.spin_period = pick(4, 300);
+    c.coherence.visibility_cycles = power(0, 14);
+    c.coherence.atomic_cycles = pick(0, 1000);
+    c.coherence.remote_cycles = pick(0, 5000);
     return c;
 }
 
 TEST(Properties, RandomMachinesKeepTheLaws) {
     std::mt19937 random(2026);
-    for (int trial = 0; trial < 150; ++trial) {
+    for (int trial = 0; trial < 300; ++trial) {
         Config c = random_machine(random);
         SCOPED_TRACE(print_machine(c));
         Memory memory;
         int workers = 1 + static_cast<int>(random() % u(c.all_threads()));
         auto* counter = reinterpret_cast<word*>(memory.data);
+        word* begin = counter + 64; // that half of the workers wait for
         auto* data = reinterpret_cast<std::int32_t*>(memory.more);
         Machine machine(c);
         Report r;
-        ASSERT_NO_THROW(r = machine.run(memory.space, workers, {"work"},
-                                        [&](int w) { mixed_work(data, counter, w, 12); }));
+        ASSERT_NO_THROW(r = machine.run(memory.space, workers, {"work"}, [&](int w) {
+            if (w == 0)
+                release_after(begin, 3000);
+            else if (w % 2 == 0)
+                await(begin);
+            mixed_work(data, counter, w, 12);
+        }));
         EXPECT_EQ(counter->word, workers * 12);
         EXPECT_GT(r.cycles, 0U);
         EXPECT_FALSE(print_text(r).empty());
