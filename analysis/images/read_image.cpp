@@ -32,7 +32,9 @@ const Channel* ImageFile::find(std::string_view name) const {
 ImageFile read_image(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
-        throw ImageError(fmt::format("{}: no such file; give an OpenEXR or PNG picture", path.string()));
+        throw ImageError(
+            fmt::format("{}: {}; give an OpenEXR or PNG picture", path.string(),
+                        std::filesystem::exists(path, error) ? "is not a file" : "no such file"));
     }
     std::array<char, 4> first{};
     std::ifstream(path, std::ios::binary).read(first.data(), first.size());

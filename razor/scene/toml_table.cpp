@@ -50,7 +50,9 @@ bool TomlTable::has(std::string_view key) const {
 }
 
 const toml::node* TomlTable::find(std::string_view key) {
-    asked_.emplace_back(key);
+    if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) {
+        asked_.emplace_back(key);
+    }
     return table_ == nullptr ? nullptr : table_->get(key);
 }
 
@@ -117,15 +119,24 @@ std::string TomlTable::text(std::string_view key, std::string_view preset) {
     return node->as_string()->get();
 }
 
-glm::dvec3 TomlTable::vector(std::string_view key, const glm::dvec3& preset, Range range) {
+/// The array of three of `what` that the key holds; null if the key is missing.
+const toml::array* TomlTable::three(std::string_view key, std::string_view what) {
     const toml::node* const node = find(key);
     if (node == nullptr) {
-        return preset;
+        return nullptr;
     }
     const toml::array* const array = node->as_array();
     if (array == nullptr || array->size() != 3) {
         fail_at(file_name_, node->source(),
-                fmt::format("{} is {}; write three numbers [a, b, c]", full(key), described(*node)));
+                fmt::format("{} is {}; write three {} [a, b, c]", full(key), described(*node), what));
+    }
+    return array;
+}
+
+glm::dvec3 TomlTable::vector(std::string_view key, const glm::dvec3& preset, Range range) {
+    const toml::array* const array = three(key, "numbers");
+    if (array == nullptr) {
+        return preset;
     }
     glm::dvec3 result;
     for (int i = 0; i < 3; ++i) {
@@ -135,14 +146,9 @@ glm::dvec3 TomlTable::vector(std::string_view key, const glm::dvec3& preset, Ran
 }
 
 glm::ivec3 TomlTable::whole_vector(std::string_view key, const glm::ivec3& preset, Range range) {
-    const toml::node* const node = find(key);
-    if (node == nullptr) {
+    const toml::array* const array = three(key, "whole numbers");
+    if (array == nullptr) {
         return preset;
-    }
-    const toml::array* const array = node->as_array();
-    if (array == nullptr || array->size() != 3) {
-        fail_at(file_name_, node->source(),
-                fmt::format("{} is {}; write three whole numbers [a, b, c]", full(key), described(*node)));
     }
     glm::ivec3 result;
     for (int i = 0; i < 3; ++i) {

@@ -61,6 +61,7 @@ public:
 
 private:
     const toml::node* find(std::string_view key);
+    const toml::array* three(std::string_view key, std::string_view what);
     int checked_whole(const toml::node& node, std::string_view what, Range range) const;
     double checked(const toml::node& node, std::string_view what, Range range) const;
     std::string full(std::string_view key) const;

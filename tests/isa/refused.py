@@ -38,7 +38,7 @@ def main():
     simulated = "-DISA_TARGET=simulated" in flags
     wanted = [c for c in cases(source) if simulated or not c[0].startswith("[simulated]")]
     status, message = compile_source(compiler, source, [*flags, "-DCASES"])
-    places = re.findall(r"^(?:\S*/)?" + re.escape(os.path.basename(source)) + r":(\d+):\d+: (?:fatal )?error", message, re.M)
+    places = re.findall(r"^(?:.*/)?" + re.escape(os.path.basename(source)) + r":(\d+):\d+: (?:fatal )?error", message, re.M)
     lines = {int(n) for n in places}
     compiled = [c for c in wanted if not any(c[1] < n < c[2] for n in lines)]
     for description, first, _ in compiled:

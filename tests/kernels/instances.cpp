@@ -32,6 +32,18 @@ std::vector<float> rendered(const Scene& scene, const KernelTable& kernels) {
     return {film, film + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes};
 }
 
+/// Pixels whose depths differ by more than 1e-5 of them.
+std::size_t other_depths(const std::vector<float>& film, const std::vector<float>& expected) {
+    const std::size_t pixels = film.size() / film_planes;
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float a = film[film_depth * pixels + i];
+        const float b = expected[film_depth * pixels + i];
+        others += a == b || std::abs(a - b) <= 1e-5F * b ? 0 : 1;
+    }
+    return others;
+}
+
 std::size_t hit_pixels(const Scene& scene, const std::vector<float>& film) {
     const auto pixels =
         static_cast<std::size_t>(scene.settings.width) * static_cast<std::size_t>(scene.settings.height);
@@ -164,12 +176,7 @@ TEST(Instances, LookNearlyLikeModelsWrittenOutWhereRoundingDiffers) {
         const std::vector<float> expected = rendered(written_out(scene, folder), best_target());
         EXPECT_GT(hit_pixels(scene, film), 100U);
         const std::size_t pixels = film.size() / film_planes;
-        std::size_t moved = 0;
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const float a = film[film_depth * pixels + i];
-            const float b = expected[film_depth * pixels + i];
-            moved += a == b || std::abs(a - b) <= 1e-5F * b ? 0 : 1;
-        }
+        const std::size_t moved = other_depths(film, expected);
         EXPECT_LE(moved, pixels / 200) << scene.name;
     }
 }
@@ -333,12 +340,7 @@ TEST(Instances, CityLooksLikeModelsWrittenOut) {
     const std::vector<float> expected = rendered(written_out(scene, folder), best_target());
     EXPECT_GT(hit_pixels(scene, film), 96U * 64U / 2);
     const std::size_t pixels = film.size() / film_planes;
-    std::size_t moved = 0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const float a = film[film_depth * pixels + i];
-        const float b = expected[film_depth * pixels + i];
-        moved += a == b || std::abs(a - b) <= 1e-5F * b ? 0 : 1;
-    }
+    const std::size_t moved = other_depths(film, expected);
     EXPECT_LE(moved, pixels / 1000);
     Frame frame(scene, {});
     EXPECT_EQ(frame.statistics().instances, 122);

@@ -51,7 +51,7 @@ protected:
     }
 
     Outcome razor(const std::string& arguments) const {
-        return run(std::string(RAZOR_PROGRAM) + " " + arguments, folder_.path());
+        return run(quoted_argument(RAZOR_PROGRAM) + " " + arguments, folder_.path());
     }
 
     void expect_refused(const std::string& arguments, const std::string& cause) const {
@@ -142,11 +142,11 @@ TEST_F(Razor, LoadsOrRefusesEveryOddFile) {
         ++files;
         if (refused.contains(name)) {
             // Faces that a cage cannot have are refused by mesh and face, all else by file and line.
-            expect_refused("render " + entry.path().string() + " -o picture.exr",
+            expect_refused("render " + quoted_argument(entry.path().string()) + " -o picture.exr",
                            entry.path().stem().string());
         } else {
             const Outcome result =
-                razor("render " + entry.path().string() + " -o p.exr --size 24x16 --spp 1");
+                razor("render " + quoted_argument(entry.path().string()) + " -o p.exr --size 24x16 --spp 1");
             EXPECT_EQ(result.code, 0) << name << ": " << result.err;
             EXPECT_EQ(result.err, "") << "quiet in a pipe";
             EXPECT_EQ(read_exr(folder_ / "p.exr").width, 24);
@@ -193,7 +193,7 @@ TEST_F(Razor, WritesPicturesAndStatistics) {
 TEST_F(Razor, FailedWritingLeavesNothing) {
     // ulimit counts blocks of 512 or 1024 bytes; the picture needs more than four of either.
     const std::size_t before = folder_.count();
-    const Outcome result = run("ulimit -f 4; trap '' XFSZ; " + std::string(RAZOR_PROGRAM) +
+    const Outcome result = run("ulimit -f 4; trap '' XFSZ; " + quoted_argument(RAZOR_PROGRAM) +
                                    " render --size 200x200 --spp 1 --edge-pixels 50 -o big.exr",
                                folder_.path());
     EXPECT_EQ(result.code, 2) << result.err;
@@ -203,9 +203,10 @@ TEST_F(Razor, FailedWritingLeavesNothing) {
 
 TEST_F(Razor, InterruptLeavesNothing) {
     const std::size_t before = folder_.count();
-    const Outcome result = run("timeout --foreground --preserve-status -s INT 1 " +
-                                   std::string(RAZOR_PROGRAM) + " render --size 3000x3000 --spp 16 -o a.exr",
-                               folder_.path());
+    const Outcome result =
+        run("timeout --foreground --preserve-status -s INT 1 " + quoted_argument(RAZOR_PROGRAM) +
+                " render --size 3000x3000 --spp 16 -o a.exr",
+            folder_.path());
     EXPECT_EQ(result.code, 130) << result.err;
     EXPECT_EQ(result.err, "razor: interrupted; nothing written\n");
     EXPECT_EQ(folder_.count(), before);

@@ -26,7 +26,7 @@ protected:
     }
 
     Outcome compare(const std::string& arguments) const {
-        return run(std::string(RAZOR_PROGRAM) + " compare " + arguments, folder_.path());
+        return run(quoted_argument(RAZOR_PROGRAM) + " compare " + arguments, folder_.path());
     }
 
     nlohmann::json figures(const std::string& arguments) const {
@@ -228,6 +228,8 @@ TEST_F(Compare, RefusesWhatIsNoPicture) {
             expect_refused(mode + (bad + " a.exr"), bad + ": ");
         }
     }
+    expect_refused("a.exr none.exr", "none.exr: no such file");
+    expect_refused("a.exr .", ".: is not a file");
     expect_refused("", "picture");
     expect_refused("a.exr", "reference");
     expect_refused("a.exr a.exr a.exr", "");

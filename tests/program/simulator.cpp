@@ -9,12 +9,12 @@
 namespace razor {
 namespace {
 
-constexpr const char* tiny = RAZOR_SOURCE_DIR "/configs/machines/tiny.toml";
+const std::string tiny = quoted_argument(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml");
 
 class Simulator : public ::testing::Test {
 protected:
     Outcome simulator(const std::string& arguments) const {
-        return run(std::string(RAZOR_SIMULATOR) + " " + arguments, folder_.path());
+        return run(quoted_argument(RAZOR_SIMULATOR) + " " + arguments, folder_.path());
     }
     std::string text(const std::string& name) const {
         std::ifstream file(folder_ / name, std::ios::binary);
@@ -81,7 +81,7 @@ TEST_F(Simulator, SharesTreesAsAsked) {
 TEST_F(Simulator, RunsCopernicus) {
     const std::string start =
         "run --quiet --size 40x24 --spp 1 --light-samples 1 --sky-samples 1 --machine " +
-        std::string(RAZOR_SOURCE_DIR "/configs/machines/copernicus.toml ");
+        quoted_argument(RAZOR_SOURCE_DIR "/configs/machines/copernicus.toml") + " ";
     const Outcome first = simulator(start + "--json a.json");
     ASSERT_EQ(first.code, 0) << first.err;
     EXPECT_NE(first.out.find("\nlimited by "), std::string::npos);
@@ -173,8 +173,9 @@ TEST_F(Simulator, RunsItsPrintedConfiguration) {
 class Sweep : public Simulator {
 protected:
     Outcome sweep(const std::string& arguments) const {
-        return run(std::string("python3 " RAZOR_SOURCE_DIR "/analysis/sweep/sweep.py --simulator ") +
-                       RAZOR_SIMULATOR + " --machine " + tiny + " " + arguments,
+        return run("python3 " + quoted_argument(RAZOR_SOURCE_DIR "/analysis/sweep/sweep.py") +
+                       " --simulator " + quoted_argument(RAZOR_SIMULATOR) + " --machine " + tiny + " " +
+                       arguments,
                    folder_.path());
     }
 };
