@@ -11,7 +11,11 @@ struct Counters {
     std::int64_t groups = 0; // of rays alike in direction, traversed one after the other
     std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
     std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;
-    std::int64_t normal_blocks = 0; // blocks whose normals were asked for
+    std::int64_t plain_tests = 0;    // of the block tests, those of some ray at the block's anchors ...
+    std::int64_t blended_tests = 0;  // ... and those of one field's rays with the block blended for them
+    std::int64_t blended_blocks = 0; // blendings, for tests and for shading
+    std::int64_t finest_blocks = 0;  // of the blocks made, those of level 0
+    std::int64_t normal_blocks = 0;  // blocks whose normals were asked for
     std::int64_t pages_requested = 0;
 
     Counters& operator+=(const Counters& o);
@@ -33,6 +37,10 @@ template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("blocks_made", c.blocks_made);
     visit("vertices_made", c.vertices_made);
     visit("triangles_made", c.triangles_made);
+    visit("plain_tests", c.plain_tests);
+    visit("blended_tests", c.blended_tests);
+    visit("blended_blocks", c.blended_blocks);
+    visit("finest_blocks", c.finest_blocks);
     visit("normal_blocks", c.normal_blocks);
     visit("pages_requested", c.pages_requested);
 }

@@ -138,6 +138,7 @@ struct Frame::Impl {
     void count_records(const Scene& scene);
     void place_scene(const Scene& scene);
     void place_topology();
+    void place_blend_table();
     void place_workers();
     void place_view(const Scene& scene);
     void reset();
@@ -168,6 +169,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
                                                       isa::address_space::granule);
     place_scene(scene);
     place_topology();
+    place_blend_table();
     place_workers();
     place_view(scene);
     reset();
@@ -212,6 +214,7 @@ void Frame::Impl::place_scene(const Scene& scene) {
         for (int k = 0; k < 3; ++k)
             r.origin[k] = i.origin[k];
         r.edge_length = static_cast<float>(i.edge_length);
+        r.first_level = static_cast<std::int32_t>(std::lround(std::log2(i.edge_length)));
         r.max_exponent = t.max_exponent;
         r.first_patch = static_cast<std::int32_t>(patches);
         r.patch_count = static_cast<std::int32_t>(t.patches.size());
@@ -312,6 +315,46 @@ void Frame::Impl::place_topology() {
     pages->lay_out(region<Line>("topology pages", -1, pages->span_bytes() / line_bytes), classes);
 }
 
+/// Which vertices of a block of 2^a x 2^b quads a pass blends (layout.h).
+void fill_pass(int a, int b, int pass, std::int32_t* out) {
+    const int quads_u = 1 << a, quads_v = 1 << b, width = quads_u + 1;
+    const int step = 1 << (block_log2 - 1 - pass);
+    auto inside = [](int i, int quads) { return i != 0 && i != quads; };
+    std::int32_t count = 0;
+    std::int32_t* list = out + line_bytes / 4;
+    for (int j = 0; j <= quads_v; ++j)
+        for (int i = 0; i <= quads_u; ++i) {
+            // Ends of rows and columns belong to every level.
+            const bool at_u = !inside(i, quads_u) || i % step == 0,
+                       at_v = !inside(j, quads_v) || j % step == 0;
+            const bool odd_u = inside(i, quads_u) && i / step % 2 != 0;
+            const bool odd_v = inside(j, quads_v) && j / step % 2 != 0;
+            if (!at_u || !at_v || (!odd_u && !odd_v))
+                continue;
+            const int along = (odd_u ? step : 0) + (odd_v ? step * width : 0);
+            const int vertex = j * width + i;
+            list[count] = vertex;
+            list[pass_vertices + count] = vertex - along;
+            list[2 * pass_vertices + count] = vertex + along;
+            list[3 * pass_vertices + count] = j == 0         ? 0
+                                              : j == quads_v ? 2
+                                              : i == quads_u ? 1
+                                              : i == 0       ? 3
+                                                             : -1;
+            ++count;
+        }
+    *out = count;
+}
+
+void Frame::Impl::place_blend_table() {
+    auto* table = region<std::int32_t>("blend table", -1, blend_table_words);
+    header->blend_table.set(table);
+    for (int a = 0; a <= block_log2; ++a)
+        for (int b = 0; b <= block_log2; ++b)
+            for (int pass = 0; pass < blend_passes; ++pass)
+                fill_pass(a, b, pass, table + blend_pass(a, b, pass));
+}
+
 void Frame::Impl::place_workers() {
     // All of it lives for one frame.
     auto n = static_cast<std::size_t>(options.workers);
@@ -384,6 +427,8 @@ void Frame::Impl::place_view(const Scene& scene) {
             put(h.light_corner, light.corner - geometry.origin);
             put(h.light_u, light.edge_u);
             put(h.light_v, light.edge_v);
+            h.light_growth =
+                static_cast<float>(s.edge_pixels * std::sqrt(area / std::max(s.light_samples, 1)));
             put(h.light_normal, normal / area);
             put(h.light_radiance, glm::dvec3(light.radiance) *
                                       (area / (3.14159265358979323846 * std::max(s.light_samples, 1))));
@@ -393,6 +438,13 @@ void Frame::Impl::place_view(const Scene& scene) {
         h.sky_samples = s.sky_samples;
         put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
     }
+    h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
+    h.morphs = s.lod == Lod::recursive ? 1 : 0;
+    const auto growth = [&](double spread) {
+        return static_cast<float>(std::min(s.edge_pixels * spread, double{gradation_cap}));
+    };
+    h.camera_growth = growth(pixel);
+    h.sky_growth = growth(std::sqrt(2 * 3.14159265358979323846 / std::max(s.sky_samples, 1)));
     h.reach = static_cast<float>(geometry.reach);
     auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     h.film.set(region<float>("frame buffer", -1, pixels * film_planes));

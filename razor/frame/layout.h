@@ -85,6 +85,7 @@ inline constexpr int block_log2 = 3;
 inline constexpr int block_quads = 1 << block_log2;
 inline constexpr int block_side = block_quads + 1;
 inline constexpr int block_vertices = block_side * block_side;
+inline constexpr int blend_passes = block_log2; // steps of 4, 2 and 1 quads: see blend_pass
 inline constexpr int max_exponent_limit =
     8; // of a curve; a mesh may have to use less (MeshRecord::max_exponent)
 
@@ -119,8 +120,10 @@ enum class PageKind : std::int32_t {
                // j*(nu+1)+i, padded to the width; positions
     derivative = 3, // as block; two rows a control point: d/du then d/dv (only their cross product's
                     // direction matters)
+    deviation = 4,  // as block; one row of control_count bounds, zero-padded to the width: how far the weight
+                    // of any finer vertex is from the mean of its parents' weights, summed over the levels
 };
-inline constexpr int page_kinds = 4;
+inline constexpr int page_kinds = 5;
 inline constexpr int curve_row = 16; // floats a row of a curve page
 
 struct ClassRecord {
@@ -139,8 +142,9 @@ struct PageHeader {
 // --- scene
 // ------------------------------------------------------------------------------------------------------------
 struct MeshRecord {
-    float origin[3];   // of the mesh, relative to the scene's origin
-    float edge_length; // target edge length, a power of two
+    float origin[3];          // of the mesh, relative to the scene's origin
+    float edge_length;        // at level 0, a power of two
+    std::int32_t first_level; // its log2
     std::int32_t max_exponent;
     std::int32_t first_patch, patch_count;
     float albedo[3];
@@ -148,46 +152,91 @@ struct MeshRecord {
 
 // --- grids: what tessellating a patch yields
 // --------------------------------------------------------------------------
-/// Followed by words: vertices x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i);
-/// then, where the header gives an offset, cell boxes, ancestors, normals. A cell is 2 x 2 quads.
+// Levels. At level 0 of its mesh a patch has 2^Nu x 2^Nv quads and a curve 2^N segments of about the mesh's
+// edge_length; at level d it has 2^(Nu-d) x 2^(Nv-d), d = 0 ... min(Nu, Nv), and a curve 2^max(N-d, 0).
+// Across meshes levels are named by absolute powers of two: level A has edges of about 2^A, A = first_level +
+// d.
+//
+// A vertex is born at the coarsest level that has it. Its place on the surface is its *anchor*; where a ray
+// finds it depends on the ray's target edge length there (razor/kernels/morph.h). A vertex on a curve is born
+// by the curve: that at dyadic depth j of a curve of exponent N at level N - j. If that is negative it never
+// leaves the mean of its parents: it *hangs*.
+//
+// The blocks of a patch form a tree. Its root is the one block of the patch's coarsest level (exponents of a
+// patch differ by block_log2 at most); a block of 8 quads a side has two children along that side, a smaller
+// one has one, twice as fine.
+
+/// Followed by words: anchors x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i);
+/// then, where the header gives an offset, cell boxes, ancestors, corner data, normals. A cell is 2 x 2
+/// quads.
 struct alignas(line_bytes) BlockHeader {
-    float box_low[3], box_high[3]; // of the vertices, mesh coordinates
+    float box_low[3], box_high[3]; // of its vertices and all finer ones, mesh coordinates
     std::int32_t patch;
-    std::int32_t number; // of the block in its patch, row by row
+    std::int32_t number; // of the block in its patch and level, row by row
     std::int32_t mesh;
+    std::int32_t level;            // of the mesh
+    std::int32_t absolute;         // level: first_level + level
+    std::int32_t column, row;      // of the block in its patch and level
     std::int32_t quads_u, quads_v; // 1, 2, 4 or 8
     std::int32_t triangles;        // a quad: 2, or 1 for a flat triangle
     std::int32_t stride;
-    std::int32_t hangs;   // not 0 if any of hang[] is not
-    std::int32_t hang[4]; // log2 of the sub-edges of this side that lie on one flat ancestor edge
+    std::int32_t exponent[2]; // of the patch along u and v, at this level
+    std::int32_t hangs;       // not 0 if any of hang[] is not
+    std::int32_t hang[4];     // log2 of the sub-edges of this side that lie on one flat ancestor edge
+    std::int32_t curve[4]; // exponent at level 0 of the curve this side lies on; straight_curve; inner_side
     std::int32_t
         cells_at; // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
     std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0: none
     std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
-    isa::shared<std::int32_t> normals; // a BuildState
-    std::int32_t padding[10];
+    isa::shared<std::int32_t> normals;    // a BuildState
+    isa::shared<std::int32_t> children;   // a BuildState
+    std::int32_t child_line, child_lines; // of the first child; from one child to the next
+    std::int32_t child_columns, child_rows;
+    std::int32_t parent;  // line of the block that this is a child of; -1: the root
+    std::int32_t movable; // whether any of its vertices can leave its anchor
+    std::int32_t middles; // root, n-gons: words from the block's begin: see PatchEnds; 0: none
+    /// How far vertices leave their anchors along any axis, if those born 0, 1 or 2 levels above the block's
+    /// and below move, and its corners do not.
+    float sway[blend_passes];
+    float middle_sway; // how far a corner that is the middle of an edge does; 0: none is
+    std::int32_t padding[4];
 };
-static_assert(sizeof(BlockHeader) == 128);
-inline constexpr int block_header_words = 32;
+static_assert(sizeof(BlockHeader) == 192);
+inline constexpr int block_header_words = 48;
 inline constexpr int cell_boxes = 16;
+/// Target edge lengths grow by no more than this per unit of distance: steeper rays see a finer surface than
+/// they ask for, which stays within three levels of itself over a block.
+inline constexpr float gradation_cap = 0.25F;
+inline constexpr float least_target_edge = 1.0e-30F; // edge lengths asked for are positive
+inline constexpr int straight_curve = -2;            // of a bilinear patch: its vertices never leave it
+inline constexpr int inner_side = -1;                // the side is no side of the patch
+
+/// Sub-faces of n-gons end in the middle of edges, at corners 1 and 3. What is known of the two edges beyond:
+/// [edge][xyz], edge 0 of side 0, edge 1 of side 3.
+enum PatchEnds : int {
+    ends_mean = 0, // of the whole edge's ends, where its middle lies if it is not born
+    ends_far = 6,  // the end that the sub-face does not have
+    ends_words = 12
+};
 
 /// Of whatever is built on demand by one worker and used by all that share it.
 enum BuildState : std::int32_t { absent = 0, busy = 1, ready = 2 };
 
 struct OpenPatch {
     isa::shared<std::int32_t> state; // a BuildState
-    std::int32_t first_line;         // of its first block, from Frame::grids
-    std::int32_t blocks;
-    std::int32_t block_lines; // from one block to the next
+    std::int32_t root;               // line of its coarsest block, from Frame::grids
+    std::int32_t padding[2];
 };
 
 // --- kd-tree
 // ----------------------------------------------------------------------------------------------------------
+// One tree, cut by level. A leaf lists what meets its cell at one level; rays for which that is too coarse go
+// on to the leaf's *finer* node, which covers the same cell and lists the blocks' children.
 enum NodeState : std::int32_t { node_unsplit = 0, node_busy = 1, node_inner = 2, node_leaf = 3 };
 struct KdNode {
     isa::shared<std::int32_t> state; // a NodeState
     float split;
-    std::int32_t axis; // inner: 0, 1, 2
+    std::int32_t axis; // inner: 0, 1, 2. Unsplit: not 0 if the list is a coarser node's, to be refined first
     std::int32_t
         link; // inner: index of the lower child, the upper follows; else: first line of its item list
 };
@@ -199,12 +248,17 @@ struct ItemList {
     std::int32_t count;
     std::int32_t stride;
     std::int32_t depth;
-    std::int32_t padding;
+    std::int32_t level; // leaves: the absolute level of every block that has children
     float cell_low[3], cell_high[3];
-    std::int32_t padding2[6];
+    std::int32_t finer; // leaves: the node for rays that this level is too coarse for; -1: it is fine enough
+                        // for all
+    float coarse;       // leaves: the target edge length from which on it is fine enough
+    std::int32_t padding[4];
+    float low[3], high[3]; // leaves: of all that is finer or can move, scene coordinates
+    std::int32_t padding2[10];
 };
-static_assert(sizeof(ItemList) == line_bytes);
-inline constexpr int item_list_words = 16;
+static_assert(sizeof(ItemList) == 2 * line_bytes);
+inline constexpr int item_list_words = 32;
 
 struct alignas(line_bytes) TreeRecord {
     isa::shared<std::int32_t> root_state; // a BuildState
@@ -244,6 +298,17 @@ enum FilmPlane : std::int32_t {
     film_planes = 10
 };
 
+// --- in which order the vertices of a block are blended
+// A block of 2^a x 2^b quads: pass 0 blends the vertices at steps of 4 quads that are no corners, pass 1
+// those of 2, pass 2 the rest. A pass lists `count`, then arrays of pass_vertices numbers: vertices, their
+// two parents, and the side they lie on (-1: none).
+inline constexpr int pass_vertices = 64;
+inline constexpr int pass_words = line_bytes / 4 + 4 * pass_vertices;
+constexpr int blend_pass(int log2_u, int log2_v, int pass) {
+    return ((log2_u * (block_log2 + 1) + log2_v) * blend_passes + pass) * pass_words;
+}
+inline constexpr int blend_table_words = blend_pass(block_log2 + 1, 0, 0);
+
 struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t tiles_x, tiles;
@@ -275,6 +340,12 @@ struct FrameHeader {
     isa::ref<Line> grids;
     isa::ref<QueueRecord> queues;
     isa::ref<float> film;
+    isa::ref<std::int32_t> blend_table;
+    float camera_growth; // of a camera ray's target edge length
+    float light_growth;  // of a ray to the light, times its distance; a ray to the sky
+    float sky_growth;
+    std::int32_t morphs; // 0: vertices stay at their anchors
+    float fixed_target;  // not 0: what all rays ask for, everywhere
 };
 
 inline constexpr int tile_side = 16; // pixels
@@ -283,7 +354,7 @@ inline constexpr int refit_patches =
 
 // --- scratch of a worker, in floats
 // -----------------------------------------------------------------------------------
-inline constexpr int kd_depth_limit = 60;
+inline constexpr int kd_depth_limit = 72;
 inline constexpr int mailbox_slots = 16;
 
 /// Why a kernel gave up (isa::trap).

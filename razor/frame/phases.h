@@ -10,11 +10,12 @@ enum Phase : int {
     phase_shade,      // the tile loop, camera rays, normals, materials
     phase_traverse,   // kd-tree descent
     phase_intersect,  // blocks
+    phase_morph,      // blocks between two levels, as one ray's footprint blends them
     phase_light,      // light samples, shadow rays' contributions
     phase_resolve,    // the film
     phase_count
 };
-inline constexpr const char* phase_names[phase_count] = {"animate",  "build",     "tessellate", "shade",
-                                                         "traverse", "intersect", "light",      "resolve"};
+inline constexpr const char* phase_names[phase_count] = {
+    "animate", "build", "tessellate", "shade", "traverse", "intersect", "morph", "light", "resolve"};
 
 } // namespace razor

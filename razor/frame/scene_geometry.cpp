@@ -37,6 +37,11 @@ double nearest_power_of_two(double length) {
     return std::exp2(std::round(std::log2(length)));
 }
 
+/// Finest level: no ray asks for less.
+double power_of_two_below(double length) {
+    return std::exp2(std::floor(std::log2(length)));
+}
+
 SceneGeometry locate_scene(const Scene& scene) {
     SceneGeometry g;
     const SceneGraph graph = drawn_graph(scene.graph, scene.meshes.size());
@@ -69,8 +74,9 @@ SceneGeometry locate_scene(const Scene& scene) {
         placed.world = flat.nodes[static_cast<std::size_t>(i.node)].world;
         placed.origin = glm::vec3(boxes[n].centre() - g.origin);
         double length = mesh.edge_length > 0 ? mesh.edge_length : automatic_edge_length(scene, boxes[n]);
-        placed.edge_length = std::clamp(
-            std::ldexp(nearest_power_of_two(length * i.rate), i.level_offset) * i.scale, 1e-30, 1e30);
+        length *= i.rate;
+        length = scene.settings.lod == Lod::fixed ? nearest_power_of_two(length) : power_of_two_below(length);
+        placed.edge_length = std::clamp(std::ldexp(length, i.level_offset) * i.scale, 1e-30, 1e30);
         g.instances.push_back(placed);
     }
     g.reach = glm::length(all.high - all.low) + glm::length(scene.camera.position - g.origin);

@@ -5,6 +5,7 @@
 // with one lane a cell.
 #pragma once
 
+#include "razor/kernels/blend.h"
 #include "razor/kernels/kd_build.h"
 
 #include <cstddef>
@@ -21,6 +22,10 @@ struct Rays {
     vvec origin, direction; // scene coordinates; unit directions
     vfloat t_min, t_max;
     vmask active;
+    // What each asks for: edges of length base + growth x distance from a ball about field_origin.
+    vvec field_origin;
+    vfloat radius, base, growth;
+    vint leader; // the first lane whose field is the same
 };
 
 struct Hits {
@@ -29,6 +34,13 @@ struct Hits {
     vint patch;    // -1: none
     vint triangle; // block number * 128 + quad (row * 8 + column) * 2 + which
     vint block;    // first line of the block in the grids
+    vint field;    // the lane whose field the block was blended for; -1: it was not
+};
+
+/// Bounds of the fields of a packet's rays: often enough to decide for all of them at once.
+struct FieldBounds {
+    svec low, high; // of the origins
+    sfloat least_radius, most_radius, least_base, most_base, least_growth, most_growth;
 };
 
 /// A group of rays of one packet whose directions agree in largest component, with all that is common to
@@ -47,6 +59,9 @@ struct Group {
         far[3]; // bounds of flip * origin, with slack: a plane is entered no earlier, left no later
     sfloat least[3], most[3]; // bounds of |1 / direction|
     sfloat first_t;           // least t_min
+    sfloat slack;             // of positions
+    sbool morphs;             // whether vertices leave their anchors
+    FieldBounds fields;
 };
 
 struct Projected {
@@ -77,7 +92,8 @@ struct View {
     vfloat ox, oy, oz;
     sint line, patch, number, triangles;
     sint quads_u, quads_v;
-    sint ancestors_at, hang[4], hangs;
+    sint cells_at, ancestors_at, hang[4], hangs;
+    sint field; // as in Hits
 };
 
 inline Projected project(const Group& g, const View& v, const vfloat& x, const vfloat& y, const vfloat& z) {
@@ -171,6 +187,7 @@ inline Border border_of(const View& v, sint i, sint j) {
     hits.patch = select(hit, vint(v.patch), hits.patch);
     hits.triangle = select(hit, number, hits.triangle);
     hits.block = select(hit, vint(v.line), hits.block);
+    hits.field = select(hit, vint(v.field), hits.field);
 }
 
 /// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
@@ -293,15 +310,15 @@ inline void fill_gap(const Group& g, const View& v, int s, sint i, sint triangle
     }
 }
 
-/// Cells whose box some ray of the group may meet before its present hit: conservative, by interval
+/// Cells whose box, widened, some ray of the group may meet before its present hit: conservative, by interval
 /// arithmetic.
-inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint cells_at, sint from,
-                       sint cells, sfloat last_t) {
+inline vmask cells_met(const Group& g, const View& v, const svec& origin, sfloat widen, sint from, sint cells,
+                       sfloat last_t) {
     sfloat shift[3] = {origin.x, origin.y, origin.z};
     vfloat enter = vfloat(g.first_t);
     vfloat leave = vfloat(last_t);
     vmask m = first_lanes(cells - from);
-    pointer<float> low = v.words + cells_at + from;
+    pointer<float> low = v.words + v.cells_at + from;
     for (int k = 0; k < 3; ++k) {
         if (branch(g.mixed[k]))
             continue;
@@ -312,8 +329,8 @@ inline vmask cells_met(const Group& g, const View& v, const svec& origin, sint c
         vfloat far_plane = load_vector(low + k * cell_boxes + far_at, m);
         sfloat moved = g.flip[k] * shift[k];
         vfloat flip = vfloat(g.flip[k]);
-        sfloat near_origin = g.near[k] - moved;
-        sfloat far_origin = g.far[k] - moved;
+        sfloat near_origin = g.near[k] - moved + widen;
+        sfloat far_origin = g.far[k] - moved - widen;
         vfloat near_distance = near_plane * flip;
         near_distance = near_distance - vfloat(near_origin);
         vfloat far_distance = far_plane * flip;
@@ -371,7 +388,7 @@ inline void intersect_cell(const Context& c, const Group& g, const View& v, sint
     }
 }
 
-/// The packet's rays against boxes of a block, unpermuted, in mesh coordinates.
+/// The packet's rays against boxes, unpermuted.
 struct Slabs {
     vfloat origin[3], inverse[3], error[3];
 };
@@ -379,15 +396,17 @@ struct Slabs {
 /// Lanes whose ray meets a box before its present hit; the box is widened by the slack of positions. Its
 /// planes lie at low[k * step] and at low[(k + 3) * step].
 template <bool Mixed>
-inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> low, int step,
+inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> low, sint step,
                        const vfloat& last_t) {
     vfloat enter = g.t_min;
     vfloat leave = last_t;
     for (int k = 0; k < 3; ++k) {
-        sint near_at = g.sign[k] * (3 * step);
-        sint far_at = sint(3 * step) - near_at;
-        vfloat near = load_broadcast(low + k * step + near_at);
-        vfloat far = load_broadcast(low + k * step + far_at);
+        sint half = step * 3;
+        sint near_at = select(g.sign[k] != 0, half, sint(0));
+        sint far_at = half - near_at;
+        pointer<const float> plane = low + step * k;
+        vfloat near = load_broadcast(plane + near_at);
+        vfloat far = load_broadcast(plane + far_at);
         near = (near - rays.origin[k]) * rays.inverse[k];
         far = (far - rays.origin[k]) * rays.inverse[k];
         if constexpr (Mixed) {
@@ -401,41 +420,11 @@ inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> l
     return g.alive & (enter <= leave);
 }
 
-template <Features F, bool Mixed>
-[[gnu::noinline]] inline void intersect_block(const Context& c, const Group& g, sint line, Hits& hits) {
-    phase_scope phase(phase_intersect);
-    pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
-    sint mesh = load(field(header, &BlockHeader::mesh));
-    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
-    Slabs rays;
-    for (int k = 0; k < 3; ++k) {
-        vfloat o = load_vector(c.packets + (packet_origin + k * isa::width));
-        rays.origin[k] = o - load_broadcast(origin_at + k);
-        rays.inverse[k] = load_vector(c.packets + (packet_inverse + k * isa::width));
-        rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
-    }
-    static_assert(offsetof(BlockHeader, box_high) == offsetof(BlockHeader, box_low) + 3 * sizeof(float));
-    tally(c.counters->box_tests, 1);
-    if (branch(none(rays_meet<Mixed>(g, rays, field(header, &BlockHeader::box_low), 1, hits.t))))
-        return;
-    tally(c.counters->block_tests, 1);
-    View v;
-    v.line = line;
-    v.words = as<float>(header);
-    v.patch = load(field(header, &BlockHeader::patch));
-    v.number = load(field(header, &BlockHeader::number));
-    v.triangles = load(field(header, &BlockHeader::triangles));
-    v.quads_u = load(field(header, &BlockHeader::quads_u));
-    v.quads_v = load(field(header, &BlockHeader::quads_v));
-    sint stride = load(field(header, &BlockHeader::stride));
-    sint cells_at = load(field(header, &BlockHeader::cells_at));
-    if constexpr (F.hanging) {
-        v.hangs = load(field(header, &BlockHeader::hangs));
-        v.ancestors_at = load(field(header, &BlockHeader::ancestors_at));
-        for (int s = 0; s < 4; ++s)
-            v.hang[s] = load(field(header, &BlockHeader::hang) + s);
-    }
-    pointer<float> vertices = v.words + block_header_words;
+/// The block's vertices as the group sees them: blended ones or, at its own place, anchors.
+inline void set_vertices(const Group& g, View& v, sint stride, pointer<float> words,
+                         pointer<float> origin_at) {
+    v.words = words;
+    pointer<float> vertices = words + block_header_words;
     v.x = vertices + stride * g.kx;
     v.y = vertices + stride * g.ky;
     v.z = vertices + stride * g.kz;
@@ -445,9 +434,23 @@ template <Features F, bool Mixed>
     v.ox = g.ox - mx;
     v.oy = g.oy - my;
     v.oz = g.oz - mz;
-    if (branch(cells_at == 0)) {
-        intersect_cell<F>(c, g, v, 0, 0, hits);
+}
+
+/// Calls visit(column, row, cell, lanes) for each cell of the block that rays of the group meet, its box
+/// widened.
+template <bool Mixed, class Visit>
+inline void visit_cells(const Group& g, const View& v, pointer<float> block, const Slabs& scene, sfloat widen,
+                        pointer<float> origin_at, const Hits& hits, Visit visit) {
+    if (branch(v.cells_at == 0)) {
+        visit(sint(0), sint(0), sint(0), g.alive);
         return;
+    }
+    Slabs rays;
+    for (int k = 0; k < 3; ++k) {
+        rays.origin[k] = scene.origin[k] - load_broadcast(origin_at + k);
+        rays.inverse[k] = scene.inverse[k];
+        vfloat rate = abs(scene.inverse[k]);
+        rays.error[k] = fma(rate, vfloat(widen), scene.error[k]);
     }
     svec origin = load_svec(origin_at);
     sint cells_u = (v.quads_u + 1) >> 1;
@@ -457,19 +460,300 @@ template <Features F, bool Mixed>
     vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
     sfloat last_t = reduce_max(furthest);
     for (sint from = 0; branch(from < cells); from += isa::width) {
-        vmask met = cells_met(g, v, origin, cells_at, from, cells, last_t);
+        vmask met = cells_met(g, v, origin, widen, from, cells, last_t);
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
-            pointer<const float> box = v.words + cells_at + cell;
-            if (branch(none(rays_meet<Mixed>(g, rays, box, cell_boxes, hits.t))))
+            pointer<const float> box = block + v.cells_at + cell;
+            vmask lanes = rays_meet<Mixed>(g, rays, box, cell_boxes, hits.t);
+            if (branch(none(lanes)))
                 continue;
             sint row = cell >> shift;
             sint column = cell - (row << shift);
+            sint column_begin = column * 2;
+            visit(column_begin, row * 2, cell, lanes);
+        }
+    }
+}
+
+/// All ask for the same everywhere.
+inline void fix_target(sfloat target, Rays& r) {
+    r.base = vfloat(target);
+    r.growth = vfloat(0.0F);
+    r.leader = vint(0);
+}
+
+/// The rays' fields, one a lane.
+struct Fields {
+    vvec origin;
+    vfloat radius, base, growth;
+};
+inline Fields load_fields(const Context& c) {
+    pointer<float> at = c.packets + packet_field;
+    Fields f;
+    f.origin.x = load_vector(at);
+    f.origin.y = load_vector(at + isa::width);
+    f.origin.z = load_vector(at + 2 * isa::width);
+    f.radius = load_vector(at + 3 * isa::width);
+    f.base = load_vector(at + 4 * isa::width);
+    f.growth = load_vector(at + 5 * isa::width);
+    return f;
+}
+
+/// The field of lane `leader`, in the coordinates of the mesh whose origin is given.
+inline Field field_of(const Context& c, sint leader, const svec& mesh_origin) {
+    pointer<float> at = c.packets + packet_field + leader;
+    Field f;
+    f.origin.x = load(at);
+    f.origin.y = load(at + isa::width);
+    f.origin.z = load(at + 2 * isa::width);
+    f.radius = load(at + 3 * isa::width);
+    f.base = load(at + 4 * isa::width);
+    f.growth = load(at + 5 * isa::width);
+    f.origin = f.origin - mesh_origin;
+    return f;
+}
+
+/// Nearest and furthest distance of a box from each field's origin, along one axis.
+struct Span {
+    vfloat near, far;
+};
+inline Span span_of(const vfloat& origin, const vfloat& low, const vfloat& high) {
+    vfloat before = low - origin;
+    vfloat after = origin - high;
+    Span s;
+    s.near = max(max(before, after), vfloat(0.0F));
+    vfloat most = min(before, after);
+    s.far = -most;
+    return s;
+}
+
+/// Bounds of each field's target edge lengths in a box (scene coordinates), rounded outward. Least is no more
+/// than any target there, by more than what positions are rounded by; most no less.
+struct Targets {
+    vfloat least, most;
+};
+inline Targets targets_in(const Context& c, const svec& low, const svec& high, sfloat slack) {
+    Fields f = load_fields(c);
+    vvec lowest = broadcast(low);
+    vvec highest = broadcast(high);
+    Span x = span_of(f.origin.x, lowest.x, highest.x);
+    Span y = span_of(f.origin.y, lowest.y, highest.y);
+    Span z = span_of(f.origin.z, lowest.z, highest.z);
+    vfloat near = sqrt(fma(x.near, x.near, fma(y.near, y.near, z.near * z.near)));
+    vfloat far = sqrt(fma(x.far, x.far, fma(y.far, y.far, z.far * z.far)));
+    vfloat wide = vfloat(slack);
+    near = fma(near, vfloat(1.0F - 1.0e-6F), -wide) - f.radius;
+    near = max(near, vfloat(0.0F));
+    far = fma(far, vfloat(1.0F + 1.0e-6F), wide) - f.radius;
+    far = max(far, vfloat(0.0F));
+    vfloat at_near = fma(f.growth, near, f.base);
+    vfloat at_far = fma(f.growth, far, f.base);
+    Targets t;
+    vfloat less = min(at_near, at_far);
+    vfloat more = max(at_near, at_far);
+    vfloat margin = abs(f.base) * 1.0e-6F;
+    t.least = fma(less, vfloat(1.0F - 1.0e-6F), -margin);
+    t.most = fma(more, vfloat(1.0F + 1.0e-6F), margin);
+    vfloat floor(least_target);
+    t.least = max(t.least, floor);
+    t.most = max(t.most, floor);
+    return t;
+}
+
+/// Bounds of all fields' target edge lengths in a box. Nowhere is a target less than `least` or more than
+/// `most`; and no field's own least is more than `greatest_least`. Growth of either sign: shrinking fields
+/// are bounded by what they begin with.
+struct CommonTargets {
+    sfloat least, greatest_least, most;
+};
+inline CommonTargets common_targets_in(const FieldBounds& f, const svec& low, const svec& high,
+                                       sfloat slack) {
+    sfloat lows[3] = {low.x, low.y, low.z};
+    sfloat highs[3] = {high.x, high.y, high.z};
+    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
+    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
+    sfloat nearest = 0.0F; // squares of distances
+    sfloat near_of_all = 0.0F;
+    sfloat furthest = 0.0F;
+    for (int k = 0; k < 3; ++k) {
+        sfloat before = lows[k] - last[k];
+        sfloat after = first[k] - highs[k];
+        sfloat near = max(max(before, after), 0.0F);
+        nearest = fma(near, near, nearest);
+        sfloat widest_before = lows[k] - first[k];
+        sfloat widest_after = last[k] - highs[k];
+        near = max(max(widest_before, widest_after), 0.0F);
+        near_of_all = fma(near, near, near_of_all);
+        sfloat far_before = last[k] - lows[k];
+        sfloat far_after = highs[k] - first[k];
+        sfloat far = max(far_before, far_after);
+        furthest = fma(far, far, furthest);
+    }
+    constexpr float down = 1.0F - 2.0e-6F;
+    constexpr float up = 1.0F + 2.0e-6F;
+    sfloat near = sqrt(nearest) * down - slack;
+    near = max(near - f.most_radius, 0.0F);
+    sfloat every = sqrt(near_of_all) * up + slack;
+    every = max(every - f.least_radius, 0.0F);
+    sfloat far = sqrt(furthest) * up + slack;
+    far = max(far - f.least_radius, 0.0F);
+    sfloat rising = max(f.most_growth, 0.0F);
+    sfloat falling = min(f.least_growth, 0.0F);
+    sfloat slowest = max(f.least_growth, 0.0F);
+    CommonTargets t;
+    sfloat fallen = fma(falling, far, f.least_base);
+    t.least = fma(slowest, near, fallen) * down;
+    t.greatest_least = fma(rising, every, f.most_base) * up;
+    t.most = fma(rising, far, f.most_base) * up;
+    return t;
+}
+
+/// What a leaf says of the blocks it lists.
+struct Listed {
+    sint line;
+    pointer<const float> box; // in scene coordinates
+    sint box_step;
+    sint level; // of the leaf
+};
+
+/// The same for rays that see the block's vertices off their anchors. Which cells they may meet is found once
+/// for all, with room for how far vertices may be; only then is it blended, once a field.
+template <Features F, bool Mixed>
+[[gnu::noinline]] inline void intersect_blended(const Context& c, Group& g, View v, const Listed& listed,
+                                                const Slabs& rays, sint stride, vmask moved, sfloat most,
+                                                Hits& hits) {
+    pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
+    sint mesh = load(field(header, &BlockHeader::mesh));
+    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
+    sfloat sway = sway_of(c, header, most);
+    vint cells_of_lane(0);
+    sint cells = 0;
+    g.alive = moved;
+    auto note = [&](sint, sint, sint cell, const vmask& lanes) {
+        sint bit = sint(1) << cell;
+        cells = cells | bit;
+        vint more = select(lanes, vint(bit), vint(0));
+        cells_of_lane = cells_of_lane | more;
+    };
+    visit_cells<Mixed>(g, v, as<float>(header), rays, sway, origin_at, hits, note);
+    if (branch(cells == 0))
+        return;
+    moved = cells_of_lane != vint(0);
+    if constexpr (F.hanging) {
+        v.ancestors_at = blend_ancestors;
+        sint hangs = 0;
+        for (int s = 0; s < 4; ++s) {
+            v.hang[s] = hang_at(header, s, listed.level);
+            hangs = hangs | v.hang[s];
+        }
+        v.hangs = hangs;
+    }
+    sint cells_u = (v.quads_u + 1) >> 1;
+    sbool wide = cells_u > 2;
+    sint shift = select(wide, sint(2), cells_u - 1);
+    vint leaders = load_vector(as<std::int32_t>(c.packets + packet_leader));
+    svec origin = load_svec(origin_at);
+    while (branch(any(moved))) {
+        sint leader = extract(leaders, first(moved));
+        vmask same = moved & (leaders == vint(leader));
+        moved = moved & !same;
+        tally(c.counters->blended_tests, 1);
+        v.field = leader;
+        pointer<float> words = blend_block(c, field_of(c, leader, origin), listed.line, listed.level);
+        set_vertices(g, v, stride, words, origin_at);
+        sint left = cells;
+        for (sint cell = 0; branch(left != 0); ++cell) {
+            sint here = left & 1;
+            left = left >> 1;
+            if (branch(here == 0))
+                continue;
+            vint bit = cells_of_lane >> vint(cell);
+            g.alive = same & ((bit & vint(1)) != vint(0));
+            if (branch(none(g.alive)))
+                continue;
             tally(c.counters->cell_tests, 1);
+            sint row = cell >> shift;
+            sint column = cell - (row << shift);
             sint column_begin = column * 2;
             intersect_cell<F>(c, g, v, column_begin, row * 2, hits);
         }
     }
+}
+
+/// Rays of the group against a block listed by a leaf that is fine enough for all of them. Those to which all
+/// its vertices are at their anchors take it as it lies; for the others it is blended, once a field.
+template <Features F, bool Mixed>
+[[gnu::noinline]] inline void intersect_block(const Context& c, Group& g, const Listed& listed, Hits& hits) {
+    phase_scope phase(phase_intersect);
+    Slabs rays;
+    for (int k = 0; k < 3; ++k) {
+        rays.origin[k] = load_vector(c.packets + (packet_origin + k * isa::width));
+        rays.inverse[k] = load_vector(c.packets + (packet_inverse + k * isa::width));
+        rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
+    }
+    tally(c.counters->box_tests, 1);
+    vmask met = rays_meet<Mixed>(g, rays, listed.box, listed.box_step, hits.t);
+    if (branch(none(met)))
+        return;
+    tally(c.counters->block_tests, 1);
+    pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
+    sint mesh = load(field(header, &BlockHeader::mesh));
+    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
+    View v;
+    v.line = listed.line;
+    v.words = as<float>(header);
+    v.patch = load(field(header, &BlockHeader::patch));
+    v.number = load(field(header, &BlockHeader::number));
+    v.triangles = load(field(header, &BlockHeader::triangles));
+    v.quads_u = load(field(header, &BlockHeader::quads_u));
+    v.quads_v = load(field(header, &BlockHeader::quads_v));
+    v.cells_at = load(field(header, &BlockHeader::cells_at));
+    v.field = -1;
+    sint stride = load(field(header, &BlockHeader::stride));
+    if constexpr (F.hanging) {
+        v.hangs = load(field(header, &BlockHeader::hangs));
+        v.ancestors_at = load(field(header, &BlockHeader::ancestors_at));
+        for (int s = 0; s < 4; ++s)
+            v.hang[s] = load(field(header, &BlockHeader::hang) + s);
+    }
+    vmask all = g.alive;
+    vmask moved = vmask(false);
+    sfloat most = 0.0F;
+    if constexpr (F.hanging) {
+        sint movable = load(field(header, &BlockHeader::movable));
+        if (branch(g.morphs & (movable != 0))) {
+            svec origin = load_svec(origin_at);
+            svec low = load_svec(field(header, &BlockHeader::box_low)) + origin;
+            svec high = load_svec(field(header, &BlockHeader::box_high)) + origin;
+            sint absolute = load(field(header, &BlockHeader::absolute));
+            sfloat begin = moving_from(absolute);
+            CommonTargets all_fields = common_targets_in(g.fields, low, high, g.slack);
+            sbool some = all_fields.most > begin;
+            if (branch(some | (absolute < listed.level))) {
+                Targets t = targets_in(c, low, high, g.slack);
+                moved = met & (t.most > vfloat(begin));
+                moved = moved | (met & vmask(absolute < listed.level));
+                most = reduce_max(select(moved, t.most, vfloat(0.0F)));
+            }
+        }
+    }
+    vmask plain = met & !moved;
+    pointer<float> block = as<float>(header);
+    set_vertices(g, v, stride, block, origin_at);
+    if (branch(any(plain))) {
+        tally(c.counters->plain_tests, 1);
+        g.alive = plain;
+        auto visit = [&](sint column, sint row, sint, const vmask&) {
+            tally(c.counters->cell_tests, 1);
+            intersect_cell<F>(c, g, v, column, row, hits);
+        };
+        visit_cells<Mixed>(g, v, block, rays, 0.0F, origin_at, hits, visit);
+    }
+    if constexpr (F.hanging) {
+        if (branch(any(moved)))
+            intersect_blended<F, Mixed>(c, g, v, listed, rays, stride, moved, most, hits);
+    }
+    g.alive = all;
 }
 
 } // namespace intersect_kernel

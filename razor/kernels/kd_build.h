@@ -2,7 +2,8 @@
 // Planes are sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). The bonus
 // for empty space ranks planes only: whether to split is asked of the cost, or piles would be trimmed for
 // ever. Patches stay closed in the lists until their box is large against the node's cell (after Hunt et al.
-// 2007).
+// 2007). A node of few blocks becomes a leaf of their level; rays for which that is too coarse go on to its
+// finer node, whose list is made of the blocks' children and split in turn.
 #pragma once
 
 #include "razor/kernels/kd_list.h"
@@ -134,10 +135,38 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
         pointer<KdNode> node = c.nodes + (children + k);
         close_list(child[k]);
         store(field(node, &KdNode::link), child[k].line);
+        store(field(node, &KdNode::axis), 0);
         sint state = select(child[k].count == 0, sint(node_leaf), sint(node_unsplit));
         store_release(field(node, &KdNode::state), state);
     }
     return children;
+}
+
+/// Writes the list of a leaf, every item a block.
+inline void make_leaf(const Context& c, const List& l) {
+    close_list(l);
+    Leaf leaf = survey(c, l);
+    pointer<ItemList> header = l.header;
+    store(field(header, &ItemList::level), leaf.level);
+    store(field(header, &ItemList::coarse), power_of_two(leaf.level));
+    pointer<float> low = field(header, &ItemList::low);
+    store(low, leaf.low.x);
+    store(low + 1, leaf.low.y);
+    store(low + 2, leaf.low.z);
+    pointer<float> high = field(header, &ItemList::high);
+    store(high, leaf.high.x);
+    store(high + 1, leaf.high.y);
+    store(high + 2, leaf.high.z);
+}
+
+/// A node for those rays for which the leaf is too coarse.
+inline void make_finer(const Context& c, const List& l) {
+    sint finer = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
+    store(field(l.header, &ItemList::finer), finer);
+    pointer<KdNode> node = c.nodes + finer;
+    store(field(node, &KdNode::link), l.line);
+    store(field(node, &KdNode::axis), 1);
+    store_release(field(node, &KdNode::state), node_unsplit);
 }
 
 /// Splits a node or makes it a leaf; returns its new state, not yet published.
@@ -145,6 +174,9 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     phase_scope phase(phase_build);
     sint line = load(field(node, &KdNode::link));
     List l = read_list(c, line);
+    sint refine = load(field(node, &KdNode::axis));
+    if (branch(refine != 0))
+        l = refine_items(c, l);
     sfloat cell = largest(l.high - l.low);
     vfloat limit = vfloat(cell * large_item);
     sbool few = l.count <= few_items;
@@ -180,9 +212,19 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
             return node_inner;
         }
         if (branch(patches == 0)) {
-            close_list(l);
-            store(field(node, &KdNode::link), l.line);
-            return node_leaf;
+            make_leaf(c, l);
+            sint level = load(field(l.header, &ItemList::level));
+            sfloat target = load(field(c.frame, &FrameHeader::fixed_target));
+            sbool wanted = target == 0.0F; // by some ray
+            wanted = wanted | (target >= power_of_two(level));
+            if (branch(wanted | (level == least_level))) {
+                if (branch(level != least_level))
+                    make_finer(c, l);
+                store(field(node, &KdNode::link), l.line);
+                return node_leaf;
+            }
+            l = refine_items(c, l);
+            continue;
         }
         l = open_items(c, l, closed);
         patches = 0;
@@ -246,6 +288,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
     close_list(l);
     pointer<KdNode> node = c.nodes + root;
     store(field(node, &KdNode::link), l.line);
+    store(field(node, &KdNode::axis), 0);
     store_release(field(node, &KdNode::state), node_unsplit);
     store(field(c.tree, &TreeRecord::root), root);
 }

@@ -2,7 +2,7 @@
 // as arrays.
 #pragma once
 
-#include "razor/kernels/tessellate.h"
+#include "razor/kernels/reach.h"
 
 namespace razor::ISA_TARGET {
 inline namespace build_kernel {
@@ -27,7 +27,7 @@ inline List make_list(const Context& c, sint count, sint depth, const svec& low,
     l.low = low;
     l.high = high;
     l.stride = list_stride(count);
-    sint lines = (l.stride * 7 >> 4) + 1;
+    sint lines = (l.stride * 7 >> 4) + item_list_words / 16;
     l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, lines, trap_lists_full);
     l.header = as<ItemList>(c.lists + l.line);
     pointer<float> words = as<float>(l.header) + item_list_words;
@@ -40,6 +40,7 @@ inline void close_list(const List& l) {
     store(field(l.header, &ItemList::count), l.count);
     store(field(l.header, &ItemList::stride), l.stride);
     store(field(l.header, &ItemList::depth), l.depth);
+    store(field(l.header, &ItemList::finer), -1);
     pointer<float> low = field(l.header, &ItemList::cell_low);
     store(low, l.low.x);
     store(low + 1, l.low.y);
@@ -108,21 +109,33 @@ inline vmask is_above(const vfloat& high, const vfloat& plane) {
     return high > plane;
 }
 
-/// Opens the patches among the items that `wanted` chooses and returns the list with their blocks instead.
+/// Appends block `line`, with its box in scene coordinates, if that meets the list's cell; returns the
+/// position after it.
+inline sint append_block(const List& l, sint at, sint line, const svec& low, const svec& high) {
+    sbool meets = low.x <= l.high.x;
+    meets = meets & (high.x >= l.low.x);
+    meets = meets & (low.y <= l.high.y);
+    meets = meets & (high.y >= l.low.y);
+    meets = meets & (low.z <= l.high.z);
+    meets = meets & (high.z >= l.low.z);
+    if (branch(!meets))
+        return at;
+    sint item = sint(-1) - line;
+    store(l.items + at, item);
+    pointer<float> box = l.boxes + at;
+    store(box, low.x);
+    store(box + l.stride, low.y);
+    store(box + l.stride * 2, low.z);
+    store(box + l.stride * 3, high.x);
+    store(box + l.stride * 4, high.y);
+    store(box + l.stride * 5, high.z);
+    return at + 1;
+}
+
+/// Opens the patches among the items that `wanted` chooses and returns the list with their coarsest blocks
+/// instead.
 template <class Wanted> inline List open_items(const Context& c, const List& old, Wanted wanted) {
-    sint total = old.count;
-    for (sint from = 0; branch(from < old.count); from += isa::width) {
-        vmask valid = first_lanes(old.count - from);
-        Items v = load_items(old, from, valid);
-        vmask m = valid & wanted(v);
-        for (; branch(any(m)); m = clear_first(m)) {
-            sint patch = extract(v.item, first(m));
-            pointer<OpenPatch> entry = open_patch(c, patch);
-            sint blocks = load(field(entry, &OpenPatch::blocks));
-            total = total + (blocks - 1);
-        }
-    }
-    List l = make_list(c, total, old.depth, old.low, old.high);
+    List l = make_list(c, old.count, old.depth, old.low, old.high);
     sint at = 0;
     for (sint from = 0; branch(from < old.count); from += isa::width) {
         vmask valid = first_lanes(old.count - from);
@@ -131,38 +144,139 @@ template <class Wanted> inline List open_items(const Context& c, const List& old
         at = append(l, at, v, valid & !m);
         for (; branch(any(m)); m = clear_first(m)) {
             sint patch = extract(v.item, first(m));
-            pointer<OpenPatch> entry = c.open + patch;
-            sint line = load(field(entry, &OpenPatch::first_line));
-            sint blocks = load(field(entry, &OpenPatch::blocks));
-            sint step = load(field(entry, &OpenPatch::block_lines));
-            sint mesh = load(field(c.patches + patch, &PatchRecord::mesh));
-            svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
-            for (sint i = 0; branch(i < blocks); ++i) {
-                pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-                svec low = load_svec(field(block, &BlockHeader::box_low));
-                svec high = load_svec(field(block, &BlockHeader::box_high));
-                low = low + origin;
-                high = high + origin;
-                sbool meets = low.x <= old.high.x;
-                meets = meets & (high.x >= old.low.x);
-                meets = meets & (low.y <= old.high.y);
-                meets = meets & (high.y >= old.low.y);
-                meets = meets & (low.z <= old.high.z);
-                meets = meets & (high.z >= old.low.z);
-                if (branch(meets)) {
-                    sint item = sint(-1) - line;
-                    store(l.items + at, item);
-                    pointer<float> box = l.boxes + at;
-                    store(box, low.x);
-                    store(box + l.stride, low.y);
-                    store(box + l.stride * 2, low.z);
-                    store(box + l.stride * 3, high.x);
-                    store(box + l.stride * 4, high.y);
-                    store(box + l.stride * 5, high.z);
-                    ++at;
-                }
-                line = line + step;
+            pointer<OpenPatch> entry = open_patch(c, patch);
+            sint line = load(field(entry, &OpenPatch::root));
+            Reach box = reach_of(c, line, 3.0e38F);
+            at = append_block(l, at, line, box.low, box.high);
+        }
+    }
+    l.count = at;
+    return l;
+}
+
+/// What rays can want of a leaf's blocks.
+struct Leaf {
+    sint level;     // absolute, of those that have children; least_level: none has
+    svec low, high; // of everything finer, and of everything that can move
+};
+inline constexpr int least_level = -200;
+
+/// Widens the leaf's box by that of everything at or below a block.
+inline void widen(const Context& c, pointer<BlockHeader> block, Leaf& leaf) {
+    sint mesh = load(field(block, &BlockHeader::mesh));
+    svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
+    svec low = load_svec(field(block, &BlockHeader::box_low));
+    svec high = load_svec(field(block, &BlockHeader::box_high));
+    low = low + origin;
+    high = high + origin;
+    leaf.low = {min(low.x, leaf.low.x), min(low.y, leaf.low.y), min(low.z, leaf.low.z)};
+    leaf.high = {max(high.x, leaf.high.x), max(high.y, leaf.high.y), max(high.z, leaf.high.z)};
+}
+
+/// A side that hangs from an edge longer than the block is where that edge's vertices say, which lie outside
+/// the block, if one of them has not gone. So they count too: with the first coarser block that spans the
+/// edge.
+inline void widen_along_edges(const Context& c, pointer<BlockHeader> block, Leaf& leaf) {
+    sint longest = 0; // by how much an edge is longer, log2
+    for (int s = 0; s < 4; ++s) {
+        sint hang = load(field(block, &BlockHeader::hang) + s);
+        sint curve = load(field(block, &BlockHeader::curve) + s);
+        sint quads = load(field(block, s % 2 == 0 ? &BlockHeader::quads_u : &BlockHeader::quads_v));
+        sint more = hang - log2_quads(quads);
+        longest = select(curve >= 0, max(more, longest), longest);
+    }
+    if (branch(longest <= 0))
+        return;
+    sint parent = load(field(block, &BlockHeader::parent));
+    while (branch(longest > 0)) {
+        if (branch(parent < 0))
+            break;
+        block = as<BlockHeader>(c.grids + parent);
+        parent = load(field(block, &BlockHeader::parent));
+        --longest;
+    }
+    widen(c, block, leaf);
+}
+
+/// One block after the other: leaves are short.
+inline Leaf survey(const Context& c, const List& l) {
+    Leaf leaf;
+    leaf.level = least_level;
+    leaf.low = {sfloat(3.0e38F), sfloat(3.0e38F), sfloat(3.0e38F)};
+    leaf.high = {sfloat(-3.0e38F), sfloat(-3.0e38F), sfloat(-3.0e38F)};
+    for (sint i = 0; branch(i < l.count); ++i) {
+        sint item = load(l.items + i);
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + (sint(-1) - item));
+        sint level = load(field(block, &BlockHeader::level));
+        sint movable = load(field(block, &BlockHeader::movable));
+        sint absolute = load(field(block, &BlockHeader::absolute));
+        leaf.level = select(level > 0, max(absolute, leaf.level), leaf.level);
+        if (branch((level | movable) != 0)) {
+            widen(c, block, leaf);
+            sint hangs = load(field(block, &BlockHeader::hangs));
+            if (branch(hangs != 0))
+                widen_along_edges(c, block, leaf);
+        }
+    }
+    return leaf;
+}
+
+/// The items of a leaf one level finer: the children, as far as they meet the cell, of the blocks of the
+/// leaf's level; the others stay.
+inline List refine_items(const Context& c, const List& old) {
+    sint level = load(field(old.header, &ItemList::level));
+    sint total = 0;
+    for (sint i = 0; branch(i < old.count); ++i) {
+        sint line = sint(-1) - load(old.items + i);
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        sint absolute = load(field(block, &BlockHeader::absolute));
+        sint finer = load(field(block, &BlockHeader::level));
+        sbool refine = absolute == level;
+        refine = refine & (finer > 0);
+        if (branch(refine)) {
+            ensure_children(c, line, block);
+            sint columns = load(field(block, &BlockHeader::child_columns));
+            sint rows = load(field(block, &BlockHeader::child_rows));
+            total = total + columns * rows;
+        } else {
+            ++total;
+        }
+    }
+    sfloat coarse = load(field(old.header, &ItemList::coarse));
+    svec low = load_svec(field(old.header, &ItemList::low));
+    svec high = load_svec(field(old.header, &ItemList::high));
+    sfloat most = coarsest_target(coarse, high - low);
+    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
+    most = select(fixed > 0.0F, fixed, most);
+    List l = make_list(c, total, old.depth + 1, old.low, old.high);
+    sint at = 0;
+    for (sint i = 0; branch(i < old.count); ++i) {
+        sint line = sint(-1) - load(old.items + i);
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        sint absolute = load(field(block, &BlockHeader::absolute));
+        sint finer = load(field(block, &BlockHeader::level));
+        sbool refine = absolute == level;
+        refine = refine & (finer > 0);
+        if (branch(refine)) {
+            sint child = load(field(block, &BlockHeader::child_line));
+            sint step = load(field(block, &BlockHeader::child_lines));
+            sint columns = load(field(block, &BlockHeader::child_columns));
+            sint rows = load(field(block, &BlockHeader::child_rows));
+            sint children = columns * rows;
+            for (sint k = 0; branch(k < children); ++k) {
+                Reach box = reach_of(c, child, most);
+                at = append_block(l, at, child, box.low, box.high);
+                child = child + step;
             }
+        } else {
+            Reach box;
+            box.low.x = load(old.boxes + i);
+            box.low.y = load(old.boxes + old.stride + i);
+            box.low.z = load(old.boxes + old.stride * 2 + i);
+            box.high.x = load(old.boxes + old.stride * 3 + i);
+            box.high.y = load(old.boxes + old.stride * 4 + i);
+            box.high.z = load(old.boxes + old.stride * 5 + i);
+            at = append_block(l, at, line, box.low, box.high);
         }
     }
     l.count = at;

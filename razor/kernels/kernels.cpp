@@ -28,6 +28,15 @@ template <Features F> void trace_all(const WorkerArguments& w, const TraceArgume
         r.direction.z = load_vector(in(a.direction[2]) + i, r.active);
         r.t_min = load_vector(in(a.t_min) + i, r.active);
         r.t_max = load_vector(in(a.t_max) + i, r.active);
+        r.field_origin = r.origin;
+        r.radius = vfloat(0.0F);
+        r.leader = lane_index();
+        if (a.base == nullptr) {
+            fix_target(least_target, r);
+        } else {
+            r.base = load_vector(in(a.base) + i, r.active);
+            r.growth = load_vector(in(a.growth) + i, r.active);
+        }
         if (a.any_hit) {
             Hits h = trace<F, true>(c, r);
             store_vector(pointer<std::int32_t>(a.patch) + i, h.patch, r.active);

@@ -39,13 +39,12 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
     tally(c.counters->normal_blocks, 1);
     sint patch = load(field(header, &BlockHeader::patch));
     sint mesh = load(field(header, &BlockHeader::mesh));
-    sint number = load(field(header, &BlockHeader::number));
-    Cage g = load_cage(c, mesh);
-    Dicing d = plan_dicing(c, g, patch);
-    sint columns_log2 = max(d.nu - block_log2, 0);
+    sint level = load(field(header, &BlockHeader::level));
+    Cage g = load_cage(c, mesh, level);
+    Dicing d = plan_dicing(c, g, patch, level);
     Block b;
-    b.row = number >> columns_log2;
-    b.column = number - (b.row << columns_log2);
+    b.row = load(field(header, &BlockHeader::row));
+    b.column = load(field(header, &BlockHeader::column));
     b.quads_u = load(field(header, &BlockHeader::quads_u));
     b.stride = load(field(header, &BlockHeader::stride));
     pointer<float> out = as<float>(c.grids + line) + normals_at;

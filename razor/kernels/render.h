@@ -14,6 +14,8 @@ inline constexpr int packet_height = isa::width / packet_width;
 
 struct Camera {
     vvec position, corner, x, y;
+    vfloat growth;
+    sfloat fixed; // target edge length of all rays; 0: none
 };
 
 inline Camera load_camera(const Context& c) {
@@ -22,6 +24,8 @@ inline Camera load_camera(const Context& c) {
     k.corner = load_broadcast_vec(field(c.frame, &FrameHeader::film_corner));
     k.x = load_broadcast_vec(field(c.frame, &FrameHeader::film_x));
     k.y = load_broadcast_vec(field(c.frame, &FrameHeader::film_y));
+    k.growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
+    k.fixed = load(field(c.frame, &FrameHeader::fixed_target));
     return k;
 }
 
@@ -38,6 +42,13 @@ inline Rays camera_rays(const Camera& k, const vint& column, const vint& row, co
     r.t_min = vfloat(0.0F);
     r.t_max = vfloat(infinite);
     r.active = active;
+    r.field_origin = k.position;
+    r.radius = vfloat(0.0F);
+    r.base = vfloat(0.0F);
+    r.growth = k.growth;
+    r.leader = vint(0);
+    if (branch(k.fixed > 0.0F))
+        fix_target(k.fixed, r);
     return r;
 }
 

@@ -17,7 +17,8 @@ struct Surface {
     vvec geometric; // unit normal of the triangle, towards the viewer
     vvec shading;   // unit, interpolated, towards the viewer
     vvec albedo;
-    vint pixel; // number of the pixel, for sampling
+    vfloat target, growth; // of the edge length that the camera ray asked for here
+    vint pixel;            // number of the pixel, for sampling
 };
 
 /// The three vertices of the triangles hit, from component arrays at word `base` of each lane's block.
@@ -76,37 +77,114 @@ inline vfloat position_error(const vvec& p, const vvec& origin) {
     return max(size, shift) * (16.0F / 16777216.0F);
 }
 
+/// Normals of a block whose vertices lie blended in `area`, with the same weights, beside them.
+inline pointer<float> blend_normals(const Context& c, sint line, pointer<float> normals,
+                                    pointer<float> area) {
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    pointer<float> x = area + blend_normals_at;
+    pointer<float> weights = area + blend_weights;
+    for (int k = 0; k < 4; ++k) {
+        sint vertex = corner_vertex(k, quads_u, quads_v);
+        svec n = load_vertex(normals, stride, vertex);
+        store(x + vertex, n.x);
+        store(x + stride + vertex, n.y);
+        store(x + stride * 2 + vertex, n.z);
+    }
+    pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
+    for (int p = 0; p < blend_passes; ++p) {
+        sint n = load(pass);
+        for (sint from = 0; branch(from < n); from += isa::width) {
+            vmask m = first_lanes(n - from);
+            BlendStep s = load_step(pass, from, m);
+            vvec own = gather_vertex(normals, stride, s.vertex, m);
+            vvec one = gather_vertex(x, stride, s.one, m);
+            vvec other = gather_vertex(x, stride, s.other, m);
+            vfloat weight = gather(weights, s.vertex, m);
+            vvec q = blend_vertex(weight, own, one, other);
+            scatter_vec(x, stride, s.vertex, q, m);
+        }
+        pass = pass + pass_words;
+    }
+    return x;
+}
+
+/// The corners of the triangles hit, and their vertices' normals interpolated (zero where they have none).
+struct Corners {
+    vvec a, b, c, normal;
+    vfloat sway; // of the block's finest vertices
+};
+/// Block after block; one that was blended for the rays is blended once more.
+inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit) {
+    TriangleWords t = locate(c, h, hit);
+    vfloat zero(0.0F);
+    vvec none_yet{zero, zero, zero};
+    Corners k{none_yet, none_yet, none_yet, none_yet, zero};
+    vint first_word = h.block << 4;
+    vint at_a = t.a - first_word;
+    vint at_b = t.b - first_word;
+    vint at_c = t.c - first_word;
+    for (vmask left = hit; branch(any(left));) {
+        sint one = first(left);
+        sint block = extract(h.block, one);
+        sint leader = extract(h.field, one);
+        vmask here = left & (h.block == vint(block));
+        here = here & (h.field == vint(leader));
+        left = left & !here;
+        pointer<float> words = as<float>(c.grids + block);
+        sint movable = load(field(as<BlockHeader>(words), &BlockHeader::movable));
+        if (branch(movable != 0)) {
+            vfloat sway = load_broadcast(field(as<BlockHeader>(words), &BlockHeader::sway));
+            k.sway = select(here, sway, k.sway);
+        }
+        sint normals_at = ensure_normals(c, block);
+        pointer<float> vertices = words + block_header_words;
+        pointer<float> normals = words + normals_at;
+        if (branch(leader >= 0)) {
+            sint mesh = load(field(as<BlockHeader>(words), &BlockHeader::mesh));
+            svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
+            pointer<float> area = c.stack + scratch_blend;
+            tally(c.counters->blended_blocks, 1);
+            blend_vertices(c, field_of(c, leader, origin), block, area);
+            vertices = area + block_header_words;
+            if (branch(normals_at != 0))
+                normals = blend_normals(c, block, normals, area);
+        }
+        vvec a = gather_vec(vertices, at_a, t.stride, here);
+        vvec b = gather_vec(vertices, at_b, t.stride, here);
+        vvec d = gather_vec(vertices, at_c, t.stride, here);
+        k.a = select(here, a, k.a);
+        k.b = select(here, b, k.b);
+        k.c = select(here, d, k.c);
+        if (branch(normals_at != 0)) {
+            vvec na = gather_vec(normals, at_a, t.stride, here);
+            vvec nb = gather_vec(normals, at_b, t.stride, here);
+            vvec nc = gather_vec(normals, at_c, t.stride, here);
+            k.normal = select(here, blend(na, nb, nc, h), k.normal);
+        }
+    }
+    return k;
+}
+
+/// Rays that leave a hit begin this far off the surface, in units of how far the finest vertices of its block
+/// can move: what they see there is no further from what was hit.
+inline constexpr float leaving_share = 0.5F;
+
 [[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
     phase_scope phase(phase_shade);
     Surface s;
     s.hit = h.patch >= vint(0);
-    pointer<float> words = as<float>(c.grids);
-    TriangleWords t = locate(c, h, s.hit);
-    pointer<float> vertices = words + block_header_words;
-    vvec a = gather_vec(vertices, t.a, t.stride, s.hit);
-    vvec b = gather_vec(vertices, t.b, t.stride, s.hit);
-    vvec d = gather_vec(vertices, t.c, t.stride, s.hit);
+    Corners k = find_triangles(c, h, s.hit);
     vvec toward = r.direction * vfloat(-1.0F);
-    vvec edge1 = b - a;
-    vvec edge2 = d - a;
+    vvec edge1 = k.b - k.a;
+    vvec edge2 = k.c - k.a;
     vvec n = normalise(cross(edge1, edge2), toward);
-    s.shading = n;
+    s.shading = normalise(k.normal, n);
+    s.growth = r.growth;
+    s.target = max(fma(r.growth, h.t, r.base), vfloat(least_target));
 
-    // Normals of each block that some lane hit, made if this is the first time.
-    for (vmask left = s.hit; branch(any(left));) {
-        sint block = extract(h.block, first(left));
-        vmask here = left & (h.block == vint(block));
-        left = left & !here;
-        sint normals_at = ensure_normals(c, block);
-        if (branch(normals_at != 0)) {
-            pointer<float> normals = words + normals_at;
-            vvec na = gather_vec(normals, t.a, t.stride, here);
-            vvec nb = gather_vec(normals, t.b, t.stride, here);
-            vvec nc = gather_vec(normals, t.c, t.stride, here);
-            vvec smooth = normalise(blend(na, nb, nc, h), n);
-            s.shading = select(here, smooth, s.shading);
-        }
-    }
     // Both normals face the viewer: surfaces are two-sided.
     vfloat zero(0.0F);
     vmask away = dot(n, toward) < zero;
@@ -122,8 +200,11 @@ inline vfloat position_error(const vvec& p, const vvec& origin) {
     vint record = mesh * vint(mesh_words);
     vvec origin = gather_vec(field(c.meshes, &MeshRecord::origin), record, vint(1), s.hit);
     s.albedo = gather_vec(field(c.meshes, &MeshRecord::albedo), record, vint(1), s.hit);
-    vvec p = blend(a, b, d, h);
+    vvec p = blend(k.a, k.b, k.c, h);
     vfloat error = position_error(p, origin);
+    vmask morphs = vmask(load(field(c.frame, &FrameHeader::morphs)) != 0);
+    vfloat apart = fma(k.sway, vfloat(leaving_share), error);
+    error = select(morphs, apart, error);
     p = p + origin;
     s.position = madd(error, s.geometric, p);
     return s;
@@ -159,6 +240,56 @@ struct LightRays {
     vfloat weight; // of the light's radiance (or the sky's), before albedo
 };
 
+/// Hits that lie together share a field, so that blocks need not be blended for each of them: those no
+/// further from the first one, in target edge lengths, and whose target edge lengths differ by no more than
+/// this factor.
+inline constexpr float shared_reach = 16.0F;
+inline constexpr float shared_ratio = 1.05F;
+/// So far around its hits, in target edge lengths, a field is that of the rays that found them.
+inline constexpr float leaving_reach = 8.0F;
+
+/// Rays that leave surfaces go on with the target edge lengths that they begin with, and no slower than the
+/// rays that found them: along them the surface only becomes coarser, so that on a convex shape it stays
+/// behind them. Within the ball that holds its hits a field is no finer than any of those rays asked for
+/// there.
+inline void leave_surface(const Context& c, const Surface& s, const vfloat& growth, Rays& r) {
+    r.field_origin = s.position;
+    r.radius = vfloat(0.0F);
+    r.base = s.target;
+    r.growth = growth;
+    r.leader = lane_index();
+    vfloat zero(0.0F);
+    for (vmask left = s.hit; branch(any(left));) {
+        sint leader = first(left);
+        vint from = vint(leader);
+        vvec centre = permute(s.position, from);
+        vfloat target = permute(s.target, from);
+        vvec d = s.position - centre;
+        vfloat square = dot(d, d);
+        vfloat reach = target * shared_reach;
+        vmask same = left & (square <= reach * reach);
+        same = same & (s.target <= target * shared_ratio);
+        same = same & (target <= s.target * shared_ratio);
+        same = same | (lane_index() == from);
+        left = left & !same;
+        vfloat radius = vfloat(reduce_max(select(same, sqrt(square), zero)));
+        vfloat steepest = vfloat(reduce_max(select(same, s.growth, zero)));
+        vfloat slowest = vfloat(reduce_min(select(same, growth, vfloat(gradation_cap))));
+        vfloat base = vfloat(reduce_max(select(same, s.target, zero)));
+        base = fma(steepest, radius, base);
+        radius = fma(base, vfloat(leaving_reach), radius);
+        vfloat common = max(slowest, steepest);
+        r.field_origin = select(same, centre, r.field_origin);
+        r.radius = select(same, radius, r.radius);
+        r.base = select(same, base, r.base);
+        r.growth = select(same, min(common, vfloat(gradation_cap)), r.growth);
+        r.leader = select(same, from, r.leader);
+    }
+    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
+    if (branch(fixed > 0.0F))
+        fix_target(fixed, r);
+}
+
 /// A point on the rectangle light for each lane. header.light_radiance holds radiance x area / (pi x
 /// samples).
 inline LightRays sample_light(const Context& c, const Surface& s, const vint& sample) {
@@ -185,6 +316,11 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
     faces = faces & (above > zero);
     faces = faces & (cos_light > zero);
     l.rays.active = s.hit & faces;
+    vvec middle = madd(vfloat(0.5F), edge_v, madd(vfloat(0.5F), edge_u, corner)) - s.position;
+    vfloat spread = load_broadcast(field(c.frame, &FrameHeader::light_growth));
+    vfloat nearness = dot(middle, middle);
+    spread = spread * reciprocal_sqrt(max(nearness, vfloat(1.0e-37F)));
+    leave_surface(c, s, spread, l.rays);
     vfloat cosines = cos_surface * cos_light;
     l.weight = cosines * (inverse * inverse);
     return l;
@@ -192,7 +328,7 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
 
 /// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance /
 /// samples.
-inline LightRays sample_sky(const Surface& s, const vint& sample) {
+inline LightRays sample_sky(const Context& c, const Surface& s, const vint& sample) {
     vpoint at = sample_square(s.pixel, sample, dimension_sky);
     vfloat radius = sqrt(at.u);
     vfloat height = sqrt(vfloat(1.0F) - at.u);
@@ -206,6 +342,7 @@ inline LightRays sample_sky(const Surface& s, const vint& sample) {
     l.rays.t_min = zero;
     l.rays.t_max = vfloat(infinite);
     l.rays.active = s.hit & (dot(s.geometric, l.rays.direction) > zero);
+    leave_surface(c, s, load_broadcast(field(c.frame, &FrameHeader::sky_growth)), l.rays);
     l.weight = vfloat(1.0F);
     return l;
 }
@@ -216,6 +353,8 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
     p.position = permute(s.position, from);
     p.geometric = permute(s.geometric, from);
     p.shading = permute(s.shading, from);
+    p.target = permute(s.target, from);
+    p.growth = permute(s.growth, from);
     p.pixel = permute(s.pixel, from);
     return p;
 }
@@ -244,7 +383,7 @@ template <Features F, bool Sky>
             vmask wanted = number < vint(samples);
             LightRays l;
             if constexpr (Sky)
-                l = sample_sky(here, number + vint(first_sample));
+                l = sample_sky(c, here, number + vint(first_sample));
             else
                 l = sample_light(c, here, number + vint(first_sample));
             l.rays.active = l.rays.active & wanted;

@@ -17,11 +17,12 @@ struct Cage {
     pointer<std::int32_t> face_curves, controls;
     pointer<float> points;
     pointer<ClassRecord> classes;
-    sfloat per_edge_length; // 1 / target edge length
+    sfloat per_edge_length; // 1 / edge length at level 0
     sint max_exponent;
+    sint level; // at which points are asked for
 };
 
-inline Cage load_cage(const Context& c, sint mesh) {
+inline Cage load_cage(const Context& c, sint mesh, sint level) {
     Cage g;
     g.faces = load(field(c.frame, &FrameHeader::faces));
     g.vertices = load(field(c.frame, &FrameHeader::vertices));
@@ -34,6 +35,7 @@ inline Cage load_cage(const Context& c, sint mesh) {
     sfloat edge = load(field(record, &MeshRecord::edge_length));
     g.per_edge_length = sfloat(1.0F) / edge;
     g.max_exponent = load(field(record, &MeshRecord::max_exponent));
+    g.level = level;
     return g;
 }
 
@@ -41,8 +43,8 @@ inline svec cage_point(const Cage& g, sint point) {
     return load_svec(g.points + point * 3);
 }
 
-/// Exponent N of a cage edge: 2^N segments of about the target length, N = round(log2(length / target)), by
-/// the cage points alone; in [0, max_exponent].
+/// Exponent N of a cage edge at level 0: 2^N segments of about the target length, N = round(log2(length /
+/// target)), by the cage points alone; in [0, max_exponent].
 inline sint edge_exponent(const Cage& g, pointer<CurveRecord> curve) {
     sint end0 = load(field(curve, &CurveRecord::end0));
     sint end1 = load(field(curve, &CurveRecord::end1));
@@ -222,13 +224,15 @@ inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> cu
     }
 }
 
-/// The middle of a cage edge: one of its points, or (exponent 0) the mean of its ends.
+/// The middle of a cage edge at the cage's level: one of its points, or (exponent 0) the mean of its ends.
 template <bool Straight>
 inline svec edge_middle(const Context& c, const Cage& g, pointer<CurveRecord> curve) {
     pointer<float> points = c.stack + (scratch_curve + scratch_curve_size);
     sint exponent = 0;
-    if constexpr (!Straight)
-        exponent = edge_exponent(g, curve);
+    if constexpr (!Straight) {
+        sint whole = edge_exponent(g, curve);
+        exponent = max(whole - g.level, 0);
+    }
     sint at = (sint(1) << exponent) >> 1;
     edge_points<Straight>(c, g, curve, exponent, at >> block_log2, points);
     if (branch(exponent == 0)) {
@@ -239,8 +243,8 @@ inline svec edge_middle(const Context& c, const Cage& g, pointer<CurveRecord> cu
     return get_point(points, at & (block_quads - 1));
 }
 
-/// Points of any curve, ends included, into the first curve scratch. `exponent` is the curve's, 0 if it is
-/// straight.
+/// Points of any curve, ends included, into the first curve scratch. `exponent` is the curve's at the cage's
+/// level, 0 if it is straight.
 template <bool Straight>
 inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent,
                                    sint chunk) {

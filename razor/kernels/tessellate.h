@@ -1,42 +1,38 @@
-// Opening a patch: exponents of its sides, then its blocks: positions, hanging vertices on coarser edges,
-// ancestors, boxes. (Design: discrete levels. One level a mesh for now.)
+// Opening a patch and making it finer: exponents of its sides, then blocks of one level: positions, hanging
+// vertices on coarser edges, ancestors, boxes.
 #pragma once
 
+#include "razor/kernels/blend_order.h"
 #include "razor/kernels/surface.h"
 
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
 
-/// One side of a patch's grid of 2^n segments.
+/// One side of a patch's grid of 2^n segments, at one level.
 struct Side {
     sint curve = -1;
     sint flags = 0;
-    sint exponent = 0; // of the whole curve
-    sint hang = 0;     // log2 of grid segments on one segment of the curve
+    sint whole = straight_curve; // exponent of the whole curve at level 0
+    sint exponent = 0;           // of the whole curve at this level
+    sint hang = 0;               // log2 of grid segments on one segment of the curve
 };
 
-/// A patch about to be diced.
+/// A patch about to be diced at one level.
 struct Dicing {
     sint patch, mesh, kind, face, sub;
     pointer<PatchRecord> record;
     Side side[4];
-    sint nu = 0, nv = 0; // exponents of the grid
+    sint level = 0, coarsest = 0; // the level, and the last one that the patch has
+    sint nu = 0, nv = 0;          // exponents of the grid
 };
-
-inline Side load_side(const Cage& g, pointer<PatchRecord> record, int s) {
-    Side side;
-    side.curve = load(field(record, &PatchRecord::side_curve) + s);
-    side.flags = load(field(record, &PatchRecord::side_flags) + s);
-    side.exponent = curve_exponent(g, g.curves + side.curve);
-    return side;
-}
 
 inline sint half(const Side& side) {
     return (side.flags & side_half) >> 1;
 }
 
-/// Grid exponents: the larger of opposite sides, so that a side is never finer than the grid.
-inline Dicing plan_dicing(const Context& c, const Cage& g, sint patch) {
+/// Grid exponents at level 0: the larger of opposite sides, so that a side is never finer than the grid. They
+/// differ by block_log2 at most, so that the coarsest level is one block. `level` -1: the coarsest.
+inline Dicing plan_dicing(const Context& c, const Cage& g, sint patch, sint level) {
     Dicing d;
     d.patch = patch;
     d.record = c.patches + patch;
@@ -46,20 +42,30 @@ inline Dicing plan_dicing(const Context& c, const Cage& g, sint patch) {
     d.sub = load(field(d.record, &PatchRecord::sub));
     if (branch(d.kind >= static_cast<int>(PatchKind::flat_quad)))
         return d;
-    for (int s = 0; s < 4; ++s)
-        d.side[s] = load_side(g, d.record, s);
     sint e[4];
-    for (int s = 0; s < 4; ++s)
-        e[s] = d.side[s].exponent - half(d.side[s]);
-    d.nu = max(max(e[0], e[2]), 0);
-    d.nv = max(max(e[1], e[3]), 0);
     for (int s = 0; s < 4; ++s) {
-        sint n = s % 2 == 0 ? d.nu : d.nv;
-        // Edges of bilinear patches are straight at every level: one flat ancestor, the whole edge.
-        sint flat = n + half(d.side[s]);
-        if (branch(d.kind == static_cast<int>(PatchKind::bilinear)))
-            d.side[s].exponent = 0;
-        d.side[s].hang = flat - d.side[s].exponent;
+        Side& side = d.side[s];
+        side.curve = load(field(d.record, &PatchRecord::side_curve) + s);
+        side.flags = load(field(d.record, &PatchRecord::side_flags) + s);
+        side.whole = curve_exponent(g, g.curves + side.curve);
+        e[s] = side.whole - half(side);
+    }
+    sint across = max(max(e[1], e[3]), 0);
+    d.nu = max(max(e[0], e[2]), 0);
+    d.nv = max(across, d.nu - block_log2);
+    d.nu = max(d.nu, d.nv - block_log2);
+    d.coarsest = min(d.nu, d.nv);
+    d.level = select(level < 0, d.coarsest, level);
+    d.nu = d.nu - d.level;
+    d.nv = d.nv - d.level;
+    // Edges of bilinear patches are straight at every level: one flat ancestor, the whole edge.
+    sbool straight = d.kind == static_cast<int>(PatchKind::bilinear);
+    for (int s = 0; s < 4; ++s) {
+        Side& side = d.side[s];
+        sint flat = (s % 2 == 0 ? d.nu : d.nv) + half(side);
+        side.exponent = select(straight, sint(0), max(side.whole - d.level, 0));
+        side.whole = select(straight, sint(straight_curve), side.whole);
+        side.hang = flat - side.exponent;
     }
     return d;
 }
@@ -102,7 +108,6 @@ inline void place_side(const Context& c, const Cage& g, const Block& b, const Si
     pointer<float> points = curve_points<Straight>(c, g, g.curves + side.curve, side.exponent, chunk);
     sint chunk_begin = chunk * block_quads;
     sint below = (sint(1) << side.hang) - 1;
-    sfloat per_segment = as_float((sint(127) - side.hang) << 23); // 2^-hang
     for (int lanes = 0; lanes < block_side; lanes += isa::width) {
         vint i = lane_index() + vint(lanes);
         vmask m = i <= vint(quads);
@@ -112,18 +117,21 @@ inline void place_side(const Context& c, const Cage& g, const Block& b, const Si
         vint from = real - vint(chunk_begin);
         vint rest = along & vint(below);
         vmask between = rest > vint(0);
-        vfloat f = to_float(rest);
-        f = f * vfloat(per_segment);
-        vfloat g0 = vfloat(1.0F) - f;
         vmask next = m & between;
-        vvec p;
+        vvec p, z;
         for (int k = 0; k < 3; ++k) {
-            vfloat a = gather(points + k * curve_row, from, m);
-            vfloat z = gather(points + k * curve_row + 1, from, next);
-            vfloat near = a * g0; // unfused: the same bits from either end
-            vfloat blend = near + z * f;
-            vfloat r = select(between, blend, a);
-            (k == 0 ? p.x : k == 1 ? p.y : p.z) = r;
+            vfloat from_curve = gather(points + k * curve_row, from, m);
+            vfloat end = gather(points + k * curve_row + 1, from, next);
+            (k == 0 ? p.x : k == 1 ? p.y : p.z) = from_curve;
+            (k == 0 ? z.x : k == 1 ? z.y : z.z) = end;
+        }
+        // A hanging vertex is the mean of its parents, and they of theirs.
+        for (sint h = side.hang; branch(h > 0); --h) {
+            vvec mean = (p + z) * vfloat(0.5F);
+            vint bit = rest >> vint(h - 1);
+            vmask upper = (bit & vint(1)) != vint(0);
+            p = select(upper, mean, p);
+            z = select(upper, z, mean);
         }
         vint back = vint(quads) - i;
         vint place = select(vmask(reversed != 0), back, i);
@@ -297,7 +305,8 @@ inline void place_sides(const Context& c, const Cage& g, const Dicing& d, const 
         place_side<Straight>(c, g, b, d.side[1], 1, d.nv, b.row, b.quads_v, b.quads_u, width);
 }
 
-/// Boxes of the block's cells (stored if there are several) and of the block. One lane a cell.
+/// Boxes of the block's cells (stored if there are several); the block's own is made to hold them. One lane a
+/// cell.
 inline void bound_block(const Block& b, sint cells_at) {
     sint cells_u = (b.quads_u + 1) >> 1;
     sint cells_v = (b.quads_v + 1) >> 1;
@@ -349,113 +358,356 @@ inline void bound_block(const Block& b, sint cells_at) {
         high.y = max(high.y, reduce_max(hi.y));
         high.z = max(high.z, reduce_max(hi.z));
     }
-    pointer<float> box_low = field(b.header, &BlockHeader::box_low);
-    store(box_low, low.x);
-    store(box_low + 1, low.y);
-    store(box_low + 2, low.z);
-    pointer<float> box_high = field(b.header, &BlockHeader::box_high);
-    store(box_high, high.x);
-    store(box_high + 1, high.y);
-    store(box_high + 2, high.z);
+    sfloat lows[3] = {low.x, low.y, low.z};
+    sfloat highs[3] = {high.x, high.y, high.z};
+    for (int k = 0; k < 3; ++k) {
+        pointer<float> box_low = field(b.header, &BlockHeader::box_low) + k;
+        pointer<float> box_high = field(b.header, &BlockHeader::box_high) + k;
+        sfloat least = load(box_low);
+        store(box_low, min(lows[k], least));
+        sfloat most = load(box_high);
+        store(box_high, max(highs[k], most));
+    }
 }
 
-/// Dices one patch into blocks and fills in its entry of the tree's table (all but the state).
+/// How the blocks of a patch at one level look.
+struct Shape {
+    sint quads_u, quads_v;
+    sint columns, rows; // of blocks
+    sint stride;        // vertices
+    sint cells_at, ancestors_at, middles_at, normals_at, lines;
+    sint triangles;
+};
+
+inline Shape block_shape(const Dicing& d) {
+    Shape s;
+    s.quads_u = sint(1) << min(d.nu, block_log2);
+    s.quads_v = sint(1) << min(d.nv, block_log2);
+    s.columns = sint(1) << max(d.nu - block_log2, 0);
+    s.rows = sint(1) << max(d.nv - block_log2, 0);
+    s.stride = vertex_count(s.quads_u, s.quads_v);
+    sbool several_cells = s.quads_u > 2;
+    several_cells = several_cells | (s.quads_v > 2);
+    sbool long_ancestor = false;
+    for (int k = 0; k < 4; ++k) {
+        sint segments = k % 2 == 0 ? s.quads_u : s.quads_v;
+        long_ancestor = long_ancestor | ((sint(1) << d.side[k].hang) > segments);
+    }
+    sbool flat = d.kind >= static_cast<int>(PatchKind::flat_quad);
+    sbool middles = d.level == d.coarsest;
+    middles = middles & (half(d.side[0]) != 0);
+    sint vertex_words = s.stride * 3;
+    sint words = vertex_words + block_header_words;
+    s.cells_at = select(several_cells, words, sint(0));
+    words = words + select(several_cells, sint(6 * cell_boxes), sint(0));
+    s.ancestors_at = select(long_ancestor, words, sint(0));
+    words = words + select(long_ancestor, sint(24), sint(0));
+    s.middles_at = select(middles, words, sint(0));
+    words = words + select(middles, sint(ends_words), sint(0));
+    s.normals_at = select(flat, sint(0), words);
+    words = words + select(flat, sint(0), vertex_words);
+    s.lines = (words + 15) >> 4;
+    s.triangles = select(d.kind == static_cast<int>(PatchKind::flat_triangle), sint(1), sint(2));
+    return s;
+}
+
+/// How far the vertices of one pass are from the means of their parents along any axis, at most.
+inline sfloat pass_sway(const Block& b, pointer<std::int32_t> pass) {
+    vfloat most(0.0F);
+    sint n = load(pass);
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vmask m = first_lanes(n - from);
+        BlendStep v = load_step(pass, from, m);
+        vvec own = gather_vertex(b.x, b.stride, v.vertex, m);
+        vvec one = gather_vertex(b.x, b.stride, v.one, m);
+        vvec other = gather_vertex(b.x, b.stride, v.other, m);
+        vvec mean = (one + other) * vfloat(0.5F);
+        vvec away = abs(own - mean);
+        most = max(select(m, largest(away), vfloat(0.0F)), most);
+    }
+    return reduce_max(most) * (1.0F + 1.0e-5F);
+}
+
+/// A bound on how far finer vertices of a limit surface lie from the triangles of a block of less than 8
+/// quads: that of the next level's, evaluated in scratch, and as much again for all levels after it. From
+/// level to level deviations of a smooth surface fall to a quarter, beside extraordinary points at worst to
+/// about a half.
+inline sfloat next_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+    sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
+    sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
+    sint n = load(field(g.faces + d.face, &FaceRecord::control_count));
+    Block next;
+    next.quads_u = b.quads_u * 2;
+    next.quads_v = b.quads_v * 2;
+    next.stride = vertex_count(next.quads_u, next.quads_v);
+    next.x = c.stack + (scratch_blend + block_header_words);
+    sint finer_u = d.nu + 1;
+    sint index = block_page_index(g, face_class, d.sub, finer_u, d.nv + 1, 0, 0);
+    pointer<float> weights = page_weights(c, g, face_class, PageKind::block, index);
+    weigh_all(g, weights, page_stride(next.stride), first, n, next.stride, next.x, next.stride);
+    pointer<std::int32_t> passes = blend_table(c, next.quads_u, next.quads_v);
+    return pass_sway(next, passes + (blend_passes - 1) * pass_words) * 2.0F;
+}
+
+/// The same for a block of 8 quads along a side: sum over the controls of the page's bound x the control's
+/// distance from the first one. One lane a control point.
+inline sfloat summed_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+    sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
+    sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
+    sint n = load(field(g.faces + d.face, &FaceRecord::control_count));
+    sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, b.column, b.row);
+    pointer<float> row = page_weights(c, g, face_class, PageKind::deviation, index);
+    sint origin = load(g.controls + first);
+    vvec middle = load_broadcast_vec(g.points + origin * 3);
+    vfloat sum(0.0F);
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vmask m = first_lanes(n - from);
+        vfloat bound = load_vector(row + from, m);
+        vint point = load_vector(g.controls + (first + from), m);
+        vint at = point * vint(3);
+        vfloat x = gather(g.points, at, m);
+        vfloat y = gather(g.points + 1, at, m);
+        vfloat z = gather(g.points + 2, at, m);
+        vvec p{x, y, z};
+        vfloat far = largest(abs(p - middle));
+        sum = fma(bound, select(m, far, vfloat(0.0F)), sum);
+    }
+    return reduce_add(sum);
+}
+
+inline sfloat limit_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+    if (branch(max(d.nu, d.nv) < block_log2))
+        return next_deviation(c, g, d, b);
+    return summed_deviation(c, g, d, b);
+}
+
+/// The same for a bilinear patch: a quad of sides h and k deviates by twist x h k / 4 at its centre, and a
+/// quarter of that at each finer level.
+inline sfloat bilinear_deviation(const Context& c, const Cage& g, const Dicing& d) {
+    svec corner[4];
+    for (int k = 0; k < 4; ++k)
+        corner[k] = straight_corner(c, g, d, k);
+    svec one = corner[0] + corner[2];
+    svec other = corner[1] + corner[3];
+    svec twist = one - other;
+    sfloat x = abs(twist.x);
+    sfloat y = abs(twist.y);
+    sfloat z = abs(twist.z);
+    sfloat most = max(x, max(y, z));
+    sint quads_log2 = d.nu + d.nv;
+    sfloat share = as_float((sint(127) - quads_log2) << 23);
+    return most * share * 0.34F;
+}
+
+/// A box that holds nothing yet.
+inline void clear_box(const Block& b) {
+    for (int k = 0; k < 3; ++k) {
+        store(field(b.header, &BlockHeader::box_low) + k, 3.0e38F);
+        store(field(b.header, &BlockHeader::box_high) + k, -3.0e38F);
+    }
+}
+
+/// The box of the surface under a block, whatever its sides make of it, as wide as all finer vertices need.
+inline void bound_surface(const Block& b, sfloat deviation) {
+    vfloat big(3.0e38F);
+    vfloat small(-3.0e38F);
+    pointer<float> x = b.x;
+    for (int k = 0; k < 3; ++k) {
+        vfloat low = big;
+        vfloat high = small;
+        for (sint from = 0; branch(from < b.stride); from += isa::width) {
+            vmask m = first_lanes(b.stride - from);
+            vfloat v = load_vector(x + from, m);
+            low = min(select(m, v, big), low);
+            high = max(select(m, v, small), high);
+        }
+        sfloat least = reduce_min(low);
+        sfloat most = reduce_max(high);
+        sfloat size = max(-least, most);
+        sfloat slack = fma(size, 1.0e-6F, deviation); // owners' points differ from ours by rounding
+        least = least - slack;
+        most = most + slack;
+        store(field(b.header, &BlockHeader::box_low) + k, least);
+        store(field(b.header, &BlockHeader::box_high) + k, most);
+        x = x + b.stride;
+    }
+}
+
+/// Where the ends of a sub-face's two half edges are beyond it.
+template <bool Straight>
+inline void place_middles(const Context& c, const Cage& g, const Dicing& d, pointer<float> out) {
+    for (int k = 0; k < 2; ++k) {
+        const Side& side = d.side[k == 0 ? 0 : 3];
+        pointer<CurveRecord> curve = g.curves + side.curve;
+        sint end0 = load(field(curve, &CurveRecord::end0));
+        sint end1 = load(field(curve, &CurveRecord::end1));
+        svec a = vertex_position<Straight>(c, g, end0);
+        svec z = vertex_position<Straight>(c, g, end1);
+        svec mean = middle(a, z);
+        // The half next to the side's start is ours; a reversed side starts at the curve's end.
+        sint own_end = load(field(d.record, &PatchRecord::corner));
+        sbool far_is_first = own_end != end0;
+        svec far;
+        far.x = select(far_is_first, a.x, z.x);
+        far.y = select(far_is_first, a.y, z.y);
+        far.z = select(far_is_first, a.z, z.z);
+        pointer<float> to = out + (ends_mean + 3 * k);
+        store(to, mean.x);
+        store(to + 1, mean.y);
+        store(to + 2, mean.z);
+        to = out + (ends_far + 3 * k);
+        store(to, far.x);
+        store(to + 1, far.y);
+        store(to + 2, far.z);
+    }
+}
+
+/// How far the vertices of each pass are from the means of their parents, added up from the last pass on.
+inline void measure_sway(const Context& c, const Block& b) {
+    pointer<std::int32_t> pass = blend_table(c, b.quads_u, b.quads_v);
+    sfloat off[blend_passes];
+    for (int p = 0; p < blend_passes; ++p) {
+        off[p] = pass_sway(b, pass);
+        pass = pass + pass_words;
+    }
+    sfloat sum = 0.0F;
+    for (int p = blend_passes - 1; p >= 0; --p) {
+        sum = sum + off[p];
+        store(field(b.header, &BlockHeader::sway) + (blend_passes - 1 - p), sum);
+    }
+}
+
+/// How far corners that are middles of edges are from the means of the edges' ends.
+inline sfloat middle_sway(const Context& c, const Dicing& d, const Shape& s, const Block& b, sint parent) {
+    sfloat most = 0.0F;
+    pointer<BlockHeader> root = b.header;
+    if (branch(parent >= 0)) {
+        sint line = load(field(c.open + d.patch, &OpenPatch::root));
+        root = as<BlockHeader>(c.grids + line);
+    }
+    sint at = load(field(root, &BlockHeader::middles));
+    sbool there[2] = {b.column == s.columns - 1, b.column == 0};
+    there[0] = there[0] & (b.row == 0);
+    there[1] = there[1] & (b.row == s.rows - 1);
+    for (int k = 0; k < 2; ++k) {
+        if (branch(there[k])) {
+            sint vertex = k == 0 ? b.quads_u : (b.quads_u + 1) * b.quads_v;
+            pointer<float> mean = as<float>(root) + at + (ends_mean + 3 * k);
+            for (int i = 0; i < 3; ++i) {
+                sfloat own = load(b.x + b.stride * i + vertex);
+                sfloat towards = load(mean + i);
+                most = max(abs(own - towards), most);
+            }
+        }
+    }
+    return most;
+}
+
+/// Fills in block (column, row) of the patch at `line`.
+inline void place_block(const Context& c, const Cage& g, const Dicing& d, const Shape& s, sint line,
+                        sint column, sint row, sint parent) {
+    Block b;
+    b.quads_u = s.quads_u;
+    b.quads_v = s.quads_v;
+    b.stride = s.stride;
+    b.ancestors_at = s.ancestors_at;
+    b.column = column;
+    b.row = row;
+    b.header = as<BlockHeader>(c.grids + line);
+    b.words = as<float>(c.grids + line);
+    b.x = b.words + block_header_words;
+    pointer<BlockHeader> h = b.header;
+    sint first_level = load(field(c.meshes + d.mesh, &MeshRecord::first_level));
+    store(field(h, &BlockHeader::patch), d.patch);
+    store(field(h, &BlockHeader::number), row * s.columns + column);
+    store(field(h, &BlockHeader::mesh), d.mesh);
+    store(field(h, &BlockHeader::level), d.level);
+    store(field(h, &BlockHeader::absolute), first_level + d.level);
+    store(field(h, &BlockHeader::column), column);
+    store(field(h, &BlockHeader::row), row);
+    store(field(h, &BlockHeader::quads_u), s.quads_u);
+    store(field(h, &BlockHeader::quads_v), s.quads_v);
+    store(field(h, &BlockHeader::triangles), s.triangles);
+    store(field(h, &BlockHeader::stride), s.stride);
+    store(field(h, &BlockHeader::exponent), d.nu);
+    store(field(h, &BlockHeader::exponent) + 1, d.nv);
+    store(field(h, &BlockHeader::cells_at), s.cells_at);
+    store(field(h, &BlockHeader::ancestors_at), s.ancestors_at);
+    store(field(h, &BlockHeader::middles), s.middles_at);
+    store(field(h, &BlockHeader::normals_at), s.normals_at);
+    store(field(h, &BlockHeader::parent), parent);
+    store_release(field(h, &BlockHeader::normals), absent);
+    store_release(field(h, &BlockHeader::children), absent);
+    // Only sides on the patch's border can hang.
+    sbool border[4] = {row == 0, column == s.columns - 1, row == s.rows - 1, column == 0};
+    sint hangs = 0;
+    for (int k = 0; k < 4; ++k) {
+        sint hang = select(border[k], d.side[k].hang, sint(0));
+        hangs = hangs | hang;
+        store(field(h, &BlockHeader::hang) + k, hang);
+        sint curve = select(border[k], d.side[k].whole, sint(inner_side));
+        store(field(h, &BlockHeader::curve) + k, curve);
+    }
+    store(field(h, &BlockHeader::hangs), hangs);
+    sbool flat = d.kind >= static_cast<int>(PatchKind::flat_quad);
+    sbool part = half(d.side[0]) != 0;
+    sbool fixed = s.stride <= 4;
+    fixed = fixed & (parent < 0);
+    fixed = fixed & !part;
+    store(field(h, &BlockHeader::movable), select(flat | fixed, sint(0), sint(1)));
+    clear_box(b);
+    if (branch(flat)) {
+        place_flat(g, d, b);
+    } else if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {
+        place_bilinear(c, g, d, b);
+        if (branch(d.level > 0))
+            bound_surface(b, bilinear_deviation(c, g, d));
+        place_sides<true>(c, g, d, b);
+        if (branch(s.middles_at != 0))
+            place_middles<true>(c, g, d, b.words + s.middles_at);
+    } else {
+        sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
+        sint control_first = load(field(g.faces + d.face, &FaceRecord::control_first));
+        sint control_count = load(field(g.faces + d.face, &FaceRecord::control_count));
+        sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, column, row);
+        pointer<float> weights = page_weights(c, g, face_class, PageKind::block, index);
+        weigh_all(g, weights, page_stride(s.stride), control_first, control_count, s.stride, b.x, s.stride);
+        if (branch(d.level > 0))
+            bound_surface(b, limit_deviation(c, g, d, b));
+        place_sides<false>(c, g, d, b);
+        if (branch(s.middles_at != 0))
+            place_middles<false>(c, g, d, b.words + s.middles_at);
+    }
+    bound_block(b, s.cells_at);
+    if (branch(!flat))
+        measure_sway(c, b);
+    sfloat middle = 0.0F;
+    if (branch(part))
+        middle = middle_sway(c, d, s, b, parent);
+    store(field(h, &BlockHeader::middle_sway), middle);
+}
+
+inline void count_blocks(const Context& c, const Shape& s, sint level, sint blocks) {
+    tally(c.counters->blocks_made, blocks);
+    tally(c.counters->vertices_made, blocks * s.stride);
+    sint quads = s.quads_u * s.quads_v;
+    tally(c.counters->triangles_made, blocks * s.triangles * quads);
+    tally(c.counters->finest_blocks, select(level == 0, blocks, sint(0)));
+}
+
+/// Makes a patch's coarsest block and fills in its entry of the tree's table (all but the state).
 [[gnu::noinline]] inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
     phase_scope phase(phase_tessellate);
     sint mesh = load(field(c.patches + patch, &PatchRecord::mesh));
-    Cage g = load_cage(c, mesh);
-    Dicing d = plan_dicing(c, g, patch);
-    sbool flat = d.kind >= static_cast<int>(PatchKind::flat_quad);
-    sint quads_u = sint(1) << min(d.nu, block_log2);
-    sint quads_v = sint(1) << min(d.nv, block_log2);
-    sint columns = sint(1) << max(d.nu - block_log2, 0);
-    sint rows = sint(1) << max(d.nv - block_log2, 0);
-    sint stride = vertex_count(quads_u, quads_v);
-
-    sbool several_cells = quads_u > 2;
-    several_cells = several_cells | (quads_v > 2);
-    sbool long_ancestor = false;
-    for (int s = 0; s < 4; ++s) {
-        sint segments = s % 2 == 0 ? quads_u : quads_v;
-        long_ancestor = long_ancestor | ((sint(1) << d.side[s].hang) > segments);
-    }
-    sint vertex_words = stride * 3;
-    sint words = vertex_words + block_header_words;
-    sint cells_at = select(several_cells, words, sint(0));
-    words = words + select(several_cells, sint(6 * cell_boxes), sint(0));
-    sint ancestors_at = select(long_ancestor, words, sint(0));
-    words = words + select(long_ancestor, sint(24), sint(0));
-    sint normals_at = select(flat, sint(0), words);
-    words = words + select(flat, sint(0), vertex_words);
-    sint lines = (words + 15) >> 4;
-    sint blocks = columns * rows;
-    sint all_lines = lines * blocks;
-    sint first_line =
-        allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, all_lines, trap_grids_full);
-    sint is_triangle = select(d.kind == static_cast<int>(PatchKind::flat_triangle), sint(1), sint(2));
-
-    sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
-    sint control_first = load(field(g.faces + d.face, &FaceRecord::control_first));
-    sint control_count = load(field(g.faces + d.face, &FaceRecord::control_count));
-
-    Block b;
-    b.quads_u = quads_u;
-    b.quads_v = quads_v;
-    b.stride = stride;
-    b.ancestors_at = ancestors_at;
-    sint number = 0;
-    for (b.row = 0; branch(b.row < rows); ++b.row) {
-        for (b.column = 0; branch(b.column < columns); ++b.column) {
-            pointer<Line> line = c.grids + (first_line + number * lines);
-            b.header = as<BlockHeader>(line);
-            b.words = as<float>(line);
-            b.x = b.words + block_header_words;
-            store(field(b.header, &BlockHeader::patch), patch);
-            store(field(b.header, &BlockHeader::number), number);
-            store(field(b.header, &BlockHeader::mesh), mesh);
-            store(field(b.header, &BlockHeader::quads_u), quads_u);
-            store(field(b.header, &BlockHeader::quads_v), quads_v);
-            store(field(b.header, &BlockHeader::triangles), is_triangle);
-            store(field(b.header, &BlockHeader::stride), stride);
-            store(field(b.header, &BlockHeader::cells_at), cells_at);
-            store(field(b.header, &BlockHeader::ancestors_at), ancestors_at);
-            store(field(b.header, &BlockHeader::normals_at), normals_at);
-            store_release(field(b.header, &BlockHeader::normals), absent);
-            // Only sides on the patch's border can hang.
-            sint hang[4];
-            hang[0] = select(b.row == 0, d.side[0].hang, sint(0));
-            hang[1] = select(b.column == columns - 1, d.side[1].hang, sint(0));
-            hang[2] = select(b.row == rows - 1, d.side[2].hang, sint(0));
-            hang[3] = select(b.column == 0, d.side[3].hang, sint(0));
-            sint hangs = 0;
-            for (int s = 0; s < 4; ++s) {
-                hangs = hangs | hang[s];
-                store(field(b.header, &BlockHeader::hang) + s, hang[s]);
-            }
-            store(field(b.header, &BlockHeader::hangs), hangs);
-            if (branch(flat)) {
-                place_flat(g, d, b);
-            } else if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {
-                place_bilinear(c, g, d, b);
-                place_sides<true>(c, g, d, b);
-            } else {
-                sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, b.column, b.row);
-                pointer<float> weights = page_weights(c, g, face_class, PageKind::block, index);
-                weigh_all(g, weights, page_stride(stride), control_first, control_count, stride, b.x, stride);
-                place_sides<false>(c, g, d, b);
-            }
-            bound_block(b, cells_at);
-            ++number;
-        }
-    }
-    store(field(entry, &OpenPatch::first_line), first_line);
-    store(field(entry, &OpenPatch::blocks), blocks);
-    store(field(entry, &OpenPatch::block_lines), lines);
+    Cage g = load_cage(c, mesh, 0);
+    Dicing d = plan_dicing(c, g, patch, -1);
+    g.level = d.level;
+    Shape s = block_shape(d);
+    sint line = allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, s.lines, trap_grids_full);
+    place_block(c, g, d, s, line, 0, 0, -1);
+    store(field(entry, &OpenPatch::root), line);
     tally(c.counters->patches_opened, 1);
-    tally(c.counters->blocks_made, blocks);
-    tally(c.counters->vertices_made, blocks * stride);
-    sint quads = quads_u * quads_v;
-    tally(c.counters->triangles_made, blocks * is_triangle * quads);
+    count_blocks(c, s, d.level, 1);
 }
 
 /// Returns once the patch is open in the worker's tree, opening it if nobody else does.
@@ -463,6 +715,45 @@ inline pointer<OpenPatch> open_patch(const Context& c, sint patch) {
     pointer<OpenPatch> entry = c.open + patch;
     build_once(field(entry, &OpenPatch::state), [&] { dice_patch(c, patch, entry); });
     return entry;
+}
+
+/// Makes the blocks of the next finer level under a block.
+[[gnu::noinline]] inline void dice_children(const Context& c, sint line, pointer<BlockHeader> header) {
+    phase_scope phase(phase_tessellate);
+    sint patch = load(field(header, &BlockHeader::patch));
+    sint mesh = load(field(header, &BlockHeader::mesh));
+    sint level = load(field(header, &BlockHeader::level));
+    sint column = load(field(header, &BlockHeader::column));
+    sint row = load(field(header, &BlockHeader::row));
+    Cage g = load_cage(c, mesh, level - 1);
+    Dicing d = plan_dicing(c, g, patch, level - 1);
+    Shape s = block_shape(d);
+    sint columns_log2 = select(d.nu > block_log2, sint(1), sint(0));
+    sint rows_log2 = select(d.nv > block_log2, sint(1), sint(0));
+    sint columns = sint(1) << columns_log2;
+    sint rows = sint(1) << rows_log2;
+    sint blocks = columns * rows;
+    sint first =
+        allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, s.lines * blocks, trap_grids_full);
+    sint child = first;
+    for (sint j = 0; branch(j < rows); ++j) {
+        for (sint i = 0; branch(i < columns); ++i) {
+            sint at_column = (column << columns_log2) + i;
+            sint at_row = (row << rows_log2) + j;
+            place_block(c, g, d, s, child, at_column, at_row, line);
+            child = child + s.lines;
+        }
+    }
+    store(field(header, &BlockHeader::child_line), first);
+    store(field(header, &BlockHeader::child_lines), s.lines);
+    store(field(header, &BlockHeader::child_columns), columns);
+    store(field(header, &BlockHeader::child_rows), rows);
+    count_blocks(c, s, d.level, blocks);
+}
+
+/// Returns once the block's children are there, making them if nobody else does.
+inline void ensure_children(const Context& c, sint line, pointer<BlockHeader> header) {
+    build_once(field(header, &BlockHeader::children), [&] { dice_children(c, line, header); });
 }
 
 } // namespace tessellate_kernel

@@ -85,6 +85,8 @@ inline Group make_group(const Context& c, const Rays& r, vmask alive, sint large
     g.first_t = reduce_min(select(alive, r.t_min, far_away));
 
     sfloat slack = position_slack(c);
+    g.slack = slack;
+    g.morphs = load(field(c.frame, &FrameHeader::morphs)) != 0;
     const vfloat* origins[3] = {&r.origin.x, &r.origin.y, &r.origin.z};
     const vfloat* directions[3] = {&r.direction.x, &r.direction.y, &r.direction.z};
     for (int k = 0; k < 3; ++k) {
@@ -126,6 +128,42 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
         enter = max(min(low, high) - error, enter);
         leave = min(max(low, high) + error, leave);
     }
+}
+
+/// The blocks of a leaf that is fine enough for the rays `here`, wherever these are. AnyHit: a hit retires
+/// its lane from the group.
+template <Features F, bool AnyHit, bool Mixed>
+inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, vmask here, Hits& hits) {
+    pointer<std::int32_t> mailbox = as<std::int32_t>(c.stack + scratch_mailbox);
+    vmask others = g.alive & !here;
+    sbool everyone = none(others);
+    sint n = load(field(list, &ItemList::count));
+    sint stride = load(field(list, &ItemList::stride));
+    pointer<float> words = as<float>(list) + item_list_words;
+    pointer<std::int32_t> items = as<std::int32_t>(words);
+    Listed listed;
+    listed.box_step = stride;
+    listed.level = load(field(list, &ItemList::level));
+    for (sint i = 0; branch(i < n); ++i) {
+        sint item = load(items + i);
+        listed.line = sint(-1) - item;
+        // Whoever finds a block in the mailbox knows that all rays still alive have met it.
+        sint slot = (listed.line >> 2) & (mailbox_slots - 1);
+        sint seen = load(mailbox + slot);
+        if (branch(seen == listed.line))
+            continue;
+        if (branch(everyone))
+            store(mailbox + slot, listed.line);
+        listed.box = words + stride + i;
+        g.alive = here;
+        intersect_block<F, Mixed>(c, g, listed, hits);
+        if constexpr (AnyHit) {
+            vmask hit = hits.patch >= vint(0);
+            here = here & !hit;
+            hits.t = select(hit, vfloat(-infinite), hits.t);
+        }
+    }
+    g.alive = here | others;
 }
 
 /// One group from the root. AnyHit: the first hit retires a lane; its hit distance becomes -infinite.
@@ -207,26 +245,40 @@ template <Features F, bool AnyHit, bool Mixed>
             continue;
         }
         pointer<ItemList> list = as<ItemList>(c.lists + link);
-        sint n = load(field(list, &ItemList::count));
-        pointer<std::int32_t> items = as<std::int32_t>(as<float>(list) + item_list_words);
-        for (sint i = 0; branch(i < n); ++i) {
-            sint item = load(items + i);
-            sint line = sint(-1) - item;
-            sint slot = (line >> 2) & (mailbox_slots - 1);
-            sint seen = load(mailbox + slot);
-            if (branch(seen != line)) {
-                store(mailbox + slot, line);
-                intersect_block<F, Mixed>(c, g, line, hits);
-                if constexpr (AnyHit) {
-                    vmask hit = hits.patch >= vint(0);
-                    g.alive = g.alive & !hit;
-                    hits.t = select(hit, vfloat(-infinite), hits.t);
+        sint finer = load(field(list, &ItemList::finer));
+        vmask deeper = vmask(false);
+        if constexpr (F.hanging) {
+            if (branch(finer >= 0)) {
+                sfloat coarse = load(field(list, &ItemList::coarse));
+                svec low = load_svec(field(list, &ItemList::low));
+                svec high = load_svec(field(list, &ItemList::high));
+                CommonTargets all = common_targets_in(g.fields, low, high, g.slack);
+                if (branch(all.greatest_least < coarse)) {
+                    deeper = g.alive;
+                } else if (branch(all.least < coarse)) {
+                    Targets t = targets_in(c, low, high, g.slack);
+                    deeper = g.alive & (t.least < vfloat(coarse));
                 }
             }
         }
-        if constexpr (AnyHit) {
-            if (branch(none(g.alive)))
-                return;
+        vmask here = g.alive & !deeper;
+        if (branch(any(here))) {
+            intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, hits);
+            deeper = deeper & g.alive;
+            if constexpr (AnyHit) {
+                if (branch(none(g.alive)))
+                    return;
+            }
+        }
+        if constexpr (F.hanging) {
+            // Those for which this is too coarse go on in the same cell.
+            leave = min(hits.t, leave);
+            vmask inside = deeper & (enter <= leave);
+            if (branch(any(inside))) {
+                number = finer;
+                enter = select(deeper, enter, never);
+                continue;
+            }
         }
         for (;;) {
             if (branch(depth == 0))
@@ -263,13 +315,47 @@ inline Hits no_hits(const Rays& r) {
     h.patch = vint(-1);
     h.triangle = vint(-1);
     h.block = vint(-1);
+    h.field = vint(-1);
     return h;
+}
+
+inline void bound_component(const vfloat& v, const vmask& m, sfloat& least, sfloat& most) {
+    vfloat far(infinite);
+    least = reduce_min(select(m, v, far));
+    most = reduce_max(select(m, v, -far));
+}
+
+inline FieldBounds bound_fields(const Rays& r, const vmask& m) {
+    FieldBounds f;
+    bound_component(r.field_origin.x, m, f.low.x, f.high.x);
+    bound_component(r.field_origin.y, m, f.low.y, f.high.y);
+    bound_component(r.field_origin.z, m, f.low.z, f.high.z);
+    bound_component(r.radius, m, f.least_radius, f.most_radius);
+    bound_component(r.base, m, f.least_base, f.most_base);
+    bound_component(r.growth, m, f.least_growth, f.most_growth);
+    return f;
+}
+
+inline void store_fields(const Context& c, const Rays& r) {
+    pointer<float> at = c.packets + packet_field;
+    store_vector(at, r.field_origin.x);
+    store_vector(at + isa::width, r.field_origin.y);
+    store_vector(at + 2 * isa::width, r.field_origin.z);
+    store_vector(at + 3 * isa::width, r.radius);
+    store_vector(at + 4 * isa::width, r.base);
+    store_vector(at + 5 * isa::width, r.growth);
+    store_vector(as<std::int32_t>(c.packets + packet_leader), r.leader);
 }
 
 /// Traces a packet; the hits of lanes that hit something name a patch.
 template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Context& c, const Rays& r) {
     phase_scope phase(phase_traverse);
     ensure_root(c);
+    FieldBounds fields;
+    if constexpr (F.hanging) {
+        store_fields(c, r);
+        fields = bound_fields(r, usable_rays(r));
+    }
     Hits hits = no_hits(r);
     vint axis = largest_component(r.direction);
     vint signs = sign_bits(r.direction);
@@ -280,6 +366,7 @@ template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Con
         vmask same = left & (axis == vint(largest));
         left = left & !same;
         Group g = make_group(c, r, same, largest, extract(signs, one));
+        g.fields = fields;
         sbool mixed = g.mixed[0] | g.mixed[1];
         mixed = mixed | g.mixed[2];
         if (branch(mixed))

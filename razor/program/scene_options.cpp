@@ -11,11 +11,20 @@
 namespace razor {
 namespace {
 
-Scheme parse_scheme(std::string_view word) {
-    std::array<std::string_view, scheme_words.size()> words;
-    std::transform(scheme_words.begin(), scheme_words.end(), words.begin(),
+template <class Value, std::size_t N>
+Value parse_word(const char* option, std::string_view word,
+                 const std::array<std::pair<std::string_view, Value>, N>& choices) {
+    std::array<std::string_view, N> words;
+    std::transform(choices.begin(), choices.end(), words.begin(),
                    [](const auto& entry) { return entry.first; });
-    return scheme_words[parse_choice("--scheme", word, words)].second;
+    return choices[parse_choice(option, word, words)].second;
+}
+
+Scheme parse_scheme(std::string_view word) {
+    return parse_word("--scheme", word, scheme_words);
+}
+Lod parse_lod(std::string_view word) {
+    return parse_word("--lod", word, lod_words);
 }
 
 } // namespace
@@ -32,6 +41,11 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
     app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
         ->type_name("X");
+    app.add_option("--lod", lod_,
+                   "levels of detail: recursive (every ray its own), discrete (the same without blending) or "
+                   "fixed (the "
+                   "finest)")
+        ->type_name("NAME");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");
     app.add_flag("--no-floor", no_floor_, "put no floor under a model file");
@@ -54,6 +68,9 @@ SceneDescription SceneOptions::describe() const {
         }
         if (!edge_pixels_.empty()) {
             settings.edge_pixels = parse_number("--edge-pixels", edge_pixels_, edge_pixels_range);
+        }
+        if (!lod_.empty()) {
+            settings.lod = parse_lod(lod_);
         }
     };
     FramingOptions framing;

@@ -19,7 +19,7 @@ public:
     SceneDescription describe() const;
 
 private:
-    std::string scene_, size_, samples_, light_samples_, sky_samples_, edge_pixels_, scheme_, up_ = "y";
+    std::string scene_, size_, samples_, light_samples_, sky_samples_, edge_pixels_, lod_, scheme_, up_ = "y";
     bool no_floor_ = false;
 };
 

@@ -282,7 +282,8 @@ std::string to_toml(const SceneDescription& description) {
         out, "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples = {}\n",
         toml_text(description.name), settings.width, settings.height, settings.samples,
         settings.light_samples, settings.sky_samples);
-    fmt::format_to(out, "edge_pixels = {}\n", number(settings.edge_pixels));
+    fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", number(settings.edge_pixels),
+                   toml_text(word_of(lod_words, settings.lod)));
     const Camera& camera = description.camera;
     fmt::format_to(out, "\n[camera]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n",
                    vector3(camera.position), vector3(camera.target), vector3(camera.up),

@@ -82,7 +82,15 @@ struct RectangleLight {
     glm::vec3 radiance{1}; // W / (m^2 sr), linear RGB
 };
 
+/// Which level of detail rays see.
+enum class Lod : std::uint8_t {
+    recursive, // every ray its own, continuously (razor/kernels/morph.h)
+    discrete,  // the same levels, from one to the next at once: with holes and pops, to compare with
+    fixed,     // all rays each mesh's finest
+};
+
 struct Settings {
+    Lod lod = Lod::fixed;
     int width = 512, height = 512; // pixels
     int samples = 4;               // camera samples a pixel
     int light_samples = 4;         // shadow rays a hit to the rectangle light

@@ -27,6 +27,17 @@ void check_names(const std::vector<std::string>& names, std::string_view name, c
     }
 }
 
+template <class Value, std::size_t Count>
+Value read_word(TomlTable& table, std::string_view key, Value preset,
+                const std::array<Word<Value>, Count>& choices) {
+    std::array<std::string_view, Count> words;
+    std::transform(choices.begin(), choices.end(), words.begin(),
+                   [](const auto& word) { return word.first; });
+    const auto* at =
+        std::find_if(choices.begin(), choices.end(), [&](const auto& word) { return word.second == preset; });
+    return choices[table.choice(key, static_cast<std::size_t>(at - choices.begin()), words)].second;
+}
+
 Settings read_settings(TomlTable table) {
     Settings settings;
     const auto [width, height] = table.whole_pair("size", {settings.width, settings.height}, size_range);
@@ -36,6 +47,7 @@ Settings read_settings(TomlTable table) {
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
     settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
+    settings.lod = read_word(table, "lod", settings.lod, lod_words);
     table.finish();
     return settings;
 }
@@ -117,10 +129,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         table.may_have("shape");
         mesh.file = std::filesystem::absolute(folder / file).lexically_normal().string();
     }
-    std::array<std::string_view, scheme_words.size()> schemes;
-    std::transform(scheme_words.begin(), scheme_words.end(), schemes.begin(),
-                   [](const auto& word) { return word.first; });
-    mesh.scheme = scheme_words[table.choice("scheme", 0, schemes)].second;
+    mesh.scheme = read_word(table, "scheme", mesh.scheme, scheme_words);
     mesh.scale = table.vector_or_number("scale", mesh.scale, scale_range);
     mesh.rotate = table.vector("rotate", mesh.rotate, angle_range);
     mesh.translate = table.vector("translate", mesh.translate, coordinate_range);

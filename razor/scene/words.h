@@ -17,6 +17,12 @@ inline constexpr std::array<Word<Scheme>, 2> scheme_words{{
     {"bilinear", Scheme::bilinear},
 }};
 
+inline constexpr std::array<Word<Lod>, 3> lod_words{{
+    {"recursive", Lod::recursive},
+    {"discrete", Lod::discrete},
+    {"fixed", Lod::fixed},
+}};
+
 /// The word for `value`, which must be in the table.
 template <typename Value, std::size_t Count>
 constexpr std::string_view word_of(const std::array<Word<Value>, Count>& words, Value value) {

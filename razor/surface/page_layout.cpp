@@ -33,6 +33,8 @@ std::size_t section_floats(PageKind kind, std::size_t controls, std::size_t vert
         return controls * block_row(vertices);
     case PageKind::derivative:
         return 2 * controls * block_row(vertices);
+    case PageKind::deviation:
+        return rounded_up(controls, largest_width);
     }
     throw std::logic_error("page kind out of range");
 }
@@ -46,7 +48,8 @@ std::array<Section, page_kinds> class_sections(const FaceClass& c, int max_expon
     const bool quad = c.corner_count == 4;
     const std::int64_t curves = quad ? 4 : 2 * c.corner_count;
     const std::int64_t blocks = (quad ? 1 : c.corner_count) * strips * strips;
-    const std::array<std::int64_t, page_kinds> pages{c.corner_count + 1, curves * 2 * strips, blocks, blocks};
+    const std::array<std::int64_t, page_kinds> pages{c.corner_count + 1, curves * 2 * strips, blocks, blocks,
+                                                     blocks};
     std::array<Section, page_kinds> sections{};
     for (std::size_t k = 0; k < page_kinds; ++k) {
         const std::size_t floats = largest_page_floats(static_cast<PageKind>(k), c.control_count);
@@ -89,7 +92,8 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int
         break;
     }
     case PageKind::block:
-    case PageKind::derivative: {
+    case PageKind::derivative:
+    case PageKind::deviation: {
         const Strip v = strip_of(index % strips), u = strip_of(index / strips % strips);
         key.exponent_u = u.exponent;
         key.strip_u = u.strip;

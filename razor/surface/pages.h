@@ -30,6 +30,7 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int
 ///   - block: control_count rows of (nu+1)(nv+1) weights, nu = min(8, 2^Nu), zero-padded to a multiple of
 ///     RAZOR_WIDTH
 ///   - derivative: as block, two rows a control point
+///   - deviation: one row of control_count bounds, zero-padded to a multiple of 64
 std::size_t page_floats(const PageKey& key, int control_count);
 std::size_t largest_page_floats(PageKind kind, int control_count);
 

@@ -1,5 +1,7 @@
 #include "tests/kernels/dump.h"
 
+#include <algorithm>
+
 namespace razor::test {
 
 Point BlockView::vertex(int i) const {
@@ -36,17 +38,31 @@ FlatEdge BlockView::ancestor(int side, int i) const {
     return {along(side, first), along(side, first + length), hang};
 }
 
-std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree) {
+BlockView block_at(Frame& frame, int line) {
+    const Line* at = frame.header().grids.get() + line;
+    return {reinterpret_cast<const BlockHeader*>(at), reinterpret_cast<const float*>(at)};
+}
+
+std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree, int level) {
     const FrameHeader& h = frame.header();
     const OpenPatch& open = h.trees.get()[tree].patches.get()[patch];
     std::vector<BlockView> blocks;
     if (open.state.word != ready)
         return blocks;
-    for (int i = 0; i < open.blocks; ++i) {
-        const Line* line =
-            h.grids.get() + open.first_line + static_cast<std::ptrdiff_t>(i) * open.block_lines;
-        blocks.push_back({reinterpret_cast<const BlockHeader*>(line), reinterpret_cast<const float*>(line)});
+    std::vector<BlockView> left{block_at(frame, open.root)};
+    while (!left.empty()) {
+        BlockView b = left.back();
+        left.pop_back();
+        if (b.header->level == level)
+            blocks.push_back(b);
+        if (b.header->level <= level || b.header->children.word != ready)
+            continue;
+        int children = b.header->child_columns * b.header->child_rows;
+        for (int i = 0; i < children; ++i)
+            left.push_back(block_at(frame, b.header->child_line + i * b.header->child_lines));
     }
+    std::sort(blocks.begin(), blocks.end(),
+              [](const BlockView& a, const BlockView& b) { return a.header->number < b.header->number; });
     return blocks;
 }
 

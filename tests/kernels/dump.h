@@ -36,8 +36,11 @@ struct BlockView {
     FlatEdge ancestor(int side, int i) const;
 };
 
-/// The blocks of an opened patch, row by row; none if it is closed.
-std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0);
+/// The block at a line of the grids.
+BlockView block_at(Frame& frame, int line);
+
+/// The blocks of a patch at a level, row by row, as far as they are made.
+std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0, int level = 0);
 
 /// All triangles of all opened patches.
 std::vector<Triangle> triangles_of(Frame& frame, int tree = 0);

@@ -252,6 +252,73 @@ std::vector<std::string> single_mesh_scenes() {
     std::erase(names, "default");
     return names;
 }
+/// A block's box holds every vertex of all finer levels under it, by how much those may stray from its
+/// triangles.
+TEST_P(Geometry, BoxesHoldAllFinerVertices) {
+    int coarse = 0;
+    for (int i = 0; i < patch_count(); ++i) {
+        int level = block_at(*frame_, frame_->header().trees.get()[0].patches.get()[i].root).header->level;
+        for (; level > 0; --level)
+            for (const BlockView& b : blocks_of(*frame_, i, 0, level)) {
+                ++coarse;
+                std::vector<BlockView> below{b};
+                while (!below.empty()) {
+                    const BlockView d = below.back();
+                    below.pop_back();
+                    for (int v = 0; v < d.header->stride; ++v)
+                        for (int k = 0; k < 3; ++k) {
+                            const float x = d.vertex(v)[static_cast<std::size_t>(k)];
+                            ASSERT_LE(b.header->box_low[k], x)
+                                << "patch " << i << ", level " << d.header->level << " below " << level;
+                            ASSERT_GE(b.header->box_high[k], x)
+                                << "patch " << i << ", level " << d.header->level << " below " << level;
+                        }
+                    if (d.header->level == 0)
+                        continue;
+                    ASSERT_EQ(d.header->children.word, ready);
+                    for (int c = 0; c < d.header->child_columns * d.header->child_rows; ++c)
+                        below.push_back(block_at(*frame_, d.header->child_line + c * d.header->child_lines));
+                }
+            }
+    }
+    RecordProperty("coarse_blocks", coarse);
+    if (GetParam() == "spot" || GetParam() == "torus_stretched" || GetParam() == "urchin_bilinear") {
+        EXPECT_GT(coarse, 100);
+    }
+}
+
+/// What a coarse level has of a finer one's vertices lies at the same place, bit for bit, unless it hangs at
+/// the coarse one.
+TEST_P(Geometry, LevelsAreNested) {
+    for (int i = 0; i < patch_count(); ++i) {
+        int coarsest = block_at(*frame_, frame_->header().trees.get()[0].patches.get()[i].root).header->level;
+        for (int level = 1; level <= coarsest; ++level) {
+            std::map<std::array<int, 2>, Point> finer; // by place in the finer grid
+            const auto place = [](const BlockView& b, int v) {
+                return std::array<int, 2>{b.header->column * block_quads + v % (b.header->quads_u + 1),
+                                          b.header->row * block_quads + v / (b.header->quads_u + 1)};
+            };
+            for (const BlockView& b : blocks_of(*frame_, i, 0, level - 1))
+                for (int v = 0; v < b.header->stride; ++v) {
+                    auto [same, first] = finer.try_emplace(place(b, v), b.vertex(v));
+                    ASSERT_EQ(same->second, b.vertex(v)) << "patch " << i << ": blocks of one level disagree";
+                }
+            for (const BlockView& b : blocks_of(*frame_, i, 0, level)) {
+                ASSERT_EQ(b.header->absolute, b.header->level + frame_->header().meshes.get()[0].first_level);
+                for (int v = 0; v < b.header->stride; ++v) {
+                    const std::array<int, 2> at = place(b, v);
+                    const int last_u = 1 << b.header->exponent[0], last_v = 1 << b.header->exponent[1];
+                    // Corners that are middles of edges hang where the edge's level does not have them.
+                    if (at[0] == 0 || at[0] == last_u || at[1] == 0 || at[1] == last_v)
+                        continue;
+                    ASSERT_EQ(finer.at({2 * at[0], 2 * at[1]}), b.vertex(v))
+                        << "patch " << i << ", level " << level;
+                }
+            }
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Geometry, testing::ValuesIn(single_mesh_scenes()),
                          [](const auto& name) { return name.param; });
 

@@ -1,6 +1,7 @@
 // Scene graphs as frames see them: the pictures of models written out where the graph puts them, levels of
 // detail, shared topology, bounds.
 #include "tests/kernels/cages.h"
+#include "tests/kernels/dump.h"
 #include "tests/kernels/targets.h"
 #include "tests/scene/temporary_folder.h"
 
@@ -274,17 +275,12 @@ TEST(Instances, LieInTheirBounds) {
             EXPECT_TRUE(inside(instance, {bounds[0], bounds[stride], bounds[2 * stride]}));
             EXPECT_TRUE(inside(instance, {bounds[3 * stride], bounds[4 * stride], bounds[5 * stride]}));
             const float* origin = h.meshes.get()[instance].origin;
-            const OpenPatch& open = h.trees.get()[0].patches.get()[p];
-            for (int b = 0; b < open.blocks; ++b) {
-                const Line* line =
-                    h.grids.get() + open.first_line + static_cast<std::ptrdiff_t>(b) * open.block_lines;
-                const auto& block = *reinterpret_cast<const BlockHeader*>(line);
-                const auto* x = reinterpret_cast<const float*>(line) + block_header_words;
-                for (int v = 0; v < (block.quads_u + 1) * (block.quads_v + 1); ++v, ++vertices)
-                    ASSERT_TRUE(
-                        inside(instance, {double{x[v]} + origin[0], double{x[v + block.stride]} + origin[1],
-                                          double{x[v + 2 * block.stride]} + origin[2]}));
-            }
+            for (const BlockView& b : blocks_of(frame, p))
+                for (int v = 0; v < b.header->stride; ++v, ++vertices) {
+                    const Point x = b.vertex(v);
+                    ASSERT_TRUE(inside(instance, {double{x[0]} + origin[0], double{x[1]} + origin[1],
+                                                  double{x[2]} + origin[2]}));
+                }
         }
     }
     EXPECT_GT(vertices, 20000U);

@@ -50,7 +50,12 @@ TraceArguments Tracer::fill(const std::vector<Ray>& rays) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
         in_[6][i] = rays[i].t_min;
         in_[7][i] = rays[i].t_max;
+        in_[8][i] = rays[i].base;
+        in_[9][i] = rays[i].growth;
     }
+    bool any_field = std::any_of(rays.begin(), rays.end(), [](const Ray& r) { return r.base != 0; });
+    a.base = any_field ? in_[8] : nullptr;
+    a.growth = any_field ? in_[9] : nullptr;
     a.t_min = in_[6];
     a.t_max = in_[7];
     a.count = static_cast<int>(rays.size());

@@ -12,6 +12,8 @@ namespace razor::test {
 struct Ray {
     Point origin{}, direction{};
     float t_min = 0, t_max = 3.0e38F;
+    /// Target edge length at the origin, and its growth with distance; base 0: the finest level everywhere.
+    float base = 0, growth = 0;
 };
 
 struct Hit {
@@ -39,7 +41,7 @@ private:
     TraceArguments fill(const std::vector<Ray>& rays);
     Frame& frame_;
     std::size_t capacity_;
-    float* in_[8];
+    float* in_[10];
     float* out_[3];
     std::int32_t* names_[2];
 };

@@ -54,7 +54,9 @@ std::array<int, 2> ReferenceSurface::grid(const PatchRecord& patch) const {
     int e[4];
     for (int s = 0; s < 4; ++s)
         e[s] = exponent(patch.side_curve[s]) - ((patch.side_flags[s] & side_half) != 0 ? 1 : 0);
-    return {std::max({e[0], e[2], 0}), std::max({e[1], e[3], 0})};
+    int nu = std::max({e[0], e[2], 0});
+    int nv = std::max({e[1], e[3], 0});
+    return {std::max(nu, nv - block_log2), std::max(nv, nu - block_log2)};
 }
 
 const std::vector<float>& ReferenceSurface::page(const PageKey& k, int control_count) const {

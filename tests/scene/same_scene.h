@@ -43,6 +43,7 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.light_samples, b.settings.light_samples);
     EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
     EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);
+    EXPECT_EQ(a.settings.lod, b.settings.lod);
     EXPECT_EQ(a.camera.position, b.camera.position);
     EXPECT_EQ(a.camera.target, b.camera.target);
     EXPECT_EQ(a.camera.up, b.camera.up);

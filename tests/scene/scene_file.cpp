@@ -49,6 +49,7 @@ TEST(SceneFile, ReadsEveryKey) {
         light_samples = 2
         sky_samples = 3
         edge_pixels = 0.5
+        lod = "recursive"
         [camera]
         position = [1, 2, 3]
         target = [4, 5, 6.5]
@@ -87,6 +88,7 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(scene.settings.light_samples, 2);
     EXPECT_EQ(scene.settings.sky_samples, 3);
     EXPECT_EQ(scene.settings.edge_pixels, 0.5);
+    EXPECT_EQ(scene.settings.lod, Lod::recursive);
     EXPECT_EQ(scene.camera.position, glm::dvec3(1, 2, 3));
     EXPECT_EQ(scene.camera.target, glm::dvec3(4, 5, 6.5));
     EXPECT_EQ(scene.camera.up, glm::dvec3(0, 0, 1));
@@ -195,6 +197,7 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
         {"[settings]\nsize = [512]\n" + mesh, "settings.size is an array of 1"},
         {"[settings]\nsize = [512, -1]\n" + mesh, "settings.size = -1 is out of range"},
         {"[settings]\nsize = [512, true]\n" + mesh, "settings.size is true or false"},
+        {"[settings]\nlod = \"coarse\"\n" + mesh, "settings.lod 'coarse' is unknown; did you mean"},
         {"[settings]\nedge_pixels = nan\n" + mesh, "settings.edge_pixels = nan is out of range"},
         {"settings = 3\n" + mesh, "s.toml:1:12: settings is a whole number; write a table [settings]"},
         {"light = 3\n" + mesh, "light is a whole number; write [[light]]"},

@@ -53,7 +53,8 @@ TEST(Pages, SectionsHoldTheirPagesAndDoNotOverlap) {
         EXPECT_EQ(r.first[1], (corners + 1) * r.stride[0]);
         EXPECT_EQ(r.first[2], r.first[1] + locals * 2 * r.strips * r.stride[1]);
         EXPECT_EQ(r.first[3], r.first[2] + subs * r.strips * r.strips * r.stride[2]);
-        EXPECT_EQ(class_lines(c, 5), r.first[3] + std::int64_t{subs} * r.strips * r.strips * r.stride[3]);
+        EXPECT_EQ(r.first[4], r.first[3] + subs * r.strips * r.strips * r.stride[3]);
+        EXPECT_EQ(class_lines(c, 5), r.first[4] + std::int64_t{subs} * r.strips * r.strips * r.stride[4]);
     }
 }
 
@@ -170,13 +171,13 @@ TEST(Pages, SameFromManyThreadsInAnyOrder) {
     const Topology t = analyse_topology(mesh);
     std::vector<PageKey> keys;
     for (int c = 0; c < static_cast<int>(t.classes.size()); ++c) {
-        for (const PageKind kind :
-             {PageKind::block, PageKind::derivative, PageKind::curve, PageKind::vertex}) {
+        for (const PageKind kind : {PageKind::block, PageKind::derivative, PageKind::curve, PageKind::vertex,
+                                    PageKind::deviation}) {
             PageKey key;
             key.face_class = c;
             key.kind = kind;
             key.exponent_u = kind == PageKind::vertex ? 0 : 2;
-            key.exponent_v = kind == PageKind::block || kind == PageKind::derivative ? 3 : 0;
+            key.exponent_v = kind != PageKind::vertex && kind != PageKind::curve ? 3 : 0;
             keys.push_back(key);
         }
     }

@@ -1,0 +1,318 @@
+// A block as the rays of one field see it: every vertex between its anchor and the mean of its parents, they
+// between theirs, and so on. One lane a vertex. Parents lie in the block, but those of its corners: these are
+// found from the coarser blocks above, down from the first one whose corners do not move.
+#pragma once
+
+#include "razor/kernels/reach.h"
+
+namespace razor::ISA_TARGET {
+inline namespace morph_kernel {
+
+/// The largest target edge length in the block's box.
+inline sfloat largest_target(const Field& f, pointer<BlockHeader> block) {
+    svec low = load_svec(field(block, &BlockHeader::box_low));
+    svec high = load_svec(field(block, &BlockHeader::box_high));
+    svec before = f.origin - low;
+    svec after = high - f.origin;
+    sfloat far_x = max(before.x, after.x);
+    sfloat far_y = max(before.y, after.y);
+    sfloat far_z = max(before.z, after.z);
+    sfloat near_x = max(-min(before.x, after.x), 0.0F);
+    sfloat near_y = max(-min(before.y, after.y), 0.0F);
+    sfloat near_z = max(-min(before.z, after.z), 0.0F);
+    sbool shrinks = f.growth < 0.0F;
+    sfloat x = select(shrinks, near_x, far_x);
+    sfloat y = select(shrinks, near_y, far_y);
+    sfloat z = select(shrinks, near_z, far_z);
+    sfloat square = fma(x, x, fma(y, y, z * z));
+    sfloat outward = select(shrinks, sfloat(1.0F - 1.0e-6F), sfloat(1.0F + 1.0e-6F));
+    sfloat distance = sqrt(square) * outward;
+    distance = max(distance - f.radius, 0.0F);
+    sfloat target = fma(f.growth, distance, f.base) * (1.0F + 1.0e-6F);
+    return max(target, least_target);
+}
+
+inline svec blend_vertex(const Field& f, sint birth, const svec& anchor, const svec& one, const svec& other) {
+    sfloat weight = weight_of(target_at(f, anchor), birth);
+    return blend_vertex(weight, anchor, one, other);
+}
+
+inline void store_svec(pointer<float> to, const svec& p) {
+    store(to, p.x);
+    store(to + 1, p.y);
+    store(to + 2, p.z);
+}
+
+inline svec corner_anchor(pointer<BlockHeader> block, int k) {
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    pointer<float> vertices = as<float>(block) + block_header_words;
+    return load_vertex(vertices, stride, corner_vertex(k, quads_u, quads_v));
+}
+
+/// Corners of a sub-face that are middles of edges move towards the mean of the edge's ends.
+inline void move_middles(const Field& f, pointer<BlockHeader> block, pointer<BlockHeader> root,
+                         pointer<float> corners) {
+    sint middles = load(field(root, &BlockHeader::middles));
+    if (branch(middles == 0))
+        return;
+    sint column = load(field(block, &BlockHeader::column));
+    sint row = load(field(block, &BlockHeader::row));
+    sint log2_u = load(field(block, &BlockHeader::exponent));
+    sint log2_v = load(field(block, &BlockHeader::exponent) + 1);
+    sint last_column = (sint(1) << max(log2_u - block_log2, 0)) - 1;
+    sint last_row = (sint(1) << max(log2_v - block_log2, 0)) - 1;
+    sbool there[2] = {column == last_column, column == 0};
+    there[0] = there[0] & (row == 0);
+    there[1] = there[1] & (row == last_row);
+    for (int k = 0; k < 2; ++k) {
+        if (branch(there[k])) {
+            int corner = k == 0 ? 1 : 3;
+            svec mean = load_svec(as<float>(root) + middles + (ends_mean + 3 * k));
+            svec anchor = corner_anchor(block, corner);
+            svec p = blend_vertex(f, birth_of_middle(root, k), anchor, mean, mean);
+            store_svec(corners + corner * 3, p);
+        }
+    }
+}
+
+/// Number of the corner at (i, j), each 0 or 1.
+inline sint corner_number(sint i, sint j) {
+    return (i ^ j) + j * 2;
+}
+
+/// The corners of a block's child from its own.
+inline void move_corners(const Field& f, pointer<BlockHeader> block, pointer<BlockHeader> child,
+                         pointer<float> from, pointer<float> to) {
+    sint absolute = load(field(block, &BlockHeader::absolute));
+    sint column = load(field(child, &BlockHeader::column));
+    sint row = load(field(child, &BlockHeader::row));
+    sint log2_u = load(field(child, &BlockHeader::exponent));
+    sint log2_v = load(field(child, &BlockHeader::exponent) + 1);
+    sbool split_u = log2_u > block_log2;
+    sbool split_v = log2_v > block_log2;
+    sint early[4];
+    for (int s = 0; s < 4; ++s)
+        early[s] = early_on_side(block, s);
+    for (int k = 0; k < 4; ++k) {
+        int right = k == 1 || k == 2 ? 1 : 0;
+        int up = k >= 2 ? 1 : 0;
+        // In halves of the block.
+        sint i = select(split_u, (column & 1) + right, sint(2 * right));
+        sint j = select(split_v, (row & 1) + up, sint(2 * up));
+        sint odd_i = i & 1;
+        sint odd_j = j & 1;
+        sint low_i = (i - odd_i) >> 1;
+        sint low_j = (j - odd_j) >> 1;
+        pointer<float> one_at = from + corner_number(low_i, low_j) * 3;
+        svec p = load_svec(one_at);
+        if (branch((odd_i | odd_j) != 0)) {
+            sint other_i = low_i + odd_i;
+            pointer<float> other_at = from + corner_number(other_i, low_j + odd_j) * 3;
+            svec other = load_svec(other_at);
+            sint along_u = select(j == 0, early[0], early[2]);
+            sint along_v = select(i == 0, early[3], early[1]);
+            sint sooner = select(odd_j != 0, along_v, along_u);
+            sooner = select((odd_i & odd_j) != 0, sint(0), sooner);
+            svec anchor = corner_anchor(child, k);
+            p = blend_vertex(f, absolute + (block_log2 - 1) + sooner, anchor, p, other);
+        }
+        store_svec(to + 3 * k, p);
+    }
+}
+
+/// Where the field finds the corners of a block: [corner][xyz], in scratch.
+inline pointer<float> find_corners(const Context& c, const Field& f, sint line) {
+    pointer<std::int32_t> climb = as<std::int32_t>(c.stack + scratch_climb);
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    sint patch = load(field(block, &BlockHeader::patch));
+    sint root_line = load(field(c.open + patch, &OpenPatch::root));
+    pointer<BlockHeader> root = as<BlockHeader>(c.grids + root_line);
+    sint depth = 0;
+    sint at = line;
+    for (;;) {
+        sint parent = load(field(block, &BlockHeader::parent));
+        if (branch(parent < 0))
+            break;
+        sint absolute = load(field(block, &BlockHeader::absolute));
+        sint birth = absolute + earliest_birth(block) + block_log2;
+        sfloat most = largest_target(f, block);
+        if (branch(most <= moving_from(birth)))
+            break;
+        store(climb + depth, at);
+        ++depth;
+        at = parent;
+        block = as<BlockHeader>(c.grids + at);
+    }
+    pointer<float> corners = c.stack + scratch_corners;
+    pointer<float> spare = corners + 12;
+    for (int k = 0; k < 4; ++k)
+        store_svec(corners + 3 * k, corner_anchor(block, k));
+    move_middles(f, block, root, corners);
+    while (branch(depth > 0)) {
+        --depth;
+        sint child_line = load(climb + depth);
+        pointer<BlockHeader> child = as<BlockHeader>(c.grids + child_line);
+        move_corners(f, block, child, corners, spare);
+        move_middles(f, child, root, spare);
+        pointer<float> swap = corners;
+        corners = spare;
+        spare = swap;
+        block = child;
+    }
+    return corners;
+}
+
+/// The vertices, x[stride], y, z, behind a header that only holds a box, and the weights that made them.
+/// `out` is one of the two blend areas.
+inline void blend_vertices(const Context& c, const Field& f, sint line, pointer<float> out) {
+    pointer<float> corners = find_corners(c, f, line);
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    sint absolute = load(field(block, &BlockHeader::absolute));
+    pointer<float> anchors = as<float>(block) + block_header_words;
+    pointer<float> x = out + block_header_words;
+    pointer<float> weights = out + blend_weights;
+    sint values = stride * 3;
+    for (sint from = 0; branch(from < values); from += isa::width) {
+        vmask m = first_lanes(values - from);
+        vfloat anchor = load_vector(anchors + from, m);
+        store_vector(x + from, anchor, m);
+        vmask vertices = first_lanes(stride - from);
+        store_vector(weights + from, vfloat(1.0F), vertices);
+    }
+    for (int k = 0; k < 4; ++k) {
+        sint vertex = corner_vertex(k, quads_u, quads_v);
+        svec p = load_svec(corners + 3 * k);
+        store(x + vertex, p.x);
+        store(x + stride + vertex, p.y);
+        store(x + stride * 2 + vertex, p.z);
+    }
+    vint early[4];
+    sint earliest = 0;
+    for (int s = 0; s < 4; ++s) {
+        sint sooner = early_on_side(block, s);
+        earliest = min(sooner, earliest);
+        early[s] = vint(sooner);
+    }
+    sfloat most = largest_target(f, block);
+    pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
+    for (int p = 0; p < blend_passes; ++p) {
+        sint step = block_log2 - 1 - p;
+        sfloat begin = moving_from(absolute + step + earliest);
+        sint n = 0; // where nothing moves, anchors it is
+        if (branch(most > begin))
+            n = load(pass);
+        for (sint from = 0; branch(from < n); from += isa::width) {
+            vmask m = first_lanes(n - from);
+            BlendStep v = load_step(pass, from, m);
+            vvec anchor = gather_vertex(anchors, stride, v.vertex, m);
+            vvec a = gather_vertex(x, stride, v.one, m);
+            vvec b = gather_vertex(x, stride, v.other, m);
+            vint birth = vint(absolute + step);
+            vint sooner = vint(0);
+            for (int s = 0; s < 4; ++s) {
+                vmask on = v.side == vint(s);
+                sooner = select(on, early[s], sooner);
+            }
+            birth = birth + sooner;
+            vfloat weight = weight_of(target_at(f, anchor), birth);
+            vvec q = blend_vertex(weight, anchor, a, b);
+            scatter_vec(x, stride, v.vertex, q, m);
+            scatter(weights, v.vertex, weight, m);
+        }
+        pass = pass + pass_words;
+    }
+}
+
+/// The ends of the flat edge, longer than the block, that side s of block `line` hangs from: found in the
+/// first coarser block that has both, or beyond the patch if it is the whole edge of which the side is half.
+inline void blend_ancestor(const Context& c, const Field& f, sint line, int s, sint hang,
+                           pointer<float> out) {
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    sint strip = load(field(block, s % 2 == 0 ? &BlockHeader::column : &BlockHeader::row));
+    sint segment = strip * block_quads;
+    sint quads = 0;
+    for (;;) {
+        quads = load(field(block, s % 2 == 0 ? &BlockHeader::quads_u : &BlockHeader::quads_v));
+        sint parent = load(field(block, &BlockHeader::parent));
+        if (branch((sint(1) << hang) <= quads))
+            break;
+        if (branch(parent < 0))
+            break;
+        line = parent;
+        block = as<BlockHeader>(c.grids + line);
+        segment = segment >> 1;
+        --hang;
+    }
+    if (branch((sint(1) << hang) > quads)) {
+        sint middles = load(field(block, &BlockHeader::middles));
+        svec near = corner_anchor(block, 0);
+        svec far = load_svec(as<float>(block) + middles + (ends_far + (s == 0 ? 0 : 3)));
+        store_svec(out, near);
+        store_svec(out + 3, far);
+        return;
+    }
+    pointer<float> area = c.stack + (scratch_blend + blend_floats);
+    blend_vertices(c, f, line, area);
+    strip = load(field(block, s % 2 == 0 ? &BlockHeader::column : &BlockHeader::row));
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    sint from = segment - strip * block_quads;
+    from = (from >> hang) << hang;
+    sint width = quads_u + 1;
+    sint first = s == 1 ? quads_u : s == 2 ? width * quads_v : sint(0);
+    sint step = s % 2 == 0 ? sint(1) : width;
+    pointer<float> x = area + block_header_words;
+    sint to = from + (sint(1) << hang);
+    store_svec(out, load_vertex(x, stride, first + from * step));
+    store_svec(out + 3, load_vertex(x, stride, first + to * step));
+}
+
+/// How far vertices of the block are from their anchors where target edge lengths are at most `target`.
+inline sfloat sway_of(const Context& c, pointer<BlockHeader> block, sfloat target) {
+    sint absolute = load(field(block, &BlockHeader::absolute));
+    sint earliest = absolute + earliest_birth(block);
+    sfloat sway = load(field(block, &BlockHeader::sway));
+    for (int p = 1; p < blend_passes; ++p) {
+        sfloat more = load(field(block, &BlockHeader::sway) + p);
+        sway = select(target > moving_from(earliest + p), more, sway);
+    }
+    return sway + corners_move(c, block, target);
+}
+
+/// log2 of the sub-edges of side s on one edge of the curve at absolute level `level` (or the block's, if
+/// that is coarser).
+inline sint hang_at(pointer<BlockHeader> block, int s, sint level) {
+    sint hang = load(field(block, &BlockHeader::hang) + s);
+    sint curve = load(field(block, &BlockHeader::curve) + s);
+    sint own = load(field(block, &BlockHeader::level));
+    sint absolute = load(field(block, &BlockHeader::absolute));
+    sint asked = max(level - absolute, 0) + own;
+    sint left = max(curve - asked, 0);
+    sint more = max(curve - own, 0) - left;
+    return hang + select(curve < 0, sint(0), more);
+}
+
+/// Block `line` as the field sees it in a leaf of `level`, in the first blend area: vertices and ancestors.
+[[gnu::noinline]] inline pointer<float> blend_block(const Context& c, const Field& f, sint line, sint level) {
+    phase_scope phase(phase_morph);
+    tally(c.counters->blended_blocks, 1);
+    pointer<float> out = c.stack + scratch_blend;
+    blend_vertices(c, f, line, out);
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    for (int s = 0; s < 4; ++s) {
+        sint hang = hang_at(block, s, level);
+        sint quads = load(field(block, s % 2 == 0 ? &BlockHeader::quads_u : &BlockHeader::quads_v));
+        if (branch((sint(1) << hang) > quads))
+            blend_ancestor(c, f, line, s, hang, out + (blend_ancestors + 6 * s));
+    }
+    return out;
+}
+
+} // namespace morph_kernel
+} // namespace razor::ISA_TARGET

@@ -1,0 +1,89 @@
+// Where the vertices of a block can be found by any ray that asks for it: the box with which it is listed.
+#pragma once
+
+#include "razor/kernels/morph.h"
+#include "razor/kernels/tessellate.h"
+
+namespace razor::ISA_TARGET {
+inline namespace build_kernel {
+
+/// A box in scene coordinates.
+struct Reach {
+    svec low, high;
+};
+
+inline svec load_vertex(pointer<float> vertices, sint stride, sint i) {
+    svec p;
+    p.x = load(vertices + i);
+    p.y = load(vertices + stride + i);
+    p.z = load(vertices + stride * 2 + i);
+    return p;
+}
+
+/// Number of the vertex at corner k.
+inline sint corner_vertex(int k, sint quads_u, sint quads_v) {
+    sint last_row = (quads_u + 1) * quads_v;
+    if (k == 0)
+        return 0;
+    if (k == 1)
+        return quads_u;
+    return k == 2 ? last_row + quads_u : last_row;
+}
+
+/// How far a corner of the block that is the middle of an edge moves where target edge lengths are `target`.
+inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat target) {
+    sfloat most = load(field(block, &BlockHeader::middle_sway));
+    if (branch(most == 0.0F))
+        return 0.0F;
+    sint patch = load(field(block, &BlockHeader::patch));
+    sint line = load(field(c.open + patch, &OpenPatch::root));
+    pointer<BlockHeader> root = as<BlockHeader>(c.grids + line);
+    sint first = birth_of_middle(root, 0);
+    sint birth = min(first, birth_of_middle(root, 1));
+    return select(target < moving_from(birth), sfloat(0.0F), most);
+}
+
+/// How far the corners of a block move along any axis where target edge lengths are at most `target`: each
+/// towards others of its parent, as far as those lie off, and with the parent's own corners.
+inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat target) {
+    sfloat sum = middle_moves(c, block, target);
+    for (;;) {
+        sint parent = load(field(block, &BlockHeader::parent));
+        sint absolute = load(field(block, &BlockHeader::absolute));
+        sint birth = absolute + earliest_birth(block) + block_log2;
+        if (branch(parent < 0))
+            break;
+        if (branch(target < moving_from(birth)))
+            break;
+        block = as<BlockHeader>(c.grids + parent);
+        sfloat all = load(field(block, &BlockHeader::sway) + (blend_passes - 1));
+        sfloat own = load(field(block, &BlockHeader::sway) + (blend_passes - 2));
+        sum = sum + (all - own);
+        sum = sum + middle_moves(c, block, target);
+    }
+    return sum;
+}
+
+/// The box of a block's surface and of everything that its vertices can be moved to where target edge lengths
+/// are at most `target`. Inside a block vertices move towards others of it; so all depends on its corners.
+inline Reach reach_of(const Context& c, sint line, sfloat target) {
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    Reach box;
+    box.low = load_svec(field(block, &BlockHeader::box_low));
+    box.high = load_svec(field(block, &BlockHeader::box_high));
+    sint mesh = load(field(block, &BlockHeader::mesh));
+    sint movable = load(field(block, &BlockHeader::movable));
+    if (branch(movable != 0)) {
+        sfloat more = corners_move(c, block, target);
+        svec wide{more, more, more};
+        box.low = box.low - wide;
+        box.high = box.high + wide;
+    }
+    svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
+    box.low = box.low + origin;
+    box.high = box.high + origin;
+    return box;
+}
+
+} // namespace build_kernel
+} // namespace razor::ISA_TARGET
