@@ -79,7 +79,8 @@ inline void move_middles(const Field& f, pointer<BlockHeader> block, pointer<Blo
 
 /// Number of the corner at (i, j), each 0 or 1.
 inline sint corner_number(sint i, sint j) {
-    return (i ^ j) + j * 2;
+    sint odd = i ^ j;
+    return odd + j * 2;
 }
 
 /// The corners of a block's child from its own.

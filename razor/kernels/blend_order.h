@@ -16,7 +16,8 @@ inline vvec gather_vertex(pointer<float> x, sint stride, const vint& i, const vm
 }
 
 inline sint log2_quads(sint quads) { // of 1, 2, 4, 8
-    return (quads >> 1) - (quads >> 3);
+    sint half = quads >> 1;
+    return half - (quads >> 3);
 }
 
 /// The order in which a block of this shape is blended.

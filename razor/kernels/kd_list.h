@@ -183,7 +183,8 @@ inline void widen_along_edges(const Context& c, pointer<BlockHeader> block, Leaf
         sint curve = load(field(block, &BlockHeader::curve) + s);
         sint quads = load(field(block, s % 2 == 0 ? &BlockHeader::quads_u : &BlockHeader::quads_v));
         sint more = hang - log2_quads(quads);
-        longest = select(curve >= 0, max(more, longest), longest);
+        more = max(more, longest);
+        longest = select(curve >= 0, more, longest);
     }
     if (branch(longest <= 0))
         return;
@@ -210,7 +211,8 @@ inline Leaf survey(const Context& c, const List& l) {
         sint level = load(field(block, &BlockHeader::level));
         sint movable = load(field(block, &BlockHeader::movable));
         sint absolute = load(field(block, &BlockHeader::absolute));
-        leaf.level = select(level > 0, max(absolute, leaf.level), leaf.level);
+        absolute = max(absolute, leaf.level);
+        leaf.level = select(level > 0, absolute, leaf.level);
         if (branch((level | movable) != 0)) {
             widen(c, block, leaf);
             sint hangs = load(field(block, &BlockHeader::hangs));

@@ -35,7 +35,8 @@ struct Field {
 
 inline vfloat target_at(const Field& f, const vvec& anchor) {
     vvec d = anchor - broadcast(f.origin);
-    vfloat distance = sqrt(dot(d, d)) - f.radius;
+    vfloat distance = sqrt(dot(d, d));
+    distance = distance - vfloat(f.radius);
     distance = max(distance, 0.0F);
     vfloat growth = vfloat(f.growth);
     vfloat target = fma(growth, distance, vfloat(f.base));

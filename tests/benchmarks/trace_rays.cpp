@@ -108,31 +108,40 @@ int shadow_rays(const FrameHeader& h, const RayArrays& camera, const RayArrays& 
     return n;
 }
 
-/// The tessellation that the frame holds, in scene coordinates.
+/// Appends the triangles of the finest blocks at or below the one at `line`, in scene coordinates.
+void add_finest(const FrameHeader& h, int line, std::vector<glm::vec3>& corners) {
+    const Line* at = h.grids.get() + line;
+    const auto* block = reinterpret_cast<const BlockHeader*>(at);
+    if (block->level > 0 && block->children.word == ready) {
+        const int children = block->child_columns * block->child_rows;
+        for (int k = 0; k < children; ++k)
+            add_finest(h, block->child_line + k * block->child_lines, corners);
+        return;
+    }
+    const auto* x = reinterpret_cast<const float*>(at) + block_header_words;
+    const float* origin = h.meshes.get()[block->mesh].origin;
+    int width = block->quads_u + 1;
+    auto vertex = [&](int i, int j) {
+        const float* v = x + j * width + i;
+        return glm::vec3(v[0] + origin[0], v[block->stride] + origin[1], v[2 * block->stride] + origin[2]);
+    };
+    for (int j = 0; j < block->quads_v; ++j)
+        for (int i = 0; i < block->quads_u; ++i) {
+            for (glm::vec3 v : {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)})
+                corners.push_back(v);
+            if (block->triangles == 2)
+                for (glm::vec3 v : {vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)})
+                    corners.push_back(v);
+        }
+}
+
+/// The tessellation that the frame holds, each patch at its finest level.
 std::vector<glm::vec3> tessellation(const FrameHeader& h) {
     std::vector<glm::vec3> corners;
     const OpenPatch* open = h.trees.get()[0].patches.get();
     for (int p = 0; p < h.patch_count; ++p)
-        for (int b = 0; b < open[p].blocks; ++b) {
-            const Line* line = h.grids.get() + open[p].first_line + b * open[p].block_lines;
-            const auto* block = reinterpret_cast<const BlockHeader*>(line);
-            const auto* x = reinterpret_cast<const float*>(line) + block_header_words;
-            const float* origin = h.meshes.get()[block->mesh].origin;
-            int width = block->quads_u + 1;
-            auto vertex = [&](int i, int j) {
-                const float* at = x + j * width + i;
-                return glm::vec3(at[0] + origin[0], at[block->stride] + origin[1],
-                                 at[2 * block->stride] + origin[2]);
-            };
-            for (int j = 0; j < block->quads_v; ++j)
-                for (int i = 0; i < block->quads_u; ++i) {
-                    for (glm::vec3 v : {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)})
-                        corners.push_back(v);
-                    if (block->triangles == 2)
-                        for (glm::vec3 v : {vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)})
-                            corners.push_back(v);
-                }
-        }
+        if (open[p].state.word == ready)
+            add_finest(h, open[p].root, corners);
     return corners;
 }
 
