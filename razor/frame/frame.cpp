@@ -3,6 +3,7 @@
 #include "razor/frame/page_store.h"
 #include "razor/frame/scene_geometry.h"
 #include "razor/frame/scratch.h"
+#include "razor/frame/view.h"
 #include "razor/scene/error.h"
 #include "razor/surface/topology.h"
 
@@ -64,26 +65,6 @@ int colour(int owner, Coloured kind) {
 void put(float (&to)[3], const glm::dvec3& v) {
     for (int i = 0; i < 3; ++i)
         to[i] = static_cast<float>(v[i]);
-}
-
-/// Right, up and forward of the camera; any up will do where the scene's is no help.
-struct View {
-    glm::dvec3 right, up, forward;
-};
-View camera_view(const Camera& camera) {
-    View v{};
-    v.forward = camera.target - camera.position;
-    double length = glm::length(v.forward);
-    v.forward = length > 0 ? v.forward / length : glm::dvec3(0, 0, -1);
-    glm::dvec3 up = camera.up;
-    v.right = glm::cross(v.forward, up);
-    if (!(glm::length(v.right) > 1e-9 * glm::length(up))) {
-        up = std::abs(v.forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
-        v.right = glm::cross(v.forward, up);
-    }
-    v.right = glm::normalize(v.right);
-    v.up = glm::cross(v.right, v.forward);
-    return v;
 }
 
 constexpr const char* film_names[film_planes] = {"R",        "G",       "B",        "normal.X", "normal.Y",
@@ -410,14 +391,18 @@ void Frame::Impl::place_view(const Scene& scene) {
     h.samples = s.samples;
     h.tiles_x = (s.width + tile_side - 1) / tile_side;
     h.tiles = h.tiles_x * ((s.height + tile_side - 1) / tile_side);
-    View v = camera_view(scene.camera);
-    double tangent = std::tan(scene.camera.fov_degrees * (3.14159265358979323846 / 360));
-    double pixel = 2 * tangent / s.height;
+    const View v = view_of(scene.camera);
+    const FilmExtent film = film_extent(scene.camera, s);
+    const double pixel = 2 * film.half_height / s.height;
     put(h.camera, scene.camera.position - geometry.origin);
-    put(h.film_corner, v.forward - v.right * (pixel * s.width / 2) + v.up * tangent);
+    put(h.film_corner, v.forward - v.right * film.half_width + v.up * film.half_height);
     put(h.film_x, v.right * pixel);
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
+    // All samples that a pixel takes share the domain.
+    const auto spacing = [&](double domain, int samples) {
+        return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
+    };
     if (!scene.lights.empty()) {
         const RectangleLight& light = scene.lights.front();
         glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
@@ -427,8 +412,7 @@ void Frame::Impl::place_view(const Scene& scene) {
             put(h.light_corner, light.corner - geometry.origin);
             put(h.light_u, light.edge_u);
             put(h.light_v, light.edge_v);
-            h.light_growth =
-                static_cast<float>(s.edge_pixels * std::sqrt(area / std::max(s.light_samples, 1)));
+            h.light_spacing = spacing(area, s.light_samples);
             put(h.light_normal, normal / area);
             put(h.light_radiance, glm::dvec3(light.radiance) *
                                       (area / (3.14159265358979323846 * std::max(s.light_samples, 1))));
@@ -440,11 +424,9 @@ void Frame::Impl::place_view(const Scene& scene) {
     }
     h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive ? 1 : 0;
-    const auto growth = [&](double spread) {
-        return static_cast<float>(std::min(s.edge_pixels * spread, double{gradation_cap}));
-    };
-    h.camera_growth = growth(pixel);
-    h.sky_growth = growth(std::sqrt(2 * 3.14159265358979323846 / std::max(s.sky_samples, 1)));
+    h.camera_growth =
+        static_cast<float>(std::min(s.edge_pixels * pixel_footprint(scene.camera, s), double{gradation_cap}));
+    h.sky_spacing = spacing(3.14159265358979323846, s.sky_samples);
     h.reach = static_cast<float>(geometry.reach);
     auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     h.film.set(region<float>("frame buffer", -1, pixels * film_planes));

@@ -342,8 +342,8 @@ struct FrameHeader {
     isa::ref<float> film;
     isa::ref<std::int32_t> blend_table;
     float camera_growth; // of a camera ray's target edge length
-    float light_growth;  // of a ray to the light, times its distance; a ray to the sky
-    float sky_growth;
+    float light_spacing; // see growth_to_area() and growth_to_sky(), times edge_pixels
+    float sky_spacing;
     std::int32_t morphs; // 0: vertices stay at their anchors
     float fixed_target;  // not 0: what all rays ask for, everywhere
 };

@@ -1,5 +1,6 @@
 #include "razor/frame/scene_geometry.h"
 
+#include "razor/frame/view.h"
 #include "razor/scene/error.h"
 
 #include <fmt/core.h>
@@ -24,8 +25,7 @@ double automatic_edge_length(const Scene& scene, const Box& box) {
     const Camera& camera = scene.camera;
     double centre = glm::length(box.centre() - camera.position);
     double distance = std::max(distance_to(box, camera.position), centre / 8);
-    double film = 2 * std::tan(camera.fov_degrees * (3.14159265358979323846 / 360)) * distance;
-    double length = scene.settings.edge_pixels * film / scene.settings.height;
+    double length = scene.settings.edge_pixels * pixel_footprint(camera, scene.settings) * distance;
     double size = glm::length(box.high - box.low);
     double least = std::max(size * 1e-6, 1e-30);
     return std::clamp(length, least, 1e30);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "isa/math.h"
+#include "razor/kernels/differentials.h"
 #include "razor/kernels/normals.h"
 #include "razor/kernels/sampling.h"
 #include "razor/kernels/traverse.h"
@@ -248,10 +249,12 @@ inline constexpr float shared_ratio = 1.05F;
 /// So far around its hits, in target edge lengths, a field is that of the rays that found them.
 inline constexpr float leaving_reach = 8.0F;
 
-/// Rays that leave surfaces go on with the target edge lengths that they begin with, and no slower than the
-/// rays that found them: along them the surface only becomes coarser, so that on a convex shape it stays
-/// behind them. Within the ball that holds its hits a field is no finer than any of those rays asked for
-/// there.
+/// Rays that leave surfaces go on with the target edge lengths that they begin with. Within the ball that
+/// holds its hits a field is constant, and no finer than any ray that found them asked for at its hit: there
+/// a convex shape stays behind what was hit of it. Further away it falls back from any ray's plane by more
+/// than finer levels can bring it forward (its fall grows with the square of the distance, 32 times what an
+/// edge's chord cuts off at leaving_reach), so that from there on targets may shrink as well as grow: as
+/// slowly as those of the slowest active ray.
 inline void leave_surface(const Context& c, const Surface& s, const vfloat& growth, Rays& r) {
     r.field_origin = s.position;
     r.radius = vfloat(0.0F);
@@ -274,15 +277,16 @@ inline void leave_surface(const Context& c, const Surface& s, const vfloat& grow
         left = left & !same;
         vfloat radius = vfloat(reduce_max(select(same, sqrt(square), zero)));
         vfloat steepest = vfloat(reduce_max(select(same, s.growth, zero)));
-        vfloat slowest = vfloat(reduce_min(select(same, growth, vfloat(gradation_cap))));
+        vmask rays = same & r.active;
+        vfloat slowest = vfloat(reduce_min(select(rays, growth, vfloat(gradation_cap))));
         vfloat base = vfloat(reduce_max(select(same, s.target, zero)));
         base = fma(steepest, radius, base);
         radius = fma(base, vfloat(leaving_reach), radius);
-        vfloat common = max(slowest, steepest);
+        slowest = max(slowest, vfloat(-gradation_cap));
         r.field_origin = select(same, centre, r.field_origin);
         r.radius = select(same, radius, r.radius);
         r.base = select(same, base, r.base);
-        r.growth = select(same, min(common, vfloat(gradation_cap)), r.growth);
+        r.growth = select(same, slowest, r.growth);
         r.leader = select(same, from, r.leader);
     }
     sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
@@ -316,11 +320,8 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
     faces = faces & (above > zero);
     faces = faces & (cos_light > zero);
     l.rays.active = s.hit & faces;
-    vvec middle = madd(vfloat(0.5F), edge_v, madd(vfloat(0.5F), edge_u, corner)) - s.position;
-    vfloat spread = load_broadcast(field(c.frame, &FrameHeader::light_growth));
-    vfloat nearness = dot(middle, middle);
-    spread = spread * reciprocal_sqrt(max(nearness, vfloat(1.0e-37F)));
-    leave_surface(c, s, spread, l.rays);
+    vfloat spacing = load_broadcast(field(c.frame, &FrameHeader::light_spacing));
+    leave_surface(c, s, growth_to_area(s.target, spacing, cos_light, inverse), l.rays);
     vfloat cosines = cos_surface * cos_light;
     l.weight = cosines * (inverse * inverse);
     return l;
@@ -342,7 +343,8 @@ inline LightRays sample_sky(const Context& c, const Surface& s, const vint& samp
     l.rays.t_min = zero;
     l.rays.t_max = vfloat(infinite);
     l.rays.active = s.hit & (dot(s.geometric, l.rays.direction) > zero);
-    leave_surface(c, s, load_broadcast(field(c.frame, &FrameHeader::sky_growth)), l.rays);
+    vfloat spacing = load_broadcast(field(c.frame, &FrameHeader::sky_spacing));
+    leave_surface(c, s, growth_to_sky(spacing, height), l.rays);
     l.weight = vfloat(1.0F);
     return l;
 }
