@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -43,6 +44,22 @@ const region* address_space::find(std::uint64_t offset) const {
 void address_space::clear(const region& r) {
     if (r.end > r.begin)
         madvise(base_ + r.begin, r.end - r.begin, MADV_DONTNEED);
+}
+
+std::uint64_t address_space::resident_bytes(const region& r) const {
+    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    constexpr std::uint64_t step = granule * 1024;
+    std::vector<unsigned char> pages(step / page);
+    std::uint64_t resident = 0;
+    for (std::uint64_t at = r.begin; at < r.end; at += step) {
+        const std::uint64_t bytes = std::min(step, r.end - at);
+        const std::uint64_t count = (bytes + page - 1) / page;
+        if (mincore(base_ + at, bytes, pages.data()) != 0)
+            return 0; // unknown
+        for (std::uint64_t i = 0; i < count; ++i)
+            resident += (pages[i] & 1U) != 0 ? page : 0;
+    }
+    return resident;
 }
 
 } // namespace isa

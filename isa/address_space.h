@@ -40,6 +40,8 @@ public:
     const region* find(std::uint64_t offset) const;
     /// Gives the host's memory back; the bytes read as zero again.
     void clear(const region& r);
+    /// How many of its bytes, in whole pages, the host has given memory for.
+    std::uint64_t resident_bytes(const region& r) const;
 
 private:
     std::byte* base_ = nullptr;

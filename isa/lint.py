@@ -127,7 +127,7 @@ class Lint:
         t = self.t
         for i, w in enumerate(t.word):
             before, after = t.at(i - 1), t.at(i + 1)
-            if w == "->" and not self.trailing_type(i) and not self.inside_call(i, "tally"):
+            if w == "->" and not self.trailing_type(i) and not self.inside_call(i, "tally", "mark", "note_time"):
                 self.report(i, "memory", "-> reads memory that the machine does not see")
             if w == "host" and before in (".", "->") and after == "(":
                 self.report(i, "memory", ".host() is for host code")
@@ -137,7 +137,7 @@ class Lint:
                 self.report(i, "memory", f"{before}[...] indexes a handle: load(handle + index)")
             if w == "*" and (before in ("", "(", ",", "=", ";", "{", "}", "return", "[", "?", ":", "!", "&&", "||")) and \
                     (is_name(after) or after == "(") and after not in self.registers and after != "this" and \
-                    t.at(i - 2) != "void" and not self.inside_call(i, "request_page"):
+                    t.at(i - 2) != "void" and not self.inside_call(i, "request_page", "mark", "note_time"):
                 self.report(i, "memory", f"*{after} reads memory that the machine does not see")
             if w in ("while", "for") and after == "(":
                 self.loop(i)
@@ -181,11 +181,11 @@ class Lint:
         j = t.match.get(j, 0)
         return t.at(j - 1) in ("]", ">") or t.at(j - 2) == "auto"
 
-    def inside_call(self, i, name):
+    def inside_call(self, i, *names):
         depth = 0
         while i > 0 and self.t.word[i] not in (";", "{", "}"):
             depth += (self.t.word[i] == "(") - (self.t.word[i] == ")")
-            if depth > 0 and self.t.word[i - 1] == name:
+            if depth > 0 and self.t.word[i - 1] in names:
                 return True
             i -= 1
         return False

@@ -2,8 +2,11 @@
 // serves every target.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 namespace isa {
 
@@ -15,6 +18,35 @@ public:
 
 protected:
     ~page_service() = default;
+};
+
+// Instrumentation of the host, not part of the machine. Out of line, so that kernels hold no code of theirs.
+
+/// Which of `count` things have happened. Any thread.
+class mark_set {
+public:
+    explicit mark_set(std::int64_t count);
+    void mark(std::int64_t i);
+    bool is_marked(std::int64_t i) const;
+    void clear();
+
+private:
+    std::vector<std::atomic<std::uint64_t>> words_;
+};
+
+/// When each of a few events first happened. Any thread.
+class stopwatch {
+public:
+    explicit stopwatch(int events) : first_(static_cast<std::size_t>(events)) {}
+    /// Begins anew: nothing has happened.
+    void restart();
+    void note(int event);
+    /// Since it began; 0: it did not happen.
+    double seconds(int event) const;
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    std::vector<std::atomic<std::int64_t>> first_; // nanoseconds, at least 1
 };
 
 /// Thrown by trap(): a kernel cannot go on (an arena is exhausted, a wait was cancelled). The host says what the code

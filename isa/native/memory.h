@@ -176,6 +176,9 @@ inline void request_page(isa::page_service& service, sint space, sint kind, sint
 /// Instrumentation, not part of the machine: adds to a counter of the host and costs no simulated time.
 inline void tally(std::int64_t& counter, sint n) { counter += n.v; }
 inline void tally(std::int64_t& counter, int n) { counter += n; }
+/// Likewise: something has happened, and when an event first did.
+inline void mark(isa::mark_set& set, sint i) { set.mark(i.v); }
+inline void note_time(isa::stopwatch& watch, int event) { watch.note(event); }
 /// Until its end, work and traffic count under this phase of the frame (simulated machine). Natively nothing.
 class phase_scope {
 public:

@@ -210,6 +210,8 @@ inline void request_page(isa::page_service& service, const sint& space, const si
 [[noreturn]] inline void trap(int code) { isa::throw_trapped(code); }
 inline void tally(std::int64_t& counter, const sint& n) { counter += access::value(n).v; }
 inline void tally(std::int64_t& counter, int n) { counter += n; }
+inline void mark(isa::mark_set& set, const sint& i) { set.mark(access::value(i).v); }
+inline void note_time(isa::stopwatch&, int) {} // the host's time says nothing of the machine's
 class phase_scope {
 public:
     explicit phase_scope(int phase) : before_(timing::set_phase(phase)) {}

@@ -10,6 +10,7 @@ struct Counters {
     std::int64_t camera_packets = 0, shadow_packets = 0; // rays / (packets x width) is their utilisation
     std::int64_t groups = 0; // of rays alike in direction, traversed one after the other
     std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
+    std::int64_t graph_openings = 0, cluster_openings = 0; // once a kd node that needs it
     std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;
     std::int64_t plain_tests = 0;    // of the block tests, those of some ray at the block's anchors ...
     std::int64_t blended_tests = 0;  // ... and those of one field's rays with the block blended for them
@@ -33,6 +34,8 @@ template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("block_tests", c.block_tests);
     visit("cell_tests", c.cell_tests);
     visit("quad_tests", c.quad_tests);
+    visit("graph_openings", c.graph_openings);
+    visit("cluster_openings", c.cluster_openings);
     visit("patches_opened", c.patches_opened);
     visit("blocks_made", c.blocks_made);
     visit("vertices_made", c.vertices_made);

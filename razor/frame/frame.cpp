@@ -1,10 +1,12 @@
 #include "razor/frame/frame.h"
 
 #include "razor/frame/page_store.h"
+#include "razor/frame/phases.h"
 #include "razor/frame/scene_geometry.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
+#include "razor/scene/graph/records.h"
 #include "razor/surface/topology.h"
 
 #include <fmt/core.h>
@@ -88,11 +90,18 @@ struct Frame::Impl {
     Plan plan = plan_flat;
     std::int64_t undrawn = 0;
     struct {
-        std::size_t patches = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
-    } total; // over the instances
+        std::size_t clusters = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
+    } total;                                // over the meshes
+    std::vector<std::size_t> first_cluster; // of each mesh
+    std::int64_t patches = 0, clusters = 0; // over the instances
+    std::vector<std::unique_ptr<isa::mark_set>> opened; // one a tree: graph nodes, then instances' clusters
+    isa::stopwatch watch{moment_count};
 
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];
+    }
+    std::size_t clusters_of(std::size_t mesh) const {
+        return (topologies[mesh].patches.size() + refit_patches - 1) >> refit_log2;
     }
 
     template <class T>
@@ -118,11 +127,18 @@ struct Frame::Impl {
     }
     void count_records(const Scene& scene);
     void place_scene(const Scene& scene);
+    void place_graph();
+    void place_points();
     void place_topology();
     void place_blend_table();
     void place_workers();
     void place_view(const Scene& scene);
     void reset();
+    WorkerArguments arguments(int worker) {
+        const auto w = static_cast<std::size_t>(worker);
+        const auto tree = static_cast<std::size_t>(options.tree_of_worker[w]);
+        return {header, worker, pages.get(), &counters[w], opened[tree].get(), &watch};
+    }
 };
 
 Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.meshes), options(o) {
@@ -133,15 +149,21 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         topologies.push_back(analyse_topology(mesh));
     }
     trees = count_trees(options);
-    geometry = locate_scene(scene);
+    std::vector<bool> drawn;
+    for (const Topology& t : topologies)
+        drawn.push_back(!t.patches.empty());
+    geometry = locate_scene(scene, drawn);
     count_records(scene);
     pages = std::make_unique<PageStore>(meshes, topologies);
     counters.resize(static_cast<std::size_t>(options.workers));
-    std::uint64_t scene_bytes = 0;
-    scene_bytes +=
-        total.patches * (sizeof(PatchRecord) + 64 + sizeof(OpenPatch) * static_cast<std::size_t>(trees)) +
-        total.controls * 4 + (total.faces + total.points + total.curves) * 64 +
-        geometry.instances.size() * sizeof(MeshRecord);
+    // OpenPatch entries, a table a tree, take memory only where a patch is opened.
+    const std::uint64_t scene_bytes =
+        static_cast<std::uint64_t>(clusters) *
+            (refit_patches * sizeof(OpenPatch) * static_cast<std::size_t>(trees) + 4) +
+        total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
+        (total.faces + total.points + total.curves + total.face_curves) * 64 +
+        geometry.instances.size() * sizeof(InstanceRecord) +
+        geometry.graph.size() * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(pages->span_bytes() + all_grids + all_nodes + all_lists +
@@ -149,6 +171,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
                                                   static_cast<std::uint64_t>(options.workers + trees) * 64 *
                                                       isa::address_space::granule);
     place_scene(scene);
+    place_graph();
+    place_points();
     place_topology();
     place_blend_table();
     place_workers();
@@ -156,79 +180,126 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     reset();
 }
 
-/// Every instance has records of its own; what they say of the surface's topology is its mesh's.
 void Frame::Impl::count_records(const Scene& scene) {
-    for (const Instance& i : geometry.instances) {
-        const Topology& t = topology_of(i);
-        total.patches += t.patches.size();
+    for (std::size_t m = 0; m < topologies.size(); ++m) {
+        const Topology& t = topologies[m];
+        first_cluster.push_back(total.clusters);
+        total.clusters += clusters_of(m);
         total.faces += t.faces.size();
         total.controls += t.controls.size();
         total.face_curves += t.face_curves.size();
         total.points += t.points.size();
         total.curves += t.curves.size();
+    }
+    for (const Instance& i : geometry.instances) {
+        const Topology& t = topology_of(i);
+        patches += static_cast<std::int64_t>(t.patches.size());
+        clusters += static_cast<std::int64_t>(clusters_of(static_cast<std::size_t>(i.mesh)));
         undrawn += t.undrawn_faces;
     }
-    if (total.patches == 0)
+    if (patches == 0)
         throw UserError(fmt::format(
             "{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
             scene.name));
-    if (total.patches > (std::size_t{1} << 30))
-        throw UserError(fmt::format("{}: {} patches are too many; at most 2^30", scene.name, total.patches));
-    // Gathers index coordinates by signed 32-bit words; all else is counted in records.
+    constexpr std::int64_t most_clusters = most_patches >> refit_log2;
+    if (clusters > most_clusters)
+        throw UserError(fmt::format("{}: {} patches of {} instances are too many; at most 2^30", scene.name,
+                                    patches, geometry.instances.size()));
+    // Gathers index coordinates and patch records by signed 32-bit words; all else is counted in records.
     constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-    if (std::max({total.faces, total.controls, total.face_curves, total.points * 3, total.curves}) > most)
+    if (std::max({total.clusters * refit_patches * (sizeof(PatchRecord) / 4), total.faces * 5, total.controls,
+                  total.face_curves, total.points * 3, total.curves}) > most)
         throw UserError(
-            fmt::format("{}: the control points of all {} instances are more than can be numbered; "
-                        "place fewer copies",
-                        scene.name, geometry.instances.size()));
+            fmt::format("{}: the meshes have more faces than can be numbered; leave some out", scene.name));
 }
 
 void Frame::Impl::place_scene(const Scene& scene) {
     header = region<FrameHeader>("scene graph", -1, 1);
     new (header) FrameHeader{};
-    auto* record = region<MeshRecord>("scene graph", -1, geometry.instances.size());
-    header->meshes.set(record);
-    std::size_t patches = 0;
-    for (const Instance& i : geometry.instances) {
+    auto* record = region<InstanceRecord>("scene graph", -1, geometry.instances.size());
+    auto* cluster_instance =
+        region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters));
+    header->instances.set(record);
+    header->cluster_instance.set(cluster_instance);
+    std::int32_t first_patch = 0;
+    for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
+        const Instance& i = geometry.instances[n];
         const Topology& t = topology_of(i);
-        MeshRecord& r = *record++;
-        for (int k = 0; k < 3; ++k)
+        const auto mesh = static_cast<std::size_t>(i.mesh);
+        InstanceRecord& r = *record++;
+        for (int k = 0; k < 3; ++k) {
             r.origin[k] = i.origin[k];
+            r.offset[k] = i.offset[k];
+            for (int column = 0; column < 3; ++column)
+                r.linear[3 * k + column] = static_cast<float>(i.linear[column][k]);
+        }
+        r.moved = i.moved() ? 1 : 0;
         r.edge_length = static_cast<float>(i.edge_length);
+        r.mesh_edge_length = static_cast<float>(i.mesh_edge_length);
         r.first_level = static_cast<std::int32_t>(std::lround(std::log2(i.edge_length)));
         r.max_exponent = t.max_exponent;
-        r.first_patch = static_cast<std::int32_t>(patches);
+        r.mesh = i.mesh;
+        r.first_patch = first_patch;
         r.patch_count = static_cast<std::int32_t>(t.patches.size());
+        r.first_cluster = static_cast<std::int32_t>(first_cluster[mesh]);
+        r.first_record = r.first_cluster << refit_log2;
+        r.cluster_count = static_cast<std::int32_t>(clusters_of(mesh));
         glm::vec3 albedo(0.7F);
         auto material = static_cast<std::size_t>(i.material);
         if (material < scene.materials.size())
             albedo = scene.materials[material].albedo;
         for (int k = 0; k < 3; ++k)
             r.albedo[k] = albedo[k];
-        patches += t.patches.size();
-    }
-    for (const Instance& i : geometry.instances)
-        for (const PatchRecord& p : topology_of(i).patches)
+        cluster_instance =
+            std::fill_n(cluster_instance, r.cluster_count, static_cast<std::int32_t>(n));
+        header->patch_count = std::max(header->patch_count, first_patch + r.patch_count);
+        first_patch += r.cluster_count << refit_log2;
+        for (const PatchRecord& p : t.patches)
             if (p.kind == PatchKind::catmull_clark || p.kind == PatchKind::bilinear)
                 plan = plan_hanging;
-    header->patch_count = static_cast<std::int32_t>(patches);
-    header->refit_chunks = static_cast<std::int32_t>((patches + refit_patches - 1) / refit_patches);
-    header->bounds_stride = header->refit_chunks * refit_patches;
-    header->bounds.set(region<float>("scene graph", -1, static_cast<std::size_t>(header->bounds_stride) * 6));
-    auto* xyz = region<float>("control points", -1, total.points * 3);
-    header->points.set(xyz);
-    for (const Instance& i : geometry.instances) {
-        const Affine place = relative_to_origin(geometry, i);
-        for (const glm::dvec3& point : meshes[static_cast<std::size_t>(i.mesh)].points) {
-            const glm::dvec3 p = place(point);
-            for (int k = 0; k < 3; ++k)
-                *xyz++ = static_cast<float>(p[k]);
-        }
     }
 }
 
+void Frame::Impl::place_graph() {
+    const std::vector<GraphNodeRecord> nodes = pack(geometry.graph, geometry.origin);
+    auto* graph = region<GraphNodeRecord>("scene graph", -1, nodes.size());
+    std::copy(nodes.begin(), nodes.end(), graph);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (graph[n].instance >= 0)
+            graph[n].child_count = header->instances.get()[graph[n].instance].cluster_count;
+    header->graph.set(graph);
+    header->graph_count = static_cast<std::int32_t>(nodes.size());
+    for (int t = 0; t < trees; ++t)
+        opened.push_back(
+            std::make_unique<isa::mark_set>(static_cast<std::int64_t>(nodes.size()) + clusters));
+    // Boxes of clusters: a frame's refit writes them.
+    header->cluster_count = static_cast<std::int32_t>(total.clusters);
+    header->clusters_stride = (header->cluster_count + 15) & -16;
+    header->cluster_boxes.set(
+        region<float>("scene graph", -1, static_cast<std::size_t>(header->clusters_stride) * 6));
+    auto* counts = region<std::int32_t>("scene graph", -1, total.clusters);
+    header->cluster_patches.set(counts);
+    for (const Topology& t : topologies)
+        for (std::size_t left = t.patches.size(); left > 0;) {
+            const std::size_t here = std::min<std::size_t>(left, refit_patches);
+            *counts++ = static_cast<std::int32_t>(here);
+            left -= here;
+        }
+}
+
+void Frame::Impl::place_points() {
+    auto* xyz = region<float>("control points", -1, total.points * 3);
+    header->points.set(xyz);
+    for (std::size_t m = 0; m < meshes.size(); ++m)
+        for (const glm::dvec3& point : meshes[m].points) {
+            const glm::dvec3 p = point - geometry.mesh_origins[m];
+            for (int k = 0; k < 3; ++k)
+                *xyz++ = static_cast<float>(p[k]);
+        }
+}
+
 void Frame::Impl::place_topology() {
-    auto* patch = region<PatchRecord>("scene graph", -1, total.patches);
+    auto* patch = region<PatchRecord>("scene graph", -1, total.clusters * refit_patches);
     auto* face = region<FaceRecord>("topology", -1, total.faces);
     auto* control = region<std::int32_t>("topology", -1, total.controls);
     auto* face_curve = region<std::int32_t>("topology", -1, total.face_curves);
@@ -242,20 +313,13 @@ void Frame::Impl::place_topology() {
     header->vertices.set(point);
     header->curves.set(curve);
     header->classes.set(classes);
-    std::vector<int> first_class; // of each mesh: all its instances ask for the same pages
-    int base_class = 0;
-    for (const Topology& t : topologies) {
-        first_class.push_back(base_class);
-        base_class += static_cast<int>(t.classes.size());
-    }
-    // Each mesh numbers from 0: move an instance's numbers behind those of the instances before.
-    int base_face = 0, base_control = 0, base_face_curve = 0, base_point = 0, base_curve = 0;
-    for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
-        const Instance& instance = geometry.instances[n];
-        const Topology& t = topology_of(instance);
-        base_class = first_class[static_cast<std::size_t>(instance.mesh)];
+    // Each mesh numbers from 0: move its numbers behind those of the meshes before.
+    int base_face = 0, base_control = 0, base_face_curve = 0, base_point = 0, base_curve = 0, base_class = 0;
+    for (std::size_t m = 0; m < topologies.size(); ++m) {
+        const Topology& t = topologies[m];
+        patch = header->patches.get() + (first_cluster[m] << refit_log2);
         for (PatchRecord p : t.patches) {
-            p.mesh = static_cast<int>(n);
+            p.mesh = static_cast<int>(m);
             p.face += base_face;
             bool part = (p.side_flags[0] & side_half) != 0;
             for (int& c : p.side_curve)
@@ -292,6 +356,7 @@ void Frame::Impl::place_topology() {
         base_face_curve += static_cast<int>(t.face_curves.size());
         base_point += static_cast<int>(t.points.size());
         base_curve += static_cast<int>(t.curves.size());
+        base_class += static_cast<int>(t.classes.size());
     }
     pages->lay_out(region<Line>("topology pages", -1, pages->span_bytes() / line_bytes), classes);
 }
@@ -437,9 +502,11 @@ void Frame::Impl::reset() {
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
         tree.root_state.word = absent;
-        OpenPatch* open = tree.patches.get();
-        std::fill(open, open + header->patch_count, OpenPatch{});
+        // Reads as zero again, which is an absent patch, wherever something was written.
+        memory->clear(*memory->find(memory->offset(tree.patches.get())));
+        opened[static_cast<std::size_t>(t)]->clear();
     }
+    watch.restart();
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
         r.grid_next = first_grid_line(w);
@@ -482,19 +549,16 @@ namespace {
 } // namespace
 
 void Frame::render(const KernelTable& kernels, int worker) {
-    WorkerArguments a{impl_->header, worker, impl_->pages.get(),
-                      &impl_->counters[static_cast<std::size_t>(worker)]};
     try {
-        kernels.render[impl_->plan](a);
+        kernels.render[impl_->plan](impl_->arguments(worker));
     } catch (const isa::trapped& trap) {
         explain(trap);
     }
 }
 
 void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
-    WorkerArguments a{impl_->header, 0, impl_->pages.get(), &impl_->counters[0]};
     try {
-        kernels.trace[impl_->plan](a, arguments);
+        kernels.trace[impl_->plan](impl_->arguments(0), arguments);
     } catch (const isa::trapped& trap) {
         explain(trap);
     }
@@ -502,7 +566,7 @@ void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
 
 void Frame::build_all(const KernelTable& kernels) {
     try {
-        kernels.build_all({impl_->header, 0, impl_->pages.get(), &impl_->counters[0]});
+        kernels.build_all(impl_->arguments(0));
     } catch (const isa::trapped& trap) {
         explain(trap);
     }
@@ -553,7 +617,33 @@ FrameStatistics Frame::statistics() const {
     s.trees = impl_->trees;
     s.meshes = static_cast<std::int64_t>(impl_->meshes.size());
     s.instances = static_cast<std::int64_t>(impl_->geometry.instances.size());
-    s.patches = static_cast<std::int64_t>(impl_->header->patch_count) * impl_->trees;
+    s.patches = impl_->patches * impl_->trees;
+    s.graph_nodes = static_cast<std::int64_t>(impl_->geometry.graph.size()) * impl_->trees;
+    s.clusters = impl_->clusters * impl_->trees;
+    for (const std::unique_ptr<isa::mark_set>& opened : impl_->opened) {
+        const auto nodes = static_cast<std::int64_t>(impl_->geometry.graph.size());
+        for (std::int64_t n = 0; n < nodes; ++n) {
+            const bool leaf = impl_->geometry.graph[static_cast<std::size_t>(n)].instance >= 0;
+            s.graph_nodes_opened += opened->is_marked(n) ? 1 : 0;
+            s.instances_opened += leaf && opened->is_marked(n) ? 1 : 0;
+        }
+        for (std::int64_t k = 0; k < impl_->clusters; ++k)
+            s.clusters_opened += opened->is_marked(nodes + k) ? 1 : 0;
+    }
+    s.refit_seconds = impl_->watch.seconds(moment_refitted);
+    s.first_packet_seconds = impl_->watch.seconds(moment_first_packet);
+    for (const isa::region& r : impl_->memory->regions()) {
+        const auto bytes = static_cast<std::int64_t>(r.end - r.begin);
+        s.scene_graph_bytes += r.structure == "scene graph" ? bytes : 0;
+        s.topology_bytes += r.structure == "topology" ? bytes : 0;
+        s.control_point_bytes += r.structure == "control points" ? bytes : 0;
+    }
+    for (int t = 0; t < impl_->trees; ++t) {
+        const isa::address_space& memory = *impl_->memory;
+        const OpenPatch* table = impl_->header->trees.get()[t].patches.get();
+        s.patch_table_bytes +=
+            static_cast<std::int64_t>(memory.resident_bytes(*memory.find(memory.offset(table))));
+    }
     s.undrawn_faces = impl_->undrawn;
     for (int w = 0; w < impl_->options.workers; ++w) {
         const WorkerRecord& r = impl_->header->workers.get()[w];

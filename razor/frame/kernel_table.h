@@ -12,6 +12,8 @@ struct WorkerArguments {
     int worker = 0;
     isa::page_service* pages = nullptr;
     Counters* counters = nullptr;
+    isa::mark_set* opened = nullptr; // of the worker's tree: graph nodes, then clusters of instances
+    isa::stopwatch* watch = nullptr; // of Moment
 };
 
 /// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene

@@ -1,6 +1,6 @@
 // The records that a frame reads and builds, exactly as they lie in frame memory on every target. Plain data,
 // shared by the host code that fills the persistent part and the kernels that read it. Lengths are world
-// units relative to the mesh's double-precision origin unless stated. Indices are 32 bits and count records
+// units relative to the instance's origin unless stated. Indices are 32 bits and count records
 // of the array they name.
 //
 // A *patch* is a quadrilateral piece of surface with parameters (u, v) in [0,1]^2: a quad face, one sub-face
@@ -87,7 +87,7 @@ inline constexpr int block_side = block_quads + 1;
 inline constexpr int block_vertices = block_side * block_side;
 inline constexpr int blend_passes = block_log2; // steps of 4, 2 and 1 quads: see blend_pass
 inline constexpr int max_exponent_limit =
-    8; // of a curve; a mesh may have to use less (MeshRecord::max_exponent)
+    8; // of a curve; a mesh may have to use less (InstanceRecord::max_exponent)
 
 // Strips number the block columns (or rows, or curve chunks) of all exponents in one sequence:
 // exponent N has max(1, 2^(N-3)) of them, the first at strip_first(N).
@@ -141,20 +141,51 @@ struct PageHeader {
 
 // --- scene
 // ------------------------------------------------------------------------------------------------------------
-struct MeshRecord {
-    float origin[3];          // of the mesh, relative to the scene's origin
-    float edge_length;        // at level 0, a power of two
-    std::int32_t first_level; // its log2
+// A mesh's patches, faces, curves and control points lie in memory once. What an instance builds (blocks) lies
+// in a space of its own, turned and scaled as the scene is and relative to the instance's origin, so that rays
+// meet it as they are.
+//
+// Patches are grouped in *clusters* of refit_patches consecutive ones; a mesh's first is the first of a
+// cluster, so that record r belongs to cluster r / refit_patches. An instance's patches are numbered likewise:
+// number n names record first_record + (n - first_patch), and cluster_instance[n / refit_patches] the instance.
+inline constexpr int refit_log2 = 6;
+inline constexpr int refit_patches = 1 << refit_log2; // a multiple of every width
+
+/// One mesh where the scene draws it.
+struct InstanceRecord {
+    float origin[3];          // scene coordinates
+    float edge_length;        // at level 0
+    std::int32_t first_level; // its log2, rounded
+    float mesh_edge_length;   // the same in the mesh's units, a power of two
     std::int32_t max_exponent;
-    std::int32_t first_patch, patch_count;
+    std::int32_t mesh;
+    std::int32_t first_patch; // the number that names its first patch, a multiple of refit_patches
+    std::int32_t patch_count;
+    std::int32_t first_record; // of its mesh's patches
+    std::int32_t first_cluster, cluster_count; // of its mesh
+    std::int32_t moved;  // 0: mesh coordinates are the instance's own
+    float linear[9];     // rows: of the map from mesh coordinates to the instance's own ...
+    float offset[3];     // ... and what rounding the origin left over
     float albedo[3];
+    std::int32_t padding[3];
 };
+static_assert(sizeof(InstanceRecord) == 128);
+
+/// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root.
+struct GraphNodeRecord {
+    float low[3], high[3];
+    std::int32_t first_child; // children are consecutive
+    std::int32_t child_count; // of a leaf: its mesh's clusters
+    std::int32_t instance;    // of a leaf; else -1
+    std::int32_t padding;
+};
+static_assert(sizeof(GraphNodeRecord) == 40);
 
 // --- grids: what tessellating a patch yields
 // --------------------------------------------------------------------------
-// Levels. At level 0 of its mesh a patch has 2^Nu x 2^Nv quads and a curve 2^N segments of about the mesh's
+// Levels. At level 0 of its instance a patch has 2^Nu x 2^Nv quads and a curve 2^N segments of about the instance's
 // edge_length; at level d it has 2^(Nu-d) x 2^(Nv-d), d = 0 ... min(Nu, Nv), and a curve 2^max(N-d, 0).
-// Across meshes levels are named by absolute powers of two: level A has edges of about 2^A, A = first_level +
+// Across instances levels are named by absolute powers of two: level A has edges of about 2^A, A = first_level +
 // d.
 //
 // A vertex is born at the coarsest level that has it. Its place on the surface is its *anchor*; where a ray
@@ -170,11 +201,11 @@ struct MeshRecord {
 /// then, where the header gives an offset, cell boxes, ancestors, corner data, normals. A cell is 2 x 2
 /// quads.
 struct alignas(line_bytes) BlockHeader {
-    float box_low[3], box_high[3]; // of its vertices and all finer ones, mesh coordinates
+    float box_low[3], box_high[3]; // of its vertices and all finer ones, the instance's coordinates
     std::int32_t patch;
     std::int32_t number; // of the block in its patch and level, row by row
-    std::int32_t mesh;
-    std::int32_t level;            // of the mesh
+    std::int32_t instance;
+    std::int32_t level;            // of the instance
     std::int32_t absolute;         // level: first_level + level
     std::int32_t column, row;      // of the block in its patch and level
     std::int32_t quads_u, quads_v; // 1, 2, 4 or 8
@@ -242,8 +273,13 @@ struct KdNode {
 };
 static_assert(sizeof(KdNode) == 16);
 
-/// An item is a patch (number >= 0) or a block (~first line). The list's arrays follow: item[stride], then
-/// the boxes low x[stride], y, z, high x[stride], y, z in scene coordinates.
+/// An item is a block (~first line), or closed: a patch (its number), a cluster of an instance's patches
+/// (cluster_items + the number of its first patch / refit_patches) or a node of the scene graph (graph_items +
+/// its number). The list's arrays follow: item[stride], then the boxes low x[stride], y, z, high x[stride], y,
+/// z in scene coordinates.
+inline constexpr std::int32_t cluster_items = 1 << 30;
+inline constexpr std::int32_t graph_items = cluster_items + (1 << 29);
+inline constexpr std::int32_t most_patches = cluster_items; // that can be numbered
 struct ItemList {
     std::int32_t count;
     std::int32_t stride;
@@ -285,7 +321,7 @@ struct alignas(line_bytes) QueueRecord {
     std::int32_t padding[15];
     isa::shared<std::int32_t> next_refit;
     std::int32_t padding2[15];
-    isa::shared<std::int32_t> refitted; // chunks done
+    isa::shared<std::int32_t> refitted; // clusters done
     std::int32_t padding3[15];
 };
 
@@ -313,7 +349,9 @@ struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t tiles_x, tiles;
     std::int32_t light_samples, sky_samples;
-    std::int32_t patch_count, refit_chunks;
+    std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
+    std::int32_t cluster_count; // of all meshes
+    std::int32_t graph_count;   // nodes of the scene graph
     float camera[3]; // scene coordinates
     float film_corner[3], film_x[3],
         film_y[3]; // direction of the film's top left corner, and a pixel's steps
@@ -322,17 +360,20 @@ struct FrameHeader {
     float sky[3];          // radiance / samples
     float background[3];   // what a camera ray that hits nothing sees
     float reach;           // no two points of scene and camera are further apart
-    std::int32_t bounds_stride;
-    isa::ref<MeshRecord> meshes;
+    isa::ref<GraphNodeRecord> graph;
+    isa::ref<InstanceRecord> instances;
+    isa::ref<std::int32_t> cluster_instance; // of every refit_patches patch numbers
     isa::ref<PatchRecord> patches;
     isa::ref<FaceRecord> faces;
     isa::ref<VertexRecord> vertices;
     isa::ref<CurveRecord> curves;
     isa::ref<std::int32_t> face_curves;
     isa::ref<std::int32_t> controls;
-    isa::ref<float> points; // x, y, z of each control point, mesh coordinates
+    isa::ref<float> points; // x, y, z of each control point, relative to its mesh's origin
     isa::ref<ClassRecord> classes;
-    isa::ref<float> bounds; // of each patch: low x[bounds_stride], y, z, high x, y, z, scene coordinates
+    isa::ref<std::int32_t> cluster_patches; // how many each cluster has
+    isa::ref<float> cluster_boxes; // low x[clusters_stride], y, z, high x, y, z, mesh coordinates
+    std::int32_t clusters_stride;
     isa::ref<TreeRecord> trees;
     isa::ref<WorkerRecord> workers;
     isa::ref<KdNode> nodes;
@@ -349,8 +390,6 @@ struct FrameHeader {
 };
 
 inline constexpr int tile_side = 16; // pixels
-inline constexpr int refit_patches =
-    64; // a chunk: patches refitted by one grab of the queue (a multiple of every width)
 
 // --- scratch of a worker, in floats
 // -----------------------------------------------------------------------------------

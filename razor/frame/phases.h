@@ -18,4 +18,7 @@ enum Phase : int {
 inline constexpr const char* phase_names[phase_count] = {
     "animate", "build", "tessellate", "shade", "traverse", "intersect", "morph", "light", "resolve"};
 
+/// What is timed on the host, each when it first happens in a frame.
+enum Moment : int { moment_refitted, moment_first_packet, moment_count };
+
 } // namespace razor

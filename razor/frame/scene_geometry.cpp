@@ -8,8 +8,11 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace razor {
 
@@ -42,7 +45,66 @@ double power_of_two_below(double length) {
     return std::exp2(std::floor(std::log2(length)));
 }
 
-SceneGeometry locate_scene(const Scene& scene) {
+namespace {
+
+/// Boxes of meshes where they stand. Copies that only translate share the work.
+class WorldBoxes {
+public:
+    explicit WorldBoxes(const std::vector<Mesh>& meshes) : meshes_(meshes) {}
+    Box operator()(int mesh, const Affine& world) {
+        std::array<double, 9> key{};
+        for (int i = 0; i < 9; ++i)
+            key[static_cast<std::size_t>(i)] = world.linear[i / 3][i % 3];
+        auto [turned, fresh] = turned_.try_emplace({mesh, key});
+        if (fresh)
+            for (const glm::dvec3& p : meshes_[static_cast<std::size_t>(mesh)].points)
+                turned->second.add(world.linear * p);
+        return {turned->second.low + world.translation, turned->second.high + world.translation};
+    }
+
+private:
+    const std::vector<Mesh>& meshes_;
+    std::map<std::pair<int, std::array<double, 9>>, Box> turned_;
+};
+
+/// Origins of meshes: the centres of their points. The first instance that neither turns nor scales its mesh
+/// gets it without a move: the origin is shifted to where single precision can put it.
+std::vector<glm::dvec3> place_origins(const Scene& scene, const FlatGraph& flat, const glm::dvec3& origin) {
+    std::vector<glm::dvec3> origins;
+    for (const Mesh& mesh : scene.meshes) {
+        Box box;
+        for (const glm::dvec3& p : mesh.points)
+            box.add(p);
+        origins.push_back(box.centre());
+    }
+    std::vector<bool> shifted(origins.size(), false);
+    for (const FlatInstance& i : flat.instances) {
+        const auto mesh = static_cast<std::size_t>(i.mesh);
+        const Affine& world = flat.nodes[static_cast<std::size_t>(i.node)].world;
+        if (shifted[mesh] || world.linear != glm::dmat3(1))
+            continue;
+        const glm::dvec3 centre = origins[mesh] + (world.translation - origin);
+        origins[mesh] = glm::dvec3(glm::vec3(centre)) - (world.translation - origin);
+        shifted[mesh] = true;
+    }
+    return origins;
+}
+
+/// Where the mesh's origin comes to lie, and what of that single precision cannot say.
+void place_instance(const Affine& world, const glm::dvec3& mesh_origin, const glm::dvec3& origin,
+                    double size, Instance& placed) {
+    placed.linear = world.linear;
+    const glm::dvec3 at = world.linear * mesh_origin + (world.translation - origin);
+    placed.origin = glm::vec3(at);
+    placed.offset = glm::vec3(at - glm::dvec3(placed.origin));
+    for (int k = 0; k < 3; ++k)
+        if (std::abs(placed.offset[k]) < std::ldexp(size, -28)) // less than points are rounded by
+            placed.offset[k] = 0;
+}
+
+} // namespace
+
+SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
     SceneGeometry g;
     const SceneGraph graph = drawn_graph(scene.graph, scene.meshes.size());
     std::vector<Box> of_meshes;
@@ -56,37 +118,36 @@ SceneGeometry locate_scene(const Scene& scene) {
     }
     Box all;
     std::vector<Box> boxes;
+    std::vector<bool> seen;
+    WorldBoxes box_of(scene.meshes);
     for (const FlatInstance& i : flat.instances) {
-        const Affine& world = flat.nodes[static_cast<std::size_t>(i.node)].world;
-        Box box;
-        for (const glm::dvec3& p : scene.meshes[static_cast<std::size_t>(i.mesh)].points)
-            box.add(world(p));
-        all.add(box);
-        boxes.push_back(box);
+        boxes.push_back(box_of(i.mesh, flat.nodes[static_cast<std::size_t>(i.node)].world));
+        all.add(boxes.back());
+        seen.push_back(drawn[static_cast<std::size_t>(i.mesh)]);
     }
     g.origin = all.centre();
+    g.mesh_origins = place_origins(scene, flat, g.origin);
     for (std::size_t n = 0; n < flat.instances.size(); ++n) {
         const FlatInstance& i = flat.instances[n];
         const Mesh& mesh = scene.meshes[static_cast<std::size_t>(i.mesh)];
         Instance placed;
         placed.mesh = i.mesh;
         placed.material = i.material >= 0 ? i.material : mesh.material;
-        placed.world = flat.nodes[static_cast<std::size_t>(i.node)].world;
-        placed.origin = glm::vec3(boxes[n].centre() - g.origin);
+        place_instance(flat.nodes[static_cast<std::size_t>(i.node)].world,
+                       g.mesh_origins[static_cast<std::size_t>(i.mesh)], g.origin,
+                       glm::length(boxes[n].high - boxes[n].low), placed);
         double length = mesh.edge_length > 0 ? mesh.edge_length : automatic_edge_length(scene, boxes[n]);
         length *= i.rate;
         length = scene.settings.lod == Lod::fixed ? nearest_power_of_two(length) : power_of_two_below(length);
+        placed.mesh_edge_length = std::clamp(std::ldexp(length, i.level_offset), 1e-30, 1e30);
         placed.edge_length = std::clamp(std::ldexp(length, i.level_offset) * i.scale, 1e-30, 1e30);
         g.instances.push_back(placed);
     }
+    if (std::find(seen.begin(), seen.end(), true) != seen.end())
+        g.graph = build_hierarchy(flat, seen);
     g.reach = glm::length(all.high - all.low) + glm::length(scene.camera.position - g.origin);
     g.reach = std::max(g.reach, 1e-30);
     return g;
-}
-
-Affine relative_to_origin(const SceneGeometry& geometry, const Instance& instance) {
-    return {instance.world.linear,
-            instance.world.translation - (geometry.origin + glm::dvec3(instance.origin))};
 }
 
 } // namespace razor

@@ -27,19 +27,20 @@ struct Context {
     pointer<KdNode> nodes;
     pointer<Line> lists, grids;
     pointer<PatchRecord> patches;
-    pointer<MeshRecord> meshes;
+    pointer<GraphNodeRecord> graph;
+    pointer<InstanceRecord> instances;
+    pointer<std::int32_t> cluster_instance;
     pointer<float> stack;   // traversal stack, then builders' scratch (scratch.h)
     pointer<float> packets; // rays in flight (scratch.h)
     isa::page_service* pages = nullptr;
     Counters* counters = nullptr;
+    isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
+    isa::stopwatch* watch = nullptr;
 };
 
-inline Context make_context(pointer<FrameHeader> frame, sint worker, isa::page_service* pages,
-                            Counters* counters) {
+inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     Context c;
     c.frame = frame;
-    c.pages = pages;
-    c.counters = counters;
     pointer<WorkerRecord> workers = load(field(frame, &FrameHeader::workers));
     c.self = workers + worker;
     pointer<TreeRecord> trees = load(field(frame, &FrameHeader::trees));
@@ -50,7 +51,9 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker, isa::page_s
     c.lists = load(field(frame, &FrameHeader::lists));
     c.grids = load(field(frame, &FrameHeader::grids));
     c.patches = load(field(frame, &FrameHeader::patches));
-    c.meshes = load(field(frame, &FrameHeader::meshes));
+    c.graph = load(field(frame, &FrameHeader::graph));
+    c.instances = load(field(frame, &FrameHeader::instances));
+    c.cluster_instance = load(field(frame, &FrameHeader::cluster_instance));
     c.stack = load(field(c.self, &WorkerRecord::stack));
     c.packets = load(field(c.self, &WorkerRecord::packets));
     return c;

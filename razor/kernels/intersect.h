@@ -623,8 +623,8 @@ template <Features F, bool Mixed>
                                                 const Slabs& rays, sint stride, vmask moved, sfloat most,
                                                 Hits& hits) {
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
-    sint mesh = load(field(header, &BlockHeader::mesh));
-    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
+    sint instance = load(field(header, &BlockHeader::instance));
+    pointer<float> origin_at = field(c.instances + instance, &InstanceRecord::origin);
     sfloat sway = sway_of(c, header, most);
     vint cells_of_lane(0);
     sint cells = 0;
@@ -697,8 +697,8 @@ template <Features F, bool Mixed>
         return;
     tally(c.counters->block_tests, 1);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
-    sint mesh = load(field(header, &BlockHeader::mesh));
-    pointer<float> origin_at = field(c.meshes + mesh, &MeshRecord::origin);
+    sint instance = load(field(header, &BlockHeader::instance));
+    pointer<float> origin_at = field(c.instances + instance, &InstanceRecord::origin);
     View v;
     v.line = listed.line;
     v.words = as<float>(header);

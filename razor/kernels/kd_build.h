@@ -1,12 +1,13 @@
 // The kd-tree, split on demand by the surface-area heuristic: a node is split when the first ray enters it.
 // Planes are sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). The bonus
 // for empty space ranks planes only: whether to split is asked of the cost, or piles would be trimmed for
-// ever. Patches stay closed in the lists until their box is large against the node's cell (after Hunt et al.
-// 2007). A node of few blocks becomes a leaf of their level; rays for which that is too coarse go on to its
+// ever. The root lists the root of the scene graph. Graph nodes, instances, clusters and patches stay closed in
+// the lists until their box is large against the node's cell (after Hunt et al. 2007), or no plane is worth
+// its cost. A node of few blocks becomes a leaf of their level; rays for which that is too coarse go on to its
 // finer node, whose list is made of the blocks' children and split in turn.
 #pragma once
 
-#include "razor/kernels/kd_list.h"
+#include "razor/kernels/kd_open.h"
 
 namespace razor::ISA_TARGET {
 inline namespace build_kernel {
@@ -15,7 +16,7 @@ inline constexpr int plane_samples = 8;
 inline constexpr float traversal_cost = 1.0F; // a packet's visit to a node ...
 inline constexpr float item_cost = 1.5F;      // ... and its test of a block
 inline constexpr float empty_bonus = 0.85F;
-inline constexpr int few_items = 8;       // so few are opened whatever their size
+inline constexpr int few_items = 8;       // so few patches are opened whatever their size
 inline constexpr float large_item = 0.5F; // of the cell's largest side
 
 struct Plane {
@@ -169,6 +170,39 @@ inline void make_finer(const Context& c, const List& l) {
     store_release(field(node, &KdNode::state), node_unsplit);
 }
 
+/// Opens the closed items that are large against the list's cell, and what is in them, until none is.
+inline List open_large_items(const Context& c, List l) {
+    vfloat limit = vfloat(largest(l.high - l.low) * large_item);
+    for (;;) {
+        vmask few = vmask(l.count <= few_items);
+        auto large = [&](const Items& v) {
+            vvec extent{v.box[3] - v.box[0], v.box[4] - v.box[1], v.box[5] - v.box[2]};
+            vmask wanted = few & is_patch(v);
+            wanted = wanted | (largest(extent) > limit);
+            return wanted & is_closed(v);
+        };
+        sint to_open = 0;
+        for (sint i = 0; branch(i < l.count); i += isa::width) {
+            vmask m = first_lanes(l.count - i);
+            Items v = load_items(l, i, m);
+            to_open += count(m & large(v));
+        }
+        if (branch(to_open == 0))
+            return l;
+        l = open_items(c, l, large);
+    }
+}
+
+inline sint count_closed(const List& l) {
+    sint closed = 0;
+    for (sint i = 0; branch(i < l.count); i += isa::width) {
+        vmask m = first_lanes(l.count - i);
+        vint item = load_vector(l.items + i, m);
+        closed += count(m & (item >= vint(0)));
+    }
+    return closed;
+}
+
 /// Splits a node or makes it a leaf; returns its new state, not yet published.
 [[gnu::noinline]] inline sint build_node(const Context& c, pointer<KdNode> node) {
     phase_scope phase(phase_build);
@@ -177,29 +211,8 @@ inline void make_finer(const Context& c, const List& l) {
     sint refine = load(field(node, &KdNode::axis));
     if (branch(refine != 0))
         l = refine_items(c, l);
-    sfloat cell = largest(l.high - l.low);
-    vfloat limit = vfloat(cell * large_item);
-    sbool few = l.count <= few_items;
-    vmask open_all = vmask(few);
-    auto large = [&](const Items& v) {
-        vvec extent{v.box[3] - v.box[0], v.box[4] - v.box[1], v.box[5] - v.box[2]};
-        vfloat size = largest(extent);
-        vmask wanted = open_all | (size > limit);
-        return wanted & (v.item >= vint(0));
-    };
-    auto closed = [&](const Items& v) { return v.item >= vint(0); };
-    sint to_open = 0, patches = 0;
-    for (sint i = 0; branch(i < l.count); i += isa::width) {
-        vmask m = first_lanes(l.count - i);
-        Items v = load_items(l, i, m);
-        to_open += count(m & large(v));
-        patches += count(m & closed(v));
-    }
-    if (branch(to_open > 0)) {
-        l = open_items(c, l, large);
-        patches = patches - to_open;
-    }
     for (;;) {
+        l = open_large_items(c, l);
         Plane plane;
         plane.cost = 3.0e38F;
         if (branch(l.depth < kd_depth_limit))
@@ -211,23 +224,23 @@ inline void make_finer(const Context& c, const List& l) {
             store(field(node, &KdNode::link), children);
             return node_inner;
         }
-        if (branch(patches == 0)) {
-            make_leaf(c, l);
-            sint level = load(field(l.header, &ItemList::level));
-            sfloat target = load(field(c.frame, &FrameHeader::fixed_target));
-            sbool wanted = target == 0.0F; // by some ray
-            wanted = wanted | (target >= power_of_two(level));
-            if (branch(wanted | (level == least_level))) {
-                if (branch(level != least_level))
-                    make_finer(c, l);
-                store(field(node, &KdNode::link), l.line);
-                return node_leaf;
-            }
-            l = refine_items(c, l);
+        sint closed = count_closed(l);
+        if (branch(closed > 0)) {
+            l = open_items(c, l, [](const Items& v) { return is_closed(v); });
             continue;
         }
-        l = open_items(c, l, closed);
-        patches = 0;
+        make_leaf(c, l);
+        sint level = load(field(l.header, &ItemList::level));
+        sfloat target = load(field(c.frame, &FrameHeader::fixed_target));
+        sbool wanted = target == 0.0F; // by some ray
+        wanted = wanted | (target >= power_of_two(level));
+        if (branch(wanted | (level == least_level))) {
+            if (branch(level != least_level))
+                make_finer(c, l);
+            store(field(node, &KdNode::link), l.line);
+            return node_leaf;
+        }
+        l = refine_items(c, l);
     }
 }
 
@@ -249,42 +262,21 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
     return seen;
 }
 
-/// The root's list: every patch, closed.
+/// The root's list: the root of the scene graph, closed.
 [[gnu::noinline]] inline void build_root(const Context& c) {
     phase_scope phase(phase_build);
-    sint patches = load(field(c.frame, &FrameHeader::patch_count));
-    sint from_stride = load(field(c.frame, &FrameHeader::bounds_stride));
-    pointer<float> bounds = load(field(c.frame, &FrameHeader::bounds));
     sint root = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
-    svec none{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
-    List l = make_list(c, patches, 0, none, none);
-    vfloat big(3.0e38F);
-    vfloat small(-3.0e38F);
-    vfloat best[6] = {big, big, big, small, small, small};
-    for (sint i = 0; branch(i < patches); i += isa::width) {
-        vmask m = first_lanes(patches - i);
-        vint item = lane_index() + vint(i);
-        store_vector(l.items + i, item, m);
-        pointer<float> in = bounds + i;
-        pointer<float> out = l.boxes + i;
-        for (int k = 0; k < 6; ++k) {
-            vfloat b = load_vector(in, m);
-            store_vector(out, b, m);
-            vfloat extreme = k < 3 ? min(b, best[k]) : max(b, best[k]);
-            best[k] = select(m, extreme, best[k]);
-            in = in + from_stride;
-            out = out + l.stride;
-        }
-    }
-    sfloat box[6];
+    svec low = load_svec(field(c.graph, &GraphNodeRecord::low));
+    svec high = load_svec(field(c.graph, &GraphNodeRecord::high));
+    List l = make_list(c, 1, 0, low, high);
+    store(l.items, graph_items);
+    sfloat box[6] = {low.x, low.y, low.z, high.x, high.y, high.z};
     for (int k = 0; k < 6; ++k) {
-        box[k] = k < 3 ? reduce_min(best[k]) : reduce_max(best[k]);
+        store(l.boxes + l.stride * k, box[k]);
         pointer<float> to =
             k < 3 ? field(c.tree, &TreeRecord::low) + k : field(c.tree, &TreeRecord::high) + (k - 3);
         store(to, box[k]);
     }
-    l.low = {box[0], box[1], box[2]};
-    l.high = {box[3], box[4], box[5]};
     close_list(l);
     pointer<KdNode> node = c.nodes + root;
     store(field(node, &KdNode::link), l.line);

@@ -1,5 +1,4 @@
-// Item lists of unsplit kd nodes and leaves: patches (number >= 0) and blocks (~first line) with their boxes,
-// as arrays.
+// Item lists of unsplit kd nodes and leaves (layout.h): items with their boxes, as arrays.
 #pragma once
 
 #include "razor/kernels/reach.h"
@@ -132,28 +131,6 @@ inline sint append_block(const List& l, sint at, sint line, const svec& low, con
     return at + 1;
 }
 
-/// Opens the patches among the items that `wanted` chooses and returns the list with their coarsest blocks
-/// instead.
-template <class Wanted> inline List open_items(const Context& c, const List& old, Wanted wanted) {
-    List l = make_list(c, old.count, old.depth, old.low, old.high);
-    sint at = 0;
-    for (sint from = 0; branch(from < old.count); from += isa::width) {
-        vmask valid = first_lanes(old.count - from);
-        Items v = load_items(old, from, valid);
-        vmask m = valid & wanted(v);
-        at = append(l, at, v, valid & !m);
-        for (; branch(any(m)); m = clear_first(m)) {
-            sint patch = extract(v.item, first(m));
-            pointer<OpenPatch> entry = open_patch(c, patch);
-            sint line = load(field(entry, &OpenPatch::root));
-            Reach box = reach_of(c, line, 3.0e38F);
-            at = append_block(l, at, line, box.low, box.high);
-        }
-    }
-    l.count = at;
-    return l;
-}
-
 /// What rays can want of a leaf's blocks.
 struct Leaf {
     sint level;     // absolute, of those that have children; least_level: none has
@@ -163,8 +140,8 @@ inline constexpr int least_level = -200;
 
 /// Widens the leaf's box by that of everything at or below a block.
 inline void widen(const Context& c, pointer<BlockHeader> block, Leaf& leaf) {
-    sint mesh = load(field(block, &BlockHeader::mesh));
-    svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
+    sint instance = load(field(block, &BlockHeader::instance));
+    svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
     svec low = load_svec(field(block, &BlockHeader::box_low));
     svec high = load_svec(field(block, &BlockHeader::box_high));
     low = low + origin;

@@ -6,7 +6,12 @@ namespace razor::ISA_TARGET {
 namespace {
 
 Context begin(const WorkerArguments& a) {
-    return make_context(pointer<FrameHeader>(a.frame), sint(a.worker), a.pages, a.counters);
+    Context c = make_context(pointer<FrameHeader>(a.frame), sint(a.worker));
+    c.pages = a.pages;
+    c.counters = a.counters;
+    c.opened = a.opened;
+    c.watch = a.watch;
+    return c;
 }
 
 template <Features F> void render(const WorkerArguments& a) {

@@ -23,6 +23,10 @@ inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_st
         dv = madd(wv, p, dv);
         row = row + row_stride * 2;
     }
+    if (branch(g.place.moved)) {
+        du = moved_directions(g.place, du);
+        dv = moved_directions(g.place, dv);
+    }
 }
 
 inline void store_normals(pointer<float> out, sint stride, const vvec& du, const vvec& dv, const vmask& m) {
@@ -38,10 +42,10 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
     phase_scope phase(phase_shade);
     tally(c.counters->normal_blocks, 1);
     sint patch = load(field(header, &BlockHeader::patch));
-    sint mesh = load(field(header, &BlockHeader::mesh));
+    sint instance = load(field(header, &BlockHeader::instance));
     sint level = load(field(header, &BlockHeader::level));
-    Cage g = load_cage(c, mesh, level);
-    Dicing d = plan_dicing(c, g, patch, level);
+    Cage g = load_cage(c, instance, level);
+    Dicing d = plan_dicing(c, g, instance, patch, level);
     Block b;
     b.row = load(field(header, &BlockHeader::row));
     b.column = load(field(header, &BlockHeader::column));

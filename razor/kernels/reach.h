@@ -71,7 +71,7 @@ inline Reach reach_of(const Context& c, sint line, sfloat target) {
     Reach box;
     box.low = load_svec(field(block, &BlockHeader::box_low));
     box.high = load_svec(field(block, &BlockHeader::box_high));
-    sint mesh = load(field(block, &BlockHeader::mesh));
+    sint instance = load(field(block, &BlockHeader::instance));
     sint movable = load(field(block, &BlockHeader::movable));
     if (branch(movable != 0)) {
         sfloat more = corners_move(c, block, target);
@@ -79,7 +79,7 @@ inline Reach reach_of(const Context& c, sint line, sfloat target) {
         box.low = box.low - wide;
         box.high = box.high + wide;
     }
-    svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
+    svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
     box.low = box.low + origin;
     box.high = box.high + origin;
     return box;

@@ -156,6 +156,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
             for (sint s = 0; branch(s < samples); ++s) {
                 Rays r = camera_rays(camera, column, row, pixel, s, inside);
                 add_sample<F>(c, r, pixel, s, sums);
+                note_time(*c.watch, moment_first_packet);
             }
             resolve(c, sums, pixel, samples, inside);
         }

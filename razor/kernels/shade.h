@@ -144,8 +144,8 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
         pointer<float> vertices = words + block_header_words;
         pointer<float> normals = words + normals_at;
         if (branch(leader >= 0)) {
-            sint mesh = load(field(as<BlockHeader>(words), &BlockHeader::mesh));
-            svec origin = load_svec(field(c.meshes + mesh, &MeshRecord::origin));
+            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
+            svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
             pointer<float> area = c.stack + scratch_blend;
             tally(c.counters->blended_blocks, 1);
             blend_vertices(c, field_of(c, leader, origin), block, area);
@@ -195,12 +195,12 @@ inline constexpr float leaving_share = 0.5F;
     flipped = s.shading * vfloat(-1.0F);
     s.shading = select(opposed, flipped, s.shading);
 
-    constexpr int patch_words = sizeof(PatchRecord) / 4;
-    constexpr int mesh_words = sizeof(MeshRecord) / 4;
-    vint mesh = gather(field(c.patches, &PatchRecord::mesh), h.patch * vint(patch_words), s.hit);
-    vint record = mesh * vint(mesh_words);
-    vvec origin = gather_vec(field(c.meshes, &MeshRecord::origin), record, vint(1), s.hit);
-    s.albedo = gather_vec(field(c.meshes, &MeshRecord::albedo), record, vint(1), s.hit);
+    constexpr int instance_word = offsetof(BlockHeader, instance) / 4;
+    constexpr int instance_words = sizeof(InstanceRecord) / 4;
+    vint instance = gather(as<std::int32_t>(c.grids) + instance_word, h.block << 4, s.hit);
+    vint record = instance * vint(instance_words);
+    vvec origin = gather_vec(field(c.instances, &InstanceRecord::origin), record, vint(1), s.hit);
+    s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);
     vvec p = blend(k.a, k.b, k.c, h);
     vfloat error = position_error(p, origin);
     vmask morphs = vmask(load(field(c.frame, &FrameHeader::morphs)) != 0);

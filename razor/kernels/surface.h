@@ -9,7 +9,15 @@
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
 
-/// The cage of one mesh, as handles in registers.
+/// From a mesh's coordinates to those of an instance. Points are weighted first and moved then, by whoever
+/// asks for them, so that shared ones keep equal bits.
+struct Place {
+    sbool moved; // or the map is the identity
+    svec row[3]; // of the linear part
+    svec offset;
+};
+
+/// The cage of one mesh as an instance has it, as handles in registers.
 struct Cage {
     pointer<FaceRecord> faces;
     pointer<VertexRecord> vertices;
@@ -17,12 +25,62 @@ struct Cage {
     pointer<std::int32_t> face_curves, controls;
     pointer<float> points;
     pointer<ClassRecord> classes;
-    sfloat per_edge_length; // 1 / edge length at level 0
+    sfloat per_edge_length; // 1 / edge length at level 0, mesh units
+    Place place;
     sint max_exponent;
     sint level; // at which points are asked for
 };
 
-inline Cage load_cage(const Context& c, sint mesh, sint level) {
+inline Place load_place(pointer<InstanceRecord> instance) {
+    Place p;
+    p.moved = load(field(instance, &InstanceRecord::moved)) != 0;
+    if (branch(p.moved)) {
+        pointer<float> linear = field(instance, &InstanceRecord::linear);
+        for (int k = 0; k < 3; ++k)
+            p.row[k] = load_svec(linear + 3 * k);
+        p.offset = load_svec(field(instance, &InstanceRecord::offset));
+    }
+    return p;
+}
+
+inline sfloat moved_along(const svec& row, sfloat offset, const svec& p) {
+    return fma(row.x, p.x, fma(row.y, p.y, fma(row.z, p.z, offset)));
+}
+inline svec moved(const Place& place, const svec& p) {
+    svec q = p;
+    if (branch(place.moved)) {
+        q.x = moved_along(place.row[0], place.offset.x, p);
+        q.y = moved_along(place.row[1], place.offset.y, p);
+        q.z = moved_along(place.row[2], place.offset.z, p);
+    }
+    return q;
+}
+
+/// Of a place that moves.
+inline vfloat moved_along(const svec& row, sfloat offset, const vvec& p) {
+    vfloat x(row.x);
+    vfloat y(row.y);
+    vfloat z(row.z);
+    vfloat o(offset);
+    return fma(x, p.x, fma(y, p.y, fma(z, p.z, o)));
+}
+inline vvec moved_points(const Place& place, const vvec& p) {
+    vvec q;
+    q.x = moved_along(place.row[0], place.offset.x, p);
+    q.y = moved_along(place.row[1], place.offset.y, p);
+    q.z = moved_along(place.row[2], place.offset.z, p);
+    return q;
+}
+inline vvec moved_directions(const Place& place, const vvec& d) {
+    vvec q;
+    q.x = moved_along(place.row[0], 0.0F, d);
+    q.y = moved_along(place.row[1], 0.0F, d);
+    q.z = moved_along(place.row[2], 0.0F, d);
+    return q;
+}
+
+/// Of all meshes: without what an instance makes of one.
+inline Cage load_topology(const Context& c) {
     Cage g;
     g.faces = load(field(c.frame, &FrameHeader::faces));
     g.vertices = load(field(c.frame, &FrameHeader::vertices));
@@ -31,20 +89,31 @@ inline Cage load_cage(const Context& c, sint mesh, sint level) {
     g.controls = load(field(c.frame, &FrameHeader::controls));
     g.points = load(field(c.frame, &FrameHeader::points));
     g.classes = load(field(c.frame, &FrameHeader::classes));
-    pointer<MeshRecord> record = c.meshes + mesh;
-    sfloat edge = load(field(record, &MeshRecord::edge_length));
+    return g;
+}
+
+inline Cage load_cage(const Context& c, sint instance, sint level) {
+    Cage g = load_topology(c);
+    pointer<InstanceRecord> record = c.instances + instance;
+    sfloat edge = load(field(record, &InstanceRecord::mesh_edge_length));
     g.per_edge_length = sfloat(1.0F) / edge;
-    g.max_exponent = load(field(record, &MeshRecord::max_exponent));
+    g.max_exponent = load(field(record, &InstanceRecord::max_exponent));
+    g.place = load_place(record);
     g.level = level;
     return g;
 }
 
+/// In mesh coordinates.
 inline svec cage_point(const Cage& g, sint point) {
     return load_svec(g.points + point * 3);
 }
+inline svec placed_point(const Cage& g, sint point) {
+    return moved(g.place, cage_point(g, point));
+}
 
 /// Exponent N of a cage edge at level 0: 2^N segments of about the target length, N = round(log2(length /
-/// target)), by the cage points alone; in [0, max_exponent].
+/// target)), by the mesh's cage points alone, so that all its instances at one level are diced alike; in [0,
+/// max_exponent].
 inline sint edge_exponent(const Cage& g, pointer<CurveRecord> curve) {
     sint end0 = load(field(curve, &CurveRecord::end0));
     sint end1 = load(field(curve, &CurveRecord::end1));
@@ -131,13 +200,13 @@ inline svec limit_point(const Context& c, const Cage& g, pointer<FaceRecord> fac
     p.x = reduce_add(sum[0].x);
     p.y = reduce_add(sum[0].y);
     p.z = reduce_add(sum[0].z);
-    return p;
+    return moved(g.place, p);
 }
 
 /// Where a cage point lies on the surface.
 template <bool Straight> inline svec vertex_position(const Context& c, const Cage& g, sint point) {
     if constexpr (Straight)
-        return cage_point(g, point);
+        return placed_point(g, point);
     sint owner = load(field(g.vertices + point, &VertexRecord::owner_face));
     sint corner = load(field(g.vertices + point, &VertexRecord::owner_corner));
     return limit_point(c, g, g.faces + owner, corner);
@@ -151,7 +220,7 @@ template <bool Straight> inline svec face_centre(const Context& c, const Cage& g
     svec sum{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
     for (sint i = 0; branch(i < n); ++i) {
         sint point = load(g.controls + (first + i));
-        sum = sum + cage_point(g, point);
+        sum = sum + placed_point(g, point);
     }
     return sum * (sfloat(1.0F) / to_float(n));
 }
@@ -200,6 +269,8 @@ inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord>
             vfloat w = load_vector(weights + i * curve_row + lanes, m);
             sum = madd(w, p, sum);
         }
+        if (branch(g.place.moved))
+            sum = moved_points(g.place, sum);
         store_vector(points + lanes, sum.x, m);
         store_vector(points + curve_row + lanes, sum.y, m);
         store_vector(points + 2 * curve_row + lanes, sum.z, m);

@@ -19,7 +19,7 @@ struct Side {
 
 /// A patch about to be diced at one level.
 struct Dicing {
-    sint patch, mesh, kind, face, sub;
+    sint patch, instance, kind, face, sub;
     pointer<PatchRecord> record;
     Side side[4];
     sint level = 0, coarsest = 0; // the level, and the last one that the patch has
@@ -30,13 +30,21 @@ inline sint half(const Side& side) {
     return (side.flags & side_half) >> 1;
 }
 
+/// What is known of an instance's patch once for all instances of its mesh.
+inline pointer<PatchRecord> patch_record(const Context& c, sint instance, sint patch) {
+    pointer<InstanceRecord> record = c.instances + instance;
+    sint first = load(field(record, &InstanceRecord::first_patch));
+    sint begin = load(field(record, &InstanceRecord::first_record));
+    return c.patches + (begin + (patch - first));
+}
+
 /// Grid exponents at level 0: the larger of opposite sides, so that a side is never finer than the grid. They
 /// differ by block_log2 at most, so that the coarsest level is one block. `level` -1: the coarsest.
-inline Dicing plan_dicing(const Context& c, const Cage& g, sint patch, sint level) {
+inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint patch, sint level) {
     Dicing d;
     d.patch = patch;
-    d.record = c.patches + patch;
-    d.mesh = load(field(d.record, &PatchRecord::mesh));
+    d.instance = instance;
+    d.record = patch_record(c, instance, patch);
     d.kind = load(field(d.record, &PatchRecord::kind));
     d.face = load(field(d.record, &PatchRecord::face));
     d.sub = load(field(d.record, &PatchRecord::sub));
@@ -203,6 +211,10 @@ inline void weigh(const Cage& g, pointer<float> weights, sint row_stride, sint c
         row = row + row_stride;
     }
     pointer<float> out = x + from;
+    if (branch(g.place.moved)) {
+        for (vvec& p : sum)
+            p = moved_points(g.place, p);
+    }
     for (int v = 0; v < Vectors; ++v) {
         store_vector(out + v * isa::width, sum[v].x, m[v]);
         store_vector(out + stride + v * isa::width, sum[v].y, m[v]);
@@ -234,7 +246,7 @@ inline svec straight_corner(const Context& c, const Cage& g, const Dicing& d, in
         if (k == 2)
             return face_centre<true>(c, g, g.faces + corner);
     }
-    return cage_point(g, corner);
+    return placed_point(g, corner);
 }
 
 /// Column and row of block vertices first + lane, for columns 0 ... quads_u.
@@ -283,7 +295,7 @@ inline void place_flat(const Cage& g, const Dicing& d, const Block& b) {
     constexpr int corner_of_vertex[4] = {0, 1, 3, 2};
     for (int v = 0; v < 4; ++v) {
         sint corner = load(field(d.record, &PatchRecord::corner) + corner_of_vertex[v]);
-        svec p = cage_point(g, corner);
+        svec p = placed_point(g, corner);
         store(b.x + v, p.x);
         store(b.x + b.stride + v, p.y);
         store(b.x + b.stride * 2 + v, p.z);
@@ -468,8 +480,10 @@ inline sfloat summed_deviation(const Context& c, const Cage& g, const Dicing& d,
         vfloat x = gather(g.points, at, m);
         vfloat y = gather(g.points + 1, at, m);
         vfloat z = gather(g.points + 2, at, m);
-        vvec p{x, y, z};
-        vfloat far = largest(abs(p - middle));
+        vvec away = vvec{x, y, z} - middle;
+        if (branch(g.place.moved))
+            away = moved_directions(g.place, away);
+        vfloat far = largest(abs(away));
         sum = fma(bound, select(m, far, vfloat(0.0F)), sum);
     }
     return reduce_add(sum);
@@ -617,10 +631,10 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
     b.words = as<float>(c.grids + line);
     b.x = b.words + block_header_words;
     pointer<BlockHeader> h = b.header;
-    sint first_level = load(field(c.meshes + d.mesh, &MeshRecord::first_level));
+    sint first_level = load(field(c.instances + d.instance, &InstanceRecord::first_level));
     store(field(h, &BlockHeader::patch), d.patch);
     store(field(h, &BlockHeader::number), row * s.columns + column);
-    store(field(h, &BlockHeader::mesh), d.mesh);
+    store(field(h, &BlockHeader::instance), d.instance);
     store(field(h, &BlockHeader::level), d.level);
     store(field(h, &BlockHeader::absolute), first_level + d.level);
     store(field(h, &BlockHeader::column), column);
@@ -698,9 +712,9 @@ inline void count_blocks(const Context& c, const Shape& s, sint level, sint bloc
 /// Makes a patch's coarsest block and fills in its entry of the tree's table (all but the state).
 [[gnu::noinline]] inline void dice_patch(const Context& c, sint patch, pointer<OpenPatch> entry) {
     phase_scope phase(phase_tessellate);
-    sint mesh = load(field(c.patches + patch, &PatchRecord::mesh));
-    Cage g = load_cage(c, mesh, 0);
-    Dicing d = plan_dicing(c, g, patch, -1);
+    sint instance = load(c.cluster_instance + (patch >> refit_log2));
+    Cage g = load_cage(c, instance, 0);
+    Dicing d = plan_dicing(c, g, instance, patch, -1);
     g.level = d.level;
     Shape s = block_shape(d);
     sint line = allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, s.lines, trap_grids_full);
@@ -721,12 +735,12 @@ inline pointer<OpenPatch> open_patch(const Context& c, sint patch) {
 [[gnu::noinline]] inline void dice_children(const Context& c, sint line, pointer<BlockHeader> header) {
     phase_scope phase(phase_tessellate);
     sint patch = load(field(header, &BlockHeader::patch));
-    sint mesh = load(field(header, &BlockHeader::mesh));
+    sint instance = load(field(header, &BlockHeader::instance));
     sint level = load(field(header, &BlockHeader::level));
     sint column = load(field(header, &BlockHeader::column));
     sint row = load(field(header, &BlockHeader::row));
-    Cage g = load_cage(c, mesh, level - 1);
-    Dicing d = plan_dicing(c, g, patch, level - 1);
+    Cage g = load_cage(c, instance, level - 1);
+    Dicing d = plan_dicing(c, g, instance, patch, level - 1);
     Shape s = block_shape(d);
     sint columns_log2 = select(d.nu > block_log2, sint(1), sint(0));
     sint rows_log2 = select(d.nv > block_log2, sint(1), sint(0));

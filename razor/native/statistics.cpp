@@ -28,7 +28,20 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                      {"grid_bytes", f.grid_bytes},
                      {"node_bytes", f.node_bytes},
                      {"list_bytes", f.list_bytes},
+                     {"patch_table_bytes", f.patch_table_bytes},
                      {"topology_page_bytes", f.page_bytes}};
+    json["scene_bytes"] = {{"scene_graph", f.scene_graph_bytes},
+                           {"topology", f.topology_bytes},
+                           {"control_points", f.control_point_bytes}};
+    const auto opened = [&](std::int64_t part, std::int64_t whole) {
+        return nlohmann::ordered_json{{"count", part}, {"of", whole}, {"share", share(part, whole)}};
+    };
+    const std::int64_t nodes = f.inner_nodes + f.leaves + f.unsplit_nodes;
+    json["opened"] = {{"graph_nodes", opened(f.graph_nodes_opened, f.graph_nodes)},
+                      {"instances", opened(f.instances_opened, f.instances * f.trees)},
+                      {"clusters", opened(f.clusters_opened, f.clusters)},
+                      {"patches", opened(c.patches_opened, f.patches)},
+                      {"kd_nodes", opened(f.inner_nodes + f.leaves, nodes)}};
     json["left_out"] = {{"patches_never_opened", f.patches - c.patches_opened},
                         {"of_patches", f.patches},
                         {"nodes_never_split", f.unsplit_nodes},
@@ -36,6 +49,8 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                         {"undrawn_faces", f.undrawn_faces}};
     json["host"] = {{"load_seconds", s.load_seconds},
                     {"render_seconds", s.render_seconds},
+                    {"refit_seconds", f.refit_seconds},
+                    {"first_packet_seconds", f.first_packet_seconds},
                     {"topology_page_seconds", f.page_seconds}};
 }
 

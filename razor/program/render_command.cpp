@@ -100,8 +100,10 @@ int RenderCommand::run() const {
         write_text_file(statistics_, report.dump(2) + "\n");
     }
     if (progress.shown()) {
-        fmt::print(stderr, "\r\x1b[K{} x {} pixels in {:.2f} s\n", result.film.width, result.film.height,
-                   seconds);
+        const FrameStatistics& frame = result.statistics.frame;
+        fmt::print(stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
+                   result.film.width, result.film.height, seconds, frame.first_packet_seconds,
+                   frame.refit_seconds);
     }
     return 0;
 }
