@@ -91,9 +91,9 @@ struct Frame::Impl {
     std::int64_t undrawn = 0;
     struct {
         std::size_t clusters = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
-    } total;                                // over the meshes
-    std::vector<std::size_t> first_cluster; // of each mesh
-    std::int64_t patches = 0, clusters = 0; // over the instances
+    } total;                                            // over the meshes
+    std::vector<std::size_t> first_cluster;             // of each mesh
+    std::int64_t patches = 0, clusters = 0;             // over the instances
     std::vector<std::unique_ptr<isa::mark_set>> opened; // one a tree: graph nodes, then instances' clusters
     isa::stopwatch watch{moment_count};
 
@@ -162,8 +162,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
             (refit_patches * sizeof(OpenPatch) * static_cast<std::size_t>(trees) + 4) +
         total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
         (total.faces + total.points + total.curves + total.face_curves) * 64 +
-        geometry.instances.size() * sizeof(InstanceRecord) +
-        geometry.graph.size() * sizeof(GraphNodeRecord);
+        geometry.instances.size() * sizeof(InstanceRecord) + geometry.graph.size() * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(pages->span_bytes() + all_grids + all_nodes + all_lists +
@@ -217,8 +216,7 @@ void Frame::Impl::place_scene(const Scene& scene) {
     header = region<FrameHeader>("scene graph", -1, 1);
     new (header) FrameHeader{};
     auto* record = region<InstanceRecord>("scene graph", -1, geometry.instances.size());
-    auto* cluster_instance =
-        region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters));
+    auto* cluster_instance = region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters));
     header->instances.set(record);
     header->cluster_instance.set(cluster_instance);
     std::int32_t first_patch = 0;
@@ -250,8 +248,7 @@ void Frame::Impl::place_scene(const Scene& scene) {
             albedo = scene.materials[material].albedo;
         for (int k = 0; k < 3; ++k)
             r.albedo[k] = albedo[k];
-        cluster_instance =
-            std::fill_n(cluster_instance, r.cluster_count, static_cast<std::int32_t>(n));
+        cluster_instance = std::fill_n(cluster_instance, r.cluster_count, static_cast<std::int32_t>(n));
         header->patch_count = std::max(header->patch_count, first_patch + r.patch_count);
         first_patch += r.cluster_count << refit_log2;
         for (const PatchRecord& p : t.patches)
@@ -270,8 +267,7 @@ void Frame::Impl::place_graph() {
     header->graph.set(graph);
     header->graph_count = static_cast<std::int32_t>(nodes.size());
     for (int t = 0; t < trees; ++t)
-        opened.push_back(
-            std::make_unique<isa::mark_set>(static_cast<std::int64_t>(nodes.size()) + clusters));
+        opened.push_back(std::make_unique<isa::mark_set>(static_cast<std::int64_t>(nodes.size()) + clusters));
     // Boxes of clusters: a frame's refit writes them.
     header->cluster_count = static_cast<std::int32_t>(total.clusters);
     header->clusters_stride = (header->cluster_count + 15) & -16;

@@ -32,14 +32,15 @@ struct FrameStatistics {
     std::int64_t patches = 0;               // of all instances, times the trees; likewise:
     std::int64_t graph_nodes = 0, clusters = 0;
     std::int64_t graph_nodes_opened = 0, instances_opened = 0, clusters_opened = 0; // leaves are instances
-    std::int64_t undrawn_faces = 0;         // holes and the like
+    std::int64_t undrawn_faces = 0;                                                 // holes and the like
     std::int64_t inner_nodes = 0, leaves = 0;
     std::int64_t unsplit_nodes = 0;                              // nodes that no ray entered
     std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // built this frame
-    std::int64_t scene_graph_bytes = 0, topology_bytes = 0, control_point_bytes = 0; // these outlive the frame
-    std::int64_t patch_table_bytes = 0; // of the tables that name opened patches, what was touched
-    /// Host time from the frame's begin until all boxes were refitted, and until the first packet of camera rays
-    /// was traced and shaded. 0: unknown.
+    std::int64_t scene_graph_bytes = 0, topology_bytes = 0,
+                 control_point_bytes = 0; // these outlive the frame
+    std::int64_t patch_table_bytes = 0;   // of the tables that name opened patches, what was touched
+    /// Host time from the frame's begin until all boxes were refitted, and until the first packet of camera
+    /// rays was traced and shaded. 0: unknown.
     double refit_seconds = 0, first_packet_seconds = 0;
     std::int64_t page_bytes = 0; // topology pages made so far; they outlive the frame
     double page_seconds = 0;     // host time spent on them

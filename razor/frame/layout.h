@@ -141,13 +141,14 @@ struct PageHeader {
 
 // --- scene
 // ------------------------------------------------------------------------------------------------------------
-// A mesh's patches, faces, curves and control points lie in memory once. What an instance builds (blocks) lies
-// in a space of its own, turned and scaled as the scene is and relative to the instance's origin, so that rays
-// meet it as they are.
+// A mesh's patches, faces, curves and control points lie in memory once. What an instance builds (blocks)
+// lies in a space of its own, turned and scaled as the scene is and relative to the instance's origin, so
+// that rays meet it as they are.
 //
 // Patches are grouped in *clusters* of refit_patches consecutive ones; a mesh's first is the first of a
-// cluster, so that record r belongs to cluster r / refit_patches. An instance's patches are numbered likewise:
-// number n names record first_record + (n - first_patch), and cluster_instance[n / refit_patches] the instance.
+// cluster, so that record r belongs to cluster r / refit_patches. An instance's patches are numbered
+// likewise: number n names record first_record + (n - first_patch), and cluster_instance[n / refit_patches]
+// the instance.
 inline constexpr int refit_log2 = 6;
 inline constexpr int refit_patches = 1 << refit_log2; // a multiple of every width
 
@@ -161,11 +162,11 @@ struct InstanceRecord {
     std::int32_t mesh;
     std::int32_t first_patch; // the number that names its first patch, a multiple of refit_patches
     std::int32_t patch_count;
-    std::int32_t first_record; // of its mesh's patches
+    std::int32_t first_record;                 // of its mesh's patches
     std::int32_t first_cluster, cluster_count; // of its mesh
-    std::int32_t moved;  // 0: mesh coordinates are the instance's own
-    float linear[9];     // rows: of the map from mesh coordinates to the instance's own ...
-    float offset[3];     // ... and what rounding the origin left over
+    std::int32_t moved;                        // 0: mesh coordinates are the instance's own
+    float linear[9]; // rows: of the map from mesh coordinates to the instance's own ...
+    float offset[3]; // ... and what rounding the origin left over
     float albedo[3];
     std::int32_t padding[3];
 };
@@ -183,10 +184,10 @@ static_assert(sizeof(GraphNodeRecord) == 40);
 
 // --- grids: what tessellating a patch yields
 // --------------------------------------------------------------------------
-// Levels. At level 0 of its instance a patch has 2^Nu x 2^Nv quads and a curve 2^N segments of about the instance's
-// edge_length; at level d it has 2^(Nu-d) x 2^(Nv-d), d = 0 ... min(Nu, Nv), and a curve 2^max(N-d, 0).
-// Across instances levels are named by absolute powers of two: level A has edges of about 2^A, A = first_level +
-// d.
+// Levels. At level 0 of its instance a patch has 2^Nu x 2^Nv quads and a curve 2^N segments of about the
+// instance's edge_length; at level d it has 2^(Nu-d) x 2^(Nv-d), d = 0 ... min(Nu, Nv), and a curve
+// 2^max(N-d, 0). Across instances levels are named by absolute powers of two: level A has edges of about 2^A,
+// A = first_level + d.
 //
 // A vertex is born at the coarsest level that has it. Its place on the surface is its *anchor*; where a ray
 // finds it depends on the ray's target edge length there (razor/kernels/morph.h). A vertex on a curve is born
@@ -274,9 +275,9 @@ struct KdNode {
 static_assert(sizeof(KdNode) == 16);
 
 /// An item is a block (~first line), or closed: a patch (its number), a cluster of an instance's patches
-/// (cluster_items + the number of its first patch / refit_patches) or a node of the scene graph (graph_items +
-/// its number). The list's arrays follow: item[stride], then the boxes low x[stride], y, z, high x[stride], y,
-/// z in scene coordinates.
+/// (cluster_items + the number of its first patch / refit_patches) or a node of the scene graph (graph_items
+/// + its number). The list's arrays follow: item[stride], then the boxes low x[stride], y, z, high x[stride],
+/// y, z in scene coordinates.
 inline constexpr std::int32_t cluster_items = 1 << 30;
 inline constexpr std::int32_t graph_items = cluster_items + (1 << 29);
 inline constexpr std::int32_t most_patches = cluster_items; // that can be numbered
@@ -352,7 +353,7 @@ struct FrameHeader {
     std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
     std::int32_t cluster_count; // of all meshes
     std::int32_t graph_count;   // nodes of the scene graph
-    float camera[3]; // scene coordinates
+    float camera[3];            // scene coordinates
     float film_corner[3], film_x[3],
         film_y[3]; // direction of the film's top left corner, and a pixel's steps
     float light_corner[3], light_u[3], light_v[3], light_normal[3],
@@ -372,7 +373,7 @@ struct FrameHeader {
     isa::ref<float> points; // x, y, z of each control point, relative to its mesh's origin
     isa::ref<ClassRecord> classes;
     isa::ref<std::int32_t> cluster_patches; // how many each cluster has
-    isa::ref<float> cluster_boxes; // low x[clusters_stride], y, z, high x, y, z, mesh coordinates
+    isa::ref<float> cluster_boxes;          // low x[clusters_stride], y, z, high x, y, z, mesh coordinates
     std::int32_t clusters_stride;
     isa::ref<TreeRecord> trees;
     isa::ref<WorkerRecord> workers;

@@ -91,8 +91,8 @@ std::vector<glm::dvec3> place_origins(const Scene& scene, const FlatGraph& flat,
 }
 
 /// Where the mesh's origin comes to lie, and what of that single precision cannot say.
-void place_instance(const Affine& world, const glm::dvec3& mesh_origin, const glm::dvec3& origin,
-                    double size, Instance& placed) {
+void place_instance(const Affine& world, const glm::dvec3& mesh_origin, const glm::dvec3& origin, double size,
+                    Instance& placed) {
     placed.linear = world.linear;
     const glm::dvec3 at = world.linear * mesh_origin + (world.translation - origin);
     placed.origin = glm::vec3(at);

@@ -1,6 +1,6 @@
-// Boxes of patches from their control points, one lane a patch. A limit surface lies in the hull of the control
-// points that influence it (subdivision masks are convex). OpenSubdiv's approximation and rounding may leave it
-// by a little: a box grows by 1/256 of its size.
+// Boxes of patches from their control points, one lane a patch. A limit surface lies in the hull of the
+// control points that influence it (subdivision masks are convex). OpenSubdiv's approximation and rounding
+// may leave it by a little: a box grows by 1/256 of its size.
 #pragma once
 
 #include "razor/kernels/surface.h"

@@ -1,10 +1,10 @@
 // The kd-tree, split on demand by the surface-area heuristic: a node is split when the first ray enters it.
 // Planes are sampled, 8 an axis and then 8 more around the best (after Hunt, Mark & Stoll 2006). The bonus
 // for empty space ranks planes only: whether to split is asked of the cost, or piles would be trimmed for
-// ever. The root lists the root of the scene graph. Graph nodes, instances, clusters and patches stay closed in
-// the lists until their box is large against the node's cell (after Hunt et al. 2007), or no plane is worth
-// its cost. A node of few blocks becomes a leaf of their level; rays for which that is too coarse go on to its
-// finer node, whose list is made of the blocks' children and split in turn.
+// ever. The root lists the root of the scene graph. Graph nodes, instances, clusters and patches stay closed
+// in the lists until their box is large against the node's cell (after Hunt et al. 2007), or no plane is
+// worth its cost. A node of few blocks becomes a leaf of their level; rays for which that is too coarse go on
+// to its finer node, whose list is made of the blocks' children and split in turn.
 #pragma once
 
 #include "razor/kernels/kd_open.h"

@@ -1,5 +1,5 @@
-// Opening what lies closed in item lists: nodes of the scene graph to their children, instances to clusters of
-// patches, clusters to patches, patches to their coarsest blocks. Only what meets the list's cell is kept.
+// Opening what lies closed in item lists: nodes of the scene graph to their children, instances to clusters
+// of patches, clusters to patches, patches to their coarsest blocks. Only what meets the list's cell is kept.
 #pragma once
 
 #include "razor/kernels/hull.h"
@@ -41,8 +41,8 @@ inline sint yield_of(const Context& c, sint item) {
     return select(opens_cluster, sint(refit_patches), children);
 }
 
-/// Boxes in the instance's coordinates become ones in the scene's, as wide as their rounding needs: `reach` is
-/// the largest number on the way to them.
+/// Boxes in the instance's coordinates become ones in the scene's, as wide as their rounding needs: `reach`
+/// is the largest number on the way to them.
 inline void to_scene(const svec& origin, const vfloat& reach, const vfloat& grow, Items& v) {
     sfloat o[3] = {origin.x, origin.y, origin.z};
     for (int k = 0; k < 3; ++k) {
@@ -60,7 +60,8 @@ inline sfloat stretch_of(const Place& place) {
     if (branch(place.moved)) {
         most = 0.0F;
         for (const svec& row : place.row) {
-            sfloat sum = abs(row.x) + abs(row.y);
+            sfloat sum = abs(row.x);
+            sum = sum + abs(row.y);
             sum = sum + abs(row.z);
             most = max(sum, most);
         }
@@ -131,9 +132,10 @@ inline sint open_instance(const Context& c, const List& l, sint at, sint instanc
             vvec low{v.box[0], v.box[1], v.box[2]};
             vvec high{v.box[3], v.box[4], v.box[5]};
             vfloat half = vfloat(0.5F);
-            vvec centre = low * half + high * half;
-            centre = moved_points(place, centre);
-            vvec arm = high * half - low * half;
+            low = low * half;
+            high = high * half;
+            vvec centre = moved_points(place, low + high);
+            vvec arm = high - low;
             vfloat middle[3] = {centre.x, centre.y, centre.z};
             for (int k = 0; k < 3; ++k) {
                 svec row{abs(place.row[k].x), abs(place.row[k].y), abs(place.row[k].z)};
@@ -190,7 +192,8 @@ inline sint open_item(const Context& c, const List& l, sint at, sint item) {
     return open_graph_node(c, l, at, item - graph_items);
 }
 
-/// Opens, by one step, the closed items that `wanted` chooses and returns the list with what is in them instead.
+/// Opens, by one step, the closed items that `wanted` chooses and returns the list with what is in them
+/// instead.
 template <class Wanted> inline List open_items(const Context& c, const List& old, Wanted wanted) {
     sint total = old.count;
     for (sint from = 0; branch(from < old.count); from += isa::width) {

@@ -1,6 +1,6 @@
-// Refitting: the box of every cluster of every mesh, in mesh coordinates, by all workers together, however often
-// the meshes are drawn. What lies above, instances and groups, has its boxes from the host: they move with
-// transforms, not with control points.
+// Refitting: the box of every cluster of every mesh, in mesh coordinates, by all workers together, however
+// often the meshes are drawn. What lies above, instances and groups, has its boxes from the host: they move
+// with transforms, not with control points.
 #pragma once
 
 #include "razor/kernels/hull.h"

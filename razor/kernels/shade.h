@@ -197,7 +197,8 @@ inline constexpr float leaving_share = 0.5F;
 
     constexpr int instance_word = offsetof(BlockHeader, instance) / 4;
     constexpr int instance_words = sizeof(InstanceRecord) / 4;
-    vint instance = gather(as<std::int32_t>(c.grids) + instance_word, h.block << 4, s.hit);
+    vint block = h.block << 4;
+    vint instance = gather(as<std::int32_t>(c.grids) + instance_word, block, s.hit);
     vint record = instance * vint(instance_words);
     vvec origin = gather_vec(field(c.instances, &InstanceRecord::origin), record, vint(1), s.hit);
     s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);

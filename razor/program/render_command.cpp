@@ -101,9 +101,9 @@ int RenderCommand::run() const {
     }
     if (progress.shown()) {
         const FrameStatistics& frame = result.statistics.frame;
-        fmt::print(stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
-                   result.film.width, result.film.height, seconds, frame.first_packet_seconds,
-                   frame.refit_seconds);
+        fmt::print(
+            stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
+            result.film.width, result.film.height, seconds, frame.first_packet_seconds, frame.refit_seconds);
     }
     return 0;
 }

@@ -119,7 +119,7 @@ void add_finest(const FrameHeader& h, int line, std::vector<glm::vec3>& corners)
         return;
     }
     const auto* x = reinterpret_cast<const float*>(at) + block_header_words;
-    const float* origin = h.meshes.get()[block->mesh].origin;
+    const float* origin = h.instances.get()[block->instance].origin;
     int width = block->quads_u + 1;
     auto vertex = [&](int i, int j) {
         const float* v = x + j * width + i;

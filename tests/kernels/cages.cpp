@@ -141,6 +141,32 @@ Scene scene_of(const Mesh& mesh, double edges_across) {
     return s;
 }
 
+Scene instances_of(const Mesh& mesh, double edges_across) {
+    Scene s = scene_of(mesh, edges_across);
+    const Box box = box_of(mesh);
+    const double apart = 1.3 * glm::length(box.high - box.low);
+    const auto mesh_at = [&](double x, double y, Transform local) {
+        local.translate = glm::dvec3(x, y, 0) * apart;
+        return Placement{.name = "mesh", .mesh = 0, .local = local};
+    };
+    Affine shear;
+    shear.linear = {{1.1, 0.2, 0}, {-0.6, 0.9, 0.1}, {0.3, 0, 0.7}};
+    shear.translation = glm::dvec3(1, 1, 0) * apart;
+    Placement nested{.name = "group", .group = 1, .local = {.rotate = {0, 200, 0}}};
+    nested.local.translate = glm::dvec3(2, 1, 0) * apart;
+    s.graph.groups = {{"scene",
+                       {mesh_at(0, 0, {}),
+                        mesh_at(1, 0, {}),
+                        mesh_at(2, 0, {.rotate = {25, 70, -110}}),
+                        mesh_at(0, 1, {.scale = {-1.3, 0.6, 0.8}, .rotate = {0, 35, 10}}),
+                        {.name = "sheared", .mesh = 0, .local = {.matrix = shear}},
+                        nested}},
+                      {"group", {mesh_at(0.03, 0.02, {.scale = glm::dvec3(0.37)})}}};
+    s.camera.target += glm::dvec3(1, 0.5, 0) * apart;
+    s.camera.position += glm::dvec3(1, 0.5, 2) * apart;
+    return s;
+}
+
 Scene small_default_scene(int width, int height) {
     Scene s = build_scene(default_scene());
     s.settings.width = width;
@@ -169,10 +195,27 @@ bool is_closed(const Mesh& mesh) {
 }
 
 std::vector<std::string> scene_names() {
-    return {
-        "cube",          "torus_stretched",         "urchin",          "urchin_stretched", "torus_bilinear",
-        "default",       "cube_bilinear_stretched", "urchin_bilinear", "catmark_car",      "spot",
-        "female_generic"};
+    return {"cube",
+            "torus_stretched",
+            "urchin",
+            "urchin_stretched",
+            "torus_bilinear",
+            "default",
+            "cube_bilinear_stretched",
+            "urchin_bilinear",
+            "catmark_car",
+            "spot",
+            "female_generic",
+            "instances",
+            "instances_bilinear"};
+}
+
+std::vector<std::string> single_mesh_scenes() {
+    std::vector<std::string> names = scene_names();
+    std::erase_if(names, [](const std::string& name) {
+        return name == "default" || name.find("instances") != std::string::npos;
+    });
+    return names;
 }
 
 std::optional<NamedScene> named_scene(const std::string& name) {
@@ -199,6 +242,10 @@ std::optional<NamedScene> named_scene(const std::string& name) {
         return of(bilinear(stretched(cube_cage())), 40);
     if (name == "urchin_bilinear")
         return of(bilinear(stretched(urchin_cage())), 60);
+    if (name == "instances")
+        return NamedScene{name, instances_of(stretched(torus_cage(16, 9)), 40), true};
+    if (name == "instances_bilinear")
+        return NamedScene{name, instances_of(bilinear(stretched(urchin_cage())), 30), true};
     if (name == "default")
         return NamedScene{name, small_default_scene(24, 24), false};
     if (name == "catmark_car")

@@ -23,6 +23,9 @@ std::optional<Mesh> shared_mesh(const std::string& path_below_scenes);
 
 /// One mesh before a camera, lit, 32 x 32 pixels. `edges_across`: target edges over the mesh's diagonal.
 Scene scene_of(const Mesh& mesh, double edges_across);
+/// A mesh drawn six times apart from each other: as it is, moved, turned, mirrored, stretched and sheared,
+/// and in a nested group.
+Scene instances_of(const Mesh& mesh, double edges_across);
 Scene small_default_scene(int width, int height);
 
 /// Every edge has two faces.
@@ -35,6 +38,8 @@ struct NamedScene {
 };
 /// The scenes that rays are compared on; shared ones only where they are there.
 std::vector<std::string> scene_names();
+/// Those of one mesh that is drawn once, where its points lie.
+std::vector<std::string> single_mesh_scenes();
 /// Nothing for a shared mesh that is not there.
 std::optional<NamedScene> named_scene(const std::string& name);
 

@@ -38,6 +38,16 @@ FlatEdge BlockView::ancestor(int side, int i) const {
     return {along(side, first), along(side, first + length), hang};
 }
 
+const InstanceRecord& instance_of(Frame& frame, int patch) {
+    const FrameHeader& h = frame.header();
+    return h.instances.get()[h.cluster_instance.get()[patch / refit_patches]];
+}
+
+const PatchRecord& patch_record(Frame& frame, int patch) {
+    const InstanceRecord& instance = instance_of(frame, patch);
+    return frame.header().patches.get()[instance.first_record + (patch - instance.first_patch)];
+}
+
 BlockView block_at(Frame& frame, int line) {
     const Line* at = frame.header().grids.get() + line;
     return {reinterpret_cast<const BlockHeader*>(at), reinterpret_cast<const float*>(at)};
@@ -86,10 +96,10 @@ void add_quad(const BlockView& b, int i, int j, std::vector<Triangle>& out) {
     FlatEdge left = i == 0 ? b.ancestor(3, j) : FlatEdge{p00, p01, 0};
     FlatEdge diagonal{p00, p11, 0};
     int number = h.number * 128 + (j * block_quads + i) * 2;
-    out.push_back({h.patch, number, h.mesh, {p00, p10, p11}, {bottom, right, reversed(diagonal)}});
+    out.push_back({h.patch, number, h.instance, {p00, p10, p11}, {bottom, right, reversed(diagonal)}});
     if (h.triangles > 1)
         out.push_back(
-            {h.patch, number + 1, h.mesh, {p00, p11, p01}, {diagonal, reversed(top), reversed(left)}});
+            {h.patch, number + 1, h.instance, {p00, p11, p01}, {diagonal, reversed(top), reversed(left)}});
 }
 
 } // namespace

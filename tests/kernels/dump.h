@@ -18,7 +18,7 @@ struct FlatEdge {
 
 struct Triangle {
     int patch = 0, number = 0; // as TraceArguments name them
-    int mesh = 0;
+    int instance = 0;
     std::array<Point, 3> vertex{};
     std::array<FlatEdge, 3> edge{}; // 0 -> 1, 1 -> 2, 2 -> 0
 };
@@ -35,6 +35,10 @@ struct BlockView {
     /// What decides about sub-edge i -> i+1 of a side, in that direction.
     FlatEdge ancestor(int side, int i) const;
 };
+
+/// What the patch of this number is, and the instance it is of.
+const PatchRecord& patch_record(Frame& frame, int patch);
+const InstanceRecord& instance_of(Frame& frame, int patch);
 
 /// The block at a line of the grids.
 BlockView block_at(Frame& frame, int line);

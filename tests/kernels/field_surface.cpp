@@ -30,15 +30,17 @@ double weight(double target, int birth) {
 
 } // namespace
 
-FieldSurface::FieldSurface(Frame& frame) : origins_(mesh_origins(frame)) {
+FieldSurface::FieldSurface(Frame& frame) : origins_(instance_origins(frame)) {
     const FrameHeader& h = frame.header();
     for (int patch = 0; patch < h.patch_count; ++patch) {
         const std::vector<BlockView> blocks = blocks_of(frame, patch);
-        const PatchRecord& record = h.patches.get()[patch];
+        if (blocks.empty())
+            continue; // an unused number
+        const PatchRecord& record = patch_record(frame, patch);
         const BlockHeader& first = *blocks.front().header;
         Grid g;
-        g.mesh = first.mesh;
-        g.first_level = h.meshes.get()[first.mesh].first_level;
+        g.instance = first.instance;
+        g.first_level = h.instances.get()[first.instance].first_level;
         g.triangles = first.triangles;
         g.nu = first.exponent[0];
         g.nv = first.exponent[1];
@@ -67,7 +69,7 @@ FieldSurface::FieldSurface(Frame& frame) : origins_(mesh_origins(frame)) {
 }
 
 FieldSurface::Seen FieldSurface::see(const Grid& g, const Ray& ray) const {
-    const glm::dvec3 from = vec(ray.origin) - vec(origins_[static_cast<std::size_t>(g.mesh)]);
+    const glm::dvec3 from = vec(ray.origin) - vec(origins_[static_cast<std::size_t>(g.instance)]);
     const int across = 1 << g.nu, up = 1 << g.nv, width = across + 1;
     const auto at = [&](int i, int j) { return static_cast<std::size_t>(j * width + i); };
     Seen seen{g.anchors, 0};
@@ -132,7 +134,7 @@ std::vector<FieldSurface::Crossing> FieldSurface::crossings(const Ray& ray, doub
     const glm::dvec3 d = vec(ray.direction);
     for (const Grid& g : grids_) {
         const Seen seen = see(g, ray);
-        const glm::dvec3 from = vec(ray.origin) - vec(origins_[static_cast<std::size_t>(g.mesh)]);
+        const glm::dvec3 from = vec(ray.origin) - vec(origins_[static_cast<std::size_t>(g.instance)]);
         const int across = 1 << g.nu, up = 1 << g.nv, width = across + 1;
         const auto meet = [&](const glm::dvec3& a, const glm::dvec3& b,
                               const glm::dvec3& c) { // Moeller, Trumbore

@@ -34,7 +34,7 @@ private:
         int exponent = 0; // of the grid along the whole curve
     };
     struct Grid {
-        int mesh = 0, first_level = 0, triangles = 2;
+        int instance = 0, first_level = 0, triangles = 2;
         int nu = 0, nv = 0;
         Side side[4];
         bool part = false; // of an n-gon: corners 1 and 3 are middles of edges

@@ -57,7 +57,7 @@ TEST_P(Fields, HitsAreOnTheSurfaceByDefinition) {
         const FieldSurface surface(frame);
         const Oracle oracle(frame, target->name != std::string("sse4"));
         RayMaker make(oracle.triangles(), oracle.origins(), 5);
-        const float edge = frame.header().meshes.get()[0].edge_length;
+        const float edge = frame.header().instances.get()[0].edge_length;
         const std::size_t wanted = std::clamp<std::size_t>(6'000'000 / surface.vertices(), 64, batch);
         std::vector<Ray> rays;
         while (rays.size() < wanted) {
@@ -110,7 +110,7 @@ TEST_P(Fields, NoRayEscapes) {
         const Oracle oracle(frame, target->name != std::string("sse4"));
         const FieldSurface surface(frame);
         RayMaker make(oracle.triangles(), oracle.origins(), 7);
-        const float edge = frame.header().meshes.get()[0].edge_length;
+        const float edge = frame.header().instances.get()[0].edge_length;
         // What an origin is inside of depends on what it asks for.
         struct Start {
             Ray ray;

@@ -214,7 +214,9 @@ TEST_P(Geometry, NeighboursAgreeBitForBit) {
 
 TEST_P(Geometry, BoxesHoldTheirContents) {
     const FrameHeader& h = frame_->header();
-    const MeshRecord& mesh = h.meshes.get()[0];
+    const InstanceRecord& instance = h.instances.get()[0];
+    ASSERT_EQ(instance.moved, 0);
+    const GraphNodeRecord& root = h.graph.get()[0];
     for (int i = 0; i < patch_count(); ++i)
         for (const BlockView& b : blocks_of(*frame_, i)) {
             const BlockHeader& block = *b.header;
@@ -239,19 +241,17 @@ TEST_P(Geometry, BoxesHoldTheirContents) {
                 }
                 ASSERT_EQ(block.box_low[k], low);
                 ASSERT_EQ(block.box_high[k], high);
-                const float* bounds = h.bounds.get() + i + static_cast<std::ptrdiff_t>(k) * h.bounds_stride;
-                ASSERT_LE(bounds[0], low + mesh.origin[k]) << "patch " << i;
-                ASSERT_GE(bounds[std::ptrdiff_t{3} * h.bounds_stride], high + mesh.origin[k])
-                    << "patch " << i;
+                const int cluster = i / refit_patches;
+                const float* box =
+                    h.cluster_boxes.get() + cluster + static_cast<std::ptrdiff_t>(k) * h.clusters_stride;
+                ASSERT_LE(box[0], low) << "patch " << i;
+                ASSERT_GE(box[std::ptrdiff_t{3} * h.clusters_stride], high) << "patch " << i;
+                ASSERT_LE(root.low[k], low + instance.origin[k]);
+                ASSERT_GE(root.high[k], high + instance.origin[k]);
             }
         }
 }
 
-std::vector<std::string> single_mesh_scenes() {
-    std::vector<std::string> names = scene_names();
-    std::erase(names, "default");
-    return names;
-}
 /// A block's box holds every vertex of all finer levels under it, by how much those may stray from its
 /// triangles.
 TEST_P(Geometry, BoxesHoldAllFinerVertices) {
@@ -304,7 +304,8 @@ TEST_P(Geometry, LevelsAreNested) {
                     ASSERT_EQ(same->second, b.vertex(v)) << "patch " << i << ": blocks of one level disagree";
                 }
             for (const BlockView& b : blocks_of(*frame_, i, 0, level)) {
-                ASSERT_EQ(b.header->absolute, b.header->level + frame_->header().meshes.get()[0].first_level);
+                ASSERT_EQ(b.header->absolute,
+                          b.header->level + frame_->header().instances.get()[0].first_level);
                 for (int v = 0; v < b.header->stride; ++v) {
                     const std::array<int, 2> at = place(b, v);
                     const int last_u = 1 << b.header->exponent[0], last_v = 1 << b.header->exponent[1];

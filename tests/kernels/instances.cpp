@@ -191,7 +191,7 @@ TEST(Instances, TargetEdgesFollowOffsetsRatesAndScale) {
         p.rate = rate;
         scene.graph.groups = {{"scene", {p}}};
         Frame frame(scene, {});
-        return frame.header().meshes.get()[0].edge_length;
+        return frame.header().instances.get()[0].edge_length;
     };
     EXPECT_EQ(edge({}, 0, 1, 0.25), 0.25F);
     EXPECT_EQ(edge({}, 3, 1, 0.25), 2.0F);
@@ -261,29 +261,42 @@ TEST(Instances, LieInTheirBounds) {
         Frame frame(scene, {});
         frame.build_all(best_target());
         const FrameHeader& h = frame.header();
-        const GraphRecords records = pack(flat, std::vector<glm::dvec3>{glm::dvec3(0)}, frame.origin());
-        const auto inside = [&](int instance, const glm::dvec3& point) {
-            const auto node =
-                static_cast<std::size_t>(flat.instances[static_cast<std::size_t>(instance)].node);
-            const GraphNodeRecord& r = records.nodes[node];
-            return Box{{r.low[0], r.low[1], r.low[2]}, {r.high[0], r.high[1], r.high[2]}}.contains(point);
-        };
+        const std::vector<bool> drawn(flat.instances.size(), true);
+        const std::vector<GraphNodeRecord> nodes = pack(build_hierarchy(flat, drawn), frame.origin());
+        ASSERT_GT(nodes.size(), scene.graph.groups[0].placements.size());
+        std::vector<int> leaf_of(flat.instances.size(), -1);
+        for (std::size_t n = 0; n < nodes.size(); ++n)
+            if (nodes[n].instance >= 0)
+                leaf_of[static_cast<std::size_t>(nodes[n].instance)] = static_cast<int>(n);
         for (int p = 0; p < h.patch_count; ++p) {
-            const int instance = h.patches.get()[p].mesh;
-            const float* bounds = h.bounds.get() + p;
-            const std::ptrdiff_t stride = h.bounds_stride;
-            EXPECT_TRUE(inside(instance, {bounds[0], bounds[stride], bounds[2 * stride]}));
-            EXPECT_TRUE(inside(instance, {bounds[3 * stride], bounds[4 * stride], bounds[5 * stride]}));
-            const float* origin = h.meshes.get()[instance].origin;
-            for (const BlockView& b : blocks_of(frame, p))
+            const float* origin = instance_of(frame, p).origin;
+            for (const BlockView& b : blocks_of(frame, p)) {
+                const int leaf = leaf_of.at(static_cast<std::size_t>(b.header->instance));
+                ASSERT_GE(leaf, 0);
+                const GraphNodeRecord& r = nodes[static_cast<std::size_t>(leaf)];
+                const Box box{{r.low[0], r.low[1], r.low[2]}, {r.high[0], r.high[1], r.high[2]}};
                 for (int v = 0; v < b.header->stride; ++v, ++vertices) {
                     const Point x = b.vertex(v);
-                    ASSERT_TRUE(inside(instance, {double{x[0]} + origin[0], double{x[1]} + origin[1],
-                                                  double{x[2]} + origin[2]}));
+                    ASSERT_TRUE(box.contains(
+                        {double{x[0]} + origin[0], double{x[1]} + origin[1], double{x[2]} + origin[2]}));
                 }
+            }
         }
     }
     EXPECT_GT(vertices, 20000U);
+}
+
+/// Where the frame puts control point i of an instance, relative to the instance's origin.
+glm::dvec3 placed(Frame& frame, int instance, std::size_t i) {
+    const InstanceRecord& r = frame.header().instances.get()[instance];
+    const float* p = frame.header().points.get() + 3 * i;
+    if (r.moved == 0)
+        return {p[0], p[1], p[2]};
+    glm::dvec3 q(r.offset[0], r.offset[1], r.offset[2]);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            q[row] += double{r.linear[3 * row + column]} * p[column];
+    return q;
 }
 
 /// A unit cube 1e12 away, where double precision is 1e-4 fine: its edges keep their lengths.
@@ -293,14 +306,12 @@ TEST(Instances, KeepTheirShapeFarAway) {
         {"scene",
          {place({.scale = glm::dvec3(0.37), .rotate = {0, 90, 0}, .translate = {1e12 + 0.3, 0.1, 7}})}}};
     Frame frame(scene, {});
-    const float* points = frame.header().points.get();
     const std::vector<glm::dvec3>& cage = scene.meshes[0].points;
     for (std::size_t i = 0; i < cage.size(); ++i) {
         const glm::dvec3 turned(cage[i].z, cage[i].y, -cage[i].x);
         const glm::dvec3 first(cage[0].z, cage[0].y, -cage[0].x);
         for (int k = 0; k < 3; ++k)
-            EXPECT_NEAR(static_cast<double>(points[3 * i + static_cast<std::size_t>(k)]) - points[k],
-                        0.37 * (turned - first)[k], 1e-6);
+            EXPECT_NEAR((placed(frame, 0, i) - placed(frame, 0, 0))[k], 0.37 * (turned - first)[k], 1e-6);
     }
 }
 
@@ -311,13 +322,14 @@ TEST(Instances, StandWhereDoublePrecisionPutsThem) {
                             place({.scale = {0.3, -0.7, 1.1}, .translate = {-57.7, 3.3, 0.9}})}}};
     const FlatGraph flat = flattened(scene);
     Frame frame(scene, {});
-    const float* p = frame.header().points.get();
-    for (std::size_t i = 0; i < 2; ++i)
-        for (const glm::dvec3& point : scene.meshes[0].points) {
-            const glm::dvec3 expected = world_of(flat, flat.instances[i])(point);
-            const float* origin = frame.header().meshes.get()[i].origin;
+    const std::vector<glm::dvec3>& cage = scene.meshes[0].points;
+    for (int n = 0; n < 2; ++n)
+        for (std::size_t i = 0; i < cage.size(); ++i) {
+            const glm::dvec3 expected = world_of(flat, flat.instances[static_cast<std::size_t>(n)])(cage[i]);
+            const float* origin = frame.header().instances.get()[n].origin;
+            const glm::dvec3 at = placed(frame, n, i);
             for (int k = 0; k < 3; ++k)
-                EXPECT_NEAR(frame.origin()[k] + origin[k] + *p++, expected[k], 5e-7);
+                EXPECT_NEAR(frame.origin()[k] + origin[k] + at[k], expected[k], 5e-7);
         }
 }
 

@@ -25,7 +25,7 @@ Scene row_of_tori() {
 TEST(Laziness, WhatNoRayMeetsStaysUnbuilt) {
     Frame frame(row_of_tori(), {});
     Tracer tracer(frame, 1024);
-    float left = frame.header().meshes.get()[0].origin[0];
+    float left = frame.header().instances.get()[0].origin[0];
     std::vector<Ray> rays;
     for (int i = 0; i < 1024; ++i) {
         float x = left - 1.0F + static_cast<float>(i % 32) / 16;
@@ -67,6 +67,111 @@ TEST(Laziness, ShadingNormalsAreMadeWhereCamerasLook) {
     EXPECT_GT(c.normal_blocks, 0);
     EXPECT_LT(c.normal_blocks, c.blocks_made);
     EXPECT_EQ(c.camera_rays, 32 * 32);
+}
+
+/// A square of n x n tori 4 apart, all one mesh.
+Scene square_of_tori(int n) {
+    Scene scene = scene_of(torus_cage(16, 12), 60); // three clusters of patches each
+    Placement torus{.name = "torus", .mesh = 0, .local = {}};
+    torus.copies = {n, 1, n};
+    torus.spacing = {4, 0, 4};
+    scene.graph.groups = {{"scene", {torus}}};
+    return scene;
+}
+
+/// Rays down on the torus at one corner of the square, and a little beside it.
+std::vector<Ray> rays_at_a_corner(Frame& frame) {
+    const float* corner = frame.header().instances.get()[0].origin;
+    std::vector<Ray> rays;
+    for (int i = 0; i < 1024; ++i) {
+        const float x = corner[0] - 1.5F + static_cast<float>(i % 32) / 10;
+        const float z = corner[2] - 1.5F + static_cast<float>(i / 32) / 10;
+        rays.push_back({{x, 5, z}, {0, -1, 0}});
+    }
+    return rays;
+}
+
+struct Looked {
+    FrameStatistics statistics;
+    std::vector<Hit> hits;
+};
+Looked look_at_a_corner(int n) {
+    Frame frame(square_of_tori(n), {});
+    Tracer tracer(frame, 1024);
+    Looked l;
+    l.hits = tracer.closest(*native_targets().back(), rays_at_a_corner(frame));
+    l.statistics = frame.statistics();
+    return l;
+}
+
+TEST(Laziness, InstancesThatNoRayMeetsStayClosed) {
+    const FrameStatistics s = look_at_a_corner(50).statistics;
+    EXPECT_EQ(s.instances, 2500);
+    EXPECT_EQ(s.patches, 2500 * 192);
+    EXPECT_EQ(s.clusters, 2500 * 3);
+    EXPECT_GE(s.instances_opened, 1);
+    EXPECT_LE(s.instances_opened, 4);
+    EXPECT_GE(s.clusters_opened, 3);
+    EXPECT_LE(s.clusters_opened, 12);
+    EXPECT_GT(s.counters.patches_opened, 0);
+    EXPECT_LE(s.counters.patches_opened, 2 * 192);
+    EXPECT_GT(s.graph_nodes, 2500);
+    EXPECT_LE(s.graph_nodes_opened, 30);
+}
+
+TEST(Laziness, UnseenInstancesTakeNoMemory) {
+    const Looked few = look_at_a_corner(10);
+    const Looked many = look_at_a_corner(100);
+    EXPECT_EQ(many.statistics.instances, 100 * few.statistics.instances);
+    // The same blocks, an entry in the tables of patches for each, and a few more levels of a tree.
+    EXPECT_EQ(many.statistics.counters.patches_opened, few.statistics.counters.patches_opened);
+    EXPECT_EQ(many.statistics.counters.blocks_made, few.statistics.counters.blocks_made);
+    EXPECT_EQ(many.statistics.grid_bytes, few.statistics.grid_bytes);
+    EXPECT_EQ(many.statistics.patch_table_bytes, few.statistics.patch_table_bytes);
+    EXPECT_LE(many.statistics.list_bytes, few.statistics.list_bytes * 5 / 4);
+    EXPECT_LE(many.statistics.node_bytes, few.statistics.node_bytes * 5 / 4);
+    EXPECT_EQ(many.statistics.topology_bytes, few.statistics.topology_bytes);
+    EXPECT_EQ(many.statistics.control_point_bytes, few.statistics.control_point_bytes);
+    const std::int64_t more = many.statistics.scene_graph_bytes - few.statistics.scene_graph_bytes;
+    EXPECT_LE(more, 9900 * 256) << "records of instances and graph nodes";
+    for (std::size_t i = 0; i < few.hits.size(); ++i)
+        EXPECT_EQ(few.hits[i].patch, many.hits[i].patch);
+}
+
+TEST(Laziness, ResetClosesEverything) {
+    Frame frame(square_of_tori(20), {});
+    Tracer tracer(frame, 1024);
+    const KernelTable& kernels = *native_targets().back();
+    const std::vector<Ray> rays = rays_at_a_corner(frame);
+    const std::vector<Hit> lazy = tracer.closest(kernels, rays);
+    const FrameStatistics before = frame.statistics();
+    frame.build_all(kernels);
+    const FrameStatistics eager = frame.statistics();
+    EXPECT_EQ(eager.instances_opened, 400);
+    EXPECT_EQ(eager.clusters_opened, 1200);
+    EXPECT_EQ(eager.graph_nodes_opened, eager.graph_nodes);
+    EXPECT_EQ(eager.counters.patches_opened, eager.patches);
+    EXPECT_EQ(tracer.closest(kernels, rays), lazy);
+    frame.reset();
+    const FrameStatistics empty = frame.statistics();
+    EXPECT_EQ(empty.graph_nodes_opened + empty.instances_opened + empty.clusters_opened, 0);
+    EXPECT_EQ(empty.patch_table_bytes, 0);
+    EXPECT_EQ(tracer.closest(kernels, rays), lazy);
+    const FrameStatistics again = frame.statistics();
+    EXPECT_EQ(again.instances_opened, before.instances_opened);
+    EXPECT_EQ(again.counters.patches_opened, before.counters.patches_opened);
+}
+
+TEST(Laziness, FirstPacketIsTimedFromTheFramesBegin) {
+    Frame frame(square_of_tori(3), {});
+    EXPECT_EQ(frame.statistics().first_packet_seconds, 0);
+    frame.render(*native_targets().back(), 0);
+    const FrameStatistics s = frame.statistics();
+    EXPECT_GT(s.refit_seconds, 0);
+    EXPECT_GT(s.first_packet_seconds, s.refit_seconds);
+    EXPECT_LT(s.first_packet_seconds, 60);
+    frame.reset();
+    EXPECT_EQ(frame.statistics().first_packet_seconds, 0);
 }
 
 } // namespace

@@ -62,7 +62,7 @@ bool usable(const Ray& r) {
 } // namespace
 
 Oracle::Oracle(Frame& frame, bool fused)
-    : triangles_(triangles_of(frame)), origins_(mesh_origins(frame)), fused_(fused) {}
+    : triangles_(triangles_of(frame)), origins_(instance_origins(frame)), fused_(fused) {}
 
 template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const {
     if (!usable(ray))
@@ -102,7 +102,7 @@ template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const 
             take(t, distance, k == 2 ? 0 : place, k == 2 ? place : 1.0F - place);
     };
     for (const Triangle& t : triangles_) {
-        const Point& m = origins_[static_cast<std::size_t>(t.mesh)];
+        const Point& m = origins_[static_cast<std::size_t>(t.instance)];
         float ox = s.origin[0] - m[s.kx];
         float oy = s.origin[1] - m[s.ky];
         float oz = s.origin[2] - m[s.kz];

@@ -112,7 +112,7 @@ const Triangle& RayMaker::any_triangle() {
     return triangles_[static_cast<std::size_t>(pick(static_cast<int>(triangles_.size())))];
 }
 Point RayMaker::scene(const Triangle& t, const Point& p) const {
-    const Point& o = origins_[static_cast<std::size_t>(t.mesh)];
+    const Point& o = origins_[static_cast<std::size_t>(t.instance)];
     return {p[0] + o[0], p[1] + o[1], p[2] + o[2]};
 }
 
@@ -268,14 +268,11 @@ Ray RayMaker::not_a_ray() {
     return r;
 }
 
-std::vector<Point> mesh_origins(Frame& frame) {
-    const MeshRecord* meshes = frame.header().meshes.get();
-    int last = 0;
-    for (int i = 0; i < frame.header().patch_count; ++i)
-        last = std::max(last, frame.header().patches.get()[i].mesh);
+std::vector<Point> instance_origins(Frame& frame) {
+    const InstanceRecord* instance = frame.header().instances.get();
     std::vector<Point> origins;
-    for (int m = 0; m <= last; ++m)
-        origins.push_back({meshes[m].origin[0], meshes[m].origin[1], meshes[m].origin[2]});
+    for (std::int64_t n = frame.statistics().instances; n > 0; --n, ++instance)
+        origins.push_back({instance->origin[0], instance->origin[1], instance->origin[2]});
     return origins;
 }
 

@@ -81,7 +81,7 @@ private:
     std::mt19937 random_;
 };
 
-/// Of the meshes, relative to the scene's.
-std::vector<Point> mesh_origins(Frame& frame);
+/// Of all instances, in scene coordinates.
+std::vector<Point> instance_origins(Frame& frame);
 
 } // namespace razor::test

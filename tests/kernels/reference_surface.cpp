@@ -18,7 +18,7 @@ std::size_t at(int i) {
 
 ReferenceSurface::ReferenceSurface(Frame& frame, const Mesh& mesh)
     : frame_(frame), topology_(analyse_topology(mesh)), straight_(mesh.scheme == Scheme::bilinear),
-      edge_length_(frame.header().meshes.get()[0].edge_length) {
+      edge_length_(frame.header().instances.get()[0].mesh_edge_length) {
     if (!straight_)
         maker_ = std::make_unique<PageMaker>(mesh, topology_);
     for (int i = 0; i < static_cast<int>(mesh.points.size()); ++i)

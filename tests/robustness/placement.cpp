@@ -19,7 +19,7 @@ int escapes(const Scene& scene, int mesh, const KernelTable& target, int count) 
     Oracle oracle(frame, std::strcmp(target.name, "sse4") != 0);
     std::vector<Triangle> around;
     for (const Triangle& t : oracle.triangles())
-        if (t.mesh == mesh)
+        if (t.instance == mesh)
             around.push_back(t);
     RayMaker make(around, oracle.origins(), 11);
     std::vector<Point> starts;

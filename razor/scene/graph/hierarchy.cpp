@@ -36,6 +36,11 @@ public:
             open_.pop_front();
             add_children(node, members);
         }
+        for (std::size_t n = nodes_.size(); n-- > 0;) {
+            for (std::int32_t k = 0; k < nodes_[n].child_count; ++k) {
+                nodes_[n].bounds.add(nodes_[at(nodes_[n].first_child + k)].bounds);
+            }
+        }
         return std::move(nodes_);
     }
 
@@ -61,9 +66,6 @@ private:
                 return;
             }
             members = shown_children(members.front());
-        }
-        for (const std::int32_t member : members) {
-            nodes_[at(node)].bounds.add(flat_.nodes[at(member)].bounds);
         }
         open_.emplace_back(node, std::move(members));
     }

@@ -1,6 +1,7 @@
-// The laid out graph as a frame opens it: a tree of boxes with few children a node, so that a ray never has to
-// look at all of a wide group. Wide groups and arrays are halved, along the widest extent of their members'
-// centres, until no node has more children than it may; groups of one member and empty ones are left out.
+// The laid out graph as a frame opens it: a tree of boxes with few children a node, so that a ray never has
+// to look at all of a wide group. Wide groups and arrays are halved, along the widest extent of their
+// members' centres, until no node has more children than it may; groups of one member and empty ones are left
+// out.
 #pragma once
 
 #include "razor/scene/graph/flatten.h"

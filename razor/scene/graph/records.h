@@ -1,5 +1,5 @@
-// The hierarchy of the scene graph as it lies in frame memory: single precision relative to a double-precision
-// origin, 32-bit indices.
+// The hierarchy of the scene graph as it lies in frame memory: single precision relative to a
+// double-precision origin, 32-bit indices.
 #pragma once
 
 #include "razor/frame/layout.h"
