@@ -14,8 +14,9 @@ struct List {
     svec low, high; // of the cell
 };
 
+/// Most lists are short: what they are rounded up to is most of their memory.
 inline sint list_stride(sint count) {
-    return (count + 15) & -16;
+    return (count + 3) & -4;
 }
 
 /// Room for `count` items; the header is written by close_list.
@@ -26,12 +27,13 @@ inline List make_list(const Context& c, sint count, sint depth, const svec& low,
     l.low = low;
     l.high = high;
     l.stride = list_stride(count);
-    sint lines = (l.stride * 7 >> 4) + item_list_words / 16;
+    sint words = l.stride * 7 + 15;
+    sint lines = (words >> 4) + item_list_words / 16;
     l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, lines, trap_lists_full);
     l.header = as<ItemList>(c.lists + l.line);
-    pointer<float> words = as<float>(l.header) + item_list_words;
-    l.items = as<std::int32_t>(words);
-    l.boxes = words + l.stride;
+    pointer<float> arrays = as<float>(l.header) + item_list_words;
+    l.items = as<std::int32_t>(arrays);
+    l.boxes = arrays + l.stride;
     return l;
 }
 

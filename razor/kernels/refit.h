@@ -36,7 +36,8 @@ inline void refit_cluster(const Context& c, const Cage& g, sint cluster) {
     for (int k = 0; k < 3; ++k) {
         pointer<float> out = boxes + stride * k + cluster;
         store(out, reduce_min(lows[k]));
-        store(out + stride * 3, reduce_max(highs[k]));
+        out = out + stride * 3;
+        store(out, reduce_max(highs[k]));
     }
 }
 
