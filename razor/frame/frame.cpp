@@ -511,6 +511,7 @@ void Frame::Impl::reset() {
         r.node_end = r.node_next + nodes_each;
         r.list_next = first_list_line(w);
         r.list_end = r.list_next + list_lines_each;
+        std::fill_n(reinterpret_cast<std::int32_t*>(r.stack.get() + scratch_free_lists), list_sizes, -1);
         counters[static_cast<std::size_t>(w)] = {};
     }
 }

@@ -25,7 +25,11 @@ inline constexpr int scratch_blend = (scratch_mailbox + mailbox_slots + 15) / 16
 /// Blocks on the way to the one whose corners do not move, and corners: [corner][xyz], twice.
 inline constexpr int scratch_climb = scratch_blend + 2 * blend_floats;
 inline constexpr int scratch_corners = scratch_climb + 16;
-inline constexpr int stack_floats = scratch_corners + 32;
+/// First line of the worker's unused item lists of each size, -1: none. Their first words are the lines of
+/// the next ones.
+inline constexpr int scratch_free_lists = scratch_corners + 32;
+inline constexpr int list_sizes = 48;
+inline constexpr int stack_floats = scratch_free_lists + list_sizes;
 
 inline constexpr int packet_origin = 0;                              // 3 vectors
 inline constexpr int packet_inverse = packet_origin + 3 * ISA_WIDTH; // 3 vectors: 1 / direction

@@ -170,8 +170,15 @@ inline void make_finer(const Context& c, const List& l) {
     store_release(field(node, &KdNode::state), node_unsplit);
 }
 
+/// The new list; the old one is given back unless its line is `keep`.
+inline List replace_list(const Context& c, const List& old, const List& by, sint keep) {
+    if (branch(old.line != keep))
+        free_list(c, old.line, old.stride);
+    return by;
+}
+
 /// Opens the closed items that are large against the list's cell, and what is in them, until none is.
-inline List open_large_items(const Context& c, List l) {
+inline List open_large_items(const Context& c, List l, sint keep) {
     vfloat limit = vfloat(largest(l.high - l.low) * large_item);
     for (;;) {
         vmask few = vmask(l.count <= few_items);
@@ -189,7 +196,8 @@ inline List open_large_items(const Context& c, List l) {
         }
         if (branch(to_open == 0))
             return l;
-        l = open_items(c, l, large);
+        List opened = open_items(c, l, large);
+        l = replace_list(c, l, opened, keep);
     }
 }
 
@@ -209,10 +217,19 @@ inline sint count_closed(const List& l) {
     sint line = load(field(node, &KdNode::link));
     List l = read_list(c, line);
     sint refine = load(field(node, &KdNode::axis));
+    // The node's own list stays until nothing can fail any more; a coarser leaf's stays for good.
+    sint own = l.line;
+    sint own_stride = l.stride;
+    auto give_back_own = [&](const List& used) {
+        sbool done_with = used.line != own;
+        done_with = done_with & (refine == 0);
+        if (branch(done_with))
+            free_list(c, own, own_stride);
+    };
     if (branch(refine != 0))
         l = refine_items(c, l);
     for (;;) {
-        l = open_large_items(c, l);
+        l = open_large_items(c, l, own);
         Plane plane;
         plane.cost = 3.0e38F;
         if (branch(l.depth < kd_depth_limit))
@@ -222,11 +239,14 @@ inline sint count_closed(const List& l) {
             store(field(node, &KdNode::split), plane.at);
             store(field(node, &KdNode::axis), plane.axis);
             store(field(node, &KdNode::link), children);
+            give_back_own(l);
+            free_list(c, l.line, l.stride);
             return node_inner;
         }
         sint closed = count_closed(l);
         if (branch(closed > 0)) {
-            l = open_items(c, l, [](const Items& v) { return is_closed(v); });
+            List opened = open_items(c, l, [](const Items& v) { return is_closed(v); });
+            l = replace_list(c, l, opened, own);
             continue;
         }
         make_leaf(c, l);
@@ -238,9 +258,11 @@ inline sint count_closed(const List& l) {
             if (branch(level != least_level))
                 make_finer(c, l);
             store(field(node, &KdNode::link), l.line);
+            give_back_own(l);
             return node_leaf;
         }
-        l = refine_items(c, l);
+        List finer = refine_items(c, l);
+        l = replace_list(c, l, finer, own);
     }
 }
 

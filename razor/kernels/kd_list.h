@@ -14,9 +14,33 @@ struct List {
     svec low, high; // of the cell
 };
 
-/// Most lists are short: what they are rounded up to is most of their memory.
+/// Lists come in few sizes, so that those that are done with can be used again: multiples of 4 items, and
+/// powers of two from 64 on. Most are short.
+inline constexpr int short_list = 64;
 inline sint list_stride(sint count) {
-    return (count + 3) & -4;
+    sint stride = (count + 3) & -4;
+    if (branch(count > short_list)) {
+        sint exponent = (as_int(to_float(count - 1)) >> 23) - 126;
+        stride = sint(1) << exponent;
+    }
+    return stride;
+}
+/// The number of its size.
+inline sint list_size(sint stride) {
+    sint size = stride >> 2;
+    if (branch(stride > short_list)) {
+        sint exponent = (as_int(to_float(stride)) >> 23) - 127;
+        size = exponent + (short_list / 4 - 6); // log2(short_list) is 6
+    }
+    return size;
+}
+
+/// Gives a list back that nobody will read again: it was split, or opened or refined into another.
+inline void free_list(const Context& c, sint line, sint stride) {
+    pointer<std::int32_t> first = as<std::int32_t>(c.stack + scratch_free_lists) + list_size(stride);
+    sint next = load(first);
+    store(as<std::int32_t>(c.lists + line), next);
+    store(first, line);
 }
 
 /// Room for `count` items; the header is written by close_list.
@@ -27,9 +51,16 @@ inline List make_list(const Context& c, sint count, sint depth, const svec& low,
     l.low = low;
     l.high = high;
     l.stride = list_stride(count);
-    sint words = l.stride * 7 + 15;
-    sint lines = (words >> 4) + item_list_words / 16;
-    l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, lines, trap_lists_full);
+    pointer<std::int32_t> first = as<std::int32_t>(c.stack + scratch_free_lists) + list_size(l.stride);
+    l.line = load(first);
+    if (branch(l.line >= 0)) {
+        sint next = load(as<std::int32_t>(c.lists + l.line));
+        store(first, next);
+    } else {
+        sint words = l.stride * 7 + 15;
+        sint lines = (words >> 4) + item_list_words / 16;
+        l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, lines, trap_lists_full);
+    }
     l.header = as<ItemList>(c.lists + l.line);
     pointer<float> arrays = as<float>(l.header) + item_list_words;
     l.items = as<std::int32_t>(arrays);
