@@ -485,8 +485,15 @@ void Frame::Impl::place_view(const Scene& scene) {
     }
     h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive ? 1 : 0;
-    h.camera_growth =
-        static_cast<float>(std::min(s.edge_pixels * pixel_footprint(scene.camera, s), double{gradation_cap}));
+    const CameraField asked = camera_field(scene.camera, s);
+    h.camera_base = static_cast<float>(asked.base);
+    h.camera_growth = static_cast<float>(asked.growth);
+    put(h.camera_slope, v.forward * asked.slope);
+    if (scene.camera.aperture_radius > 0) {
+        h.focus = static_cast<float>(focus_distance(scene.camera));
+        put(h.lens_x, v.right * scene.camera.aperture_radius);
+        put(h.lens_y, v.up * scene.camera.aperture_radius);
+    }
     h.sky_spacing = spacing(3.14159265358979323846, s.sky_samples);
     h.reach = static_cast<float>(geometry.reach);
     auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);

@@ -23,10 +23,11 @@ struct TraceArguments {
     const float* direction[3] = {};
     const float* t_min = nullptr;
     const float* t_max = nullptr;
-    /// Target edge length where each ray begins, and its growth with distance from there (at most
-    /// gradation_cap either way); null: the finest level everywhere.
+    /// Target edge lengths: |base + slope . way| + growth |way|, `way` from where the ray begins; |slope| +
+    /// |growth| at most gradation_cap. Null: the finest level everywhere.
     const float* base = nullptr;
     const float* growth = nullptr;
+    const float* slope[3] = {};
     int count = 0;
     bool any_hit = false;
     // Closest hit: distance, weights, patch (-1: none), block number * 128 + quad * 2 + which. Any hit: patch

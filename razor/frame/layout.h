@@ -383,8 +383,11 @@ struct FrameHeader {
     isa::ref<QueueRecord> queues;
     isa::ref<float> film;
     isa::ref<std::int32_t> blend_table;
-    float camera_growth; // of a camera ray's target edge length
-    float light_spacing; // see growth_to_area() and growth_to_sky(), times edge_pixels
+    float camera_base, camera_growth; // of the field of all camera rays (razor/kernels/morph.h)
+    float camera_slope[3];
+    float lens_x[3], lens_y[3]; // radii of the lens
+    float focus;                // depth in focus; 0: a pinhole
+    float light_spacing;        // see growth_to_area() and growth_to_sky(), times edge_pixels
     float sky_spacing;
     std::int32_t morphs; // 0: vertices stay at their anchors
     float fixed_target;  // not 0: what all rays ask for, everywhere

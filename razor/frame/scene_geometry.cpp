@@ -146,7 +146,7 @@ SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
     if (std::find(seen.begin(), seen.end(), true) != seen.end())
         g.graph = build_hierarchy(flat, seen);
     g.reach = glm::length(all.high - all.low) + glm::length(scene.camera.position - g.origin);
-    g.reach = std::max(g.reach, 1e-30);
+    g.reach = std::max(g.reach + scene.camera.aperture_radius, 1e-30);
     return g;
 }
 

@@ -36,10 +36,10 @@ inline constexpr int packet_inverse = packet_origin + 3 * ISA_WIDTH; // 3 vector
 inline constexpr int packet_error = packet_inverse + 3 * ISA_WIDTH;  // 3 vectors: slack of a plane's distance
 inline constexpr int packet_sum =
     packet_error + 3 * ISA_WIDTH; // light gathered for each lane of a camera packet
-/// Target edge lengths: origin x, y, z, radius, base and growth of each lane's field, and the first lane with
-/// the same one.
+/// Target edge lengths: origin x, y, z, radius, base, growth and slope x, y, z of each lane's field, and the
+/// first lane with the same one.
 inline constexpr int packet_field = packet_sum + ISA_WIDTH;
-inline constexpr int packet_leader = packet_field + 6 * ISA_WIDTH;
+inline constexpr int packet_leader = packet_field + 9 * ISA_WIDTH;
 inline constexpr int packet_floats = packet_leader + ISA_WIDTH;
 
 } // namespace razor

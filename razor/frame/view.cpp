@@ -1,7 +1,10 @@
 #include "razor/frame/view.h"
 
+#include "razor/frame/layout.h"
+
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace razor {
@@ -32,6 +35,18 @@ double pixel_footprint(const Camera& camera, const Settings& settings) {
     // Of a rectangle seen from above its middle.
     const double solid_angle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
     return std::sqrt(solid_angle / settings.width / settings.height);
+}
+
+CameraField camera_field(const Camera& camera, const Settings& settings) {
+    constexpr double cap = gradation_cap;
+    const double growth = std::min(settings.edge_pixels * pixel_footprint(camera, settings), cap);
+    const double radius = camera.aperture_radius;
+    if (!(radius > 0))
+        return {0, 0, growth};
+    const double share = radius * std::sqrt(3.14159265358979323846 / settings.samples);
+    const double focus = focus_distance(camera);
+    const double slope = std::min(settings.edge_pixels * share / focus, cap - growth);
+    return {slope * focus, -slope, growth};
 }
 
 } // namespace razor

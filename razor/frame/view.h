@@ -25,4 +25,13 @@ FilmExtent film_extent(const Camera& camera, const Settings& settings);
 /// this, for 90 degrees 0.61 to 1.38 (tests/kernels/differentials.cpp).
 double pixel_footprint(const Camera& camera, const Settings& settings);
 
+/// What camera rays ask for at depth z and distance d from the lens: edges of |base + slope z| + growth d.
+struct CameraField {
+    double base, slope, growth;
+};
+/// A pixel's footprint and, of its samples on the lens, that of one: the lens' area, seen from the plane in
+/// focus as it narrows to a point there, over their number. Times edge_pixels; growth and slope together are
+/// at most gradation_cap, which costs the slope first: what is out of focus is then finer than asked for.
+CameraField camera_field(const Camera& camera, const Settings& settings);
+
 } // namespace razor

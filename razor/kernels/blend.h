@@ -28,7 +28,25 @@ inline sfloat largest_target(const Field& f, pointer<BlockHeader> block) {
     sfloat outward = select(shrinks, sfloat(1.0F - 1.0e-6F), sfloat(1.0F + 1.0e-6F));
     sfloat distance = sqrt(square) * outward;
     distance = max(distance - f.radius, 0.0F);
-    sfloat target = fma(f.growth, distance, f.base) * (1.0F + 1.0e-6F);
+    // The slope's term is largest at one of two opposite corners.
+    sfloat one = f.base;
+    sfloat other = f.base;
+    sfloat size = 0.0F; // of what is summed up, for its rounding
+    sfloat slopes[3] = {f.slope.x, f.slope.y, f.slope.z};
+    sfloat lows[3] = {before.x, before.y, before.z};
+    sfloat highs[3] = {after.x, after.y, after.z};
+    for (int k = 0; k < 3; ++k) {
+        sfloat at_low = -(slopes[k] * lows[k]);
+        sfloat at_high = slopes[k] * highs[k];
+        sfloat more = max(at_low, at_high);
+        sfloat less = min(at_low, at_high);
+        one = one + more;
+        other = other + less;
+        size = size + max(-less, more);
+    }
+    sfloat blurred = max(one, -other);
+    blurred = fma(size, 1.0e-6F, blurred);
+    sfloat target = fma(f.growth, distance, blurred) * (1.0F + 1.0e-6F);
     return max(target, least_target);
 }
 

@@ -22,8 +22,8 @@ struct Rays {
     vvec origin, direction; // scene coordinates; unit directions
     vfloat t_min, t_max;
     vmask active;
-    // What each asks for: edges of length base + growth x distance from a ball about field_origin.
-    vvec field_origin;
+    // What each asks for: see Field.
+    vvec field_origin, slope;
     vfloat radius, base, growth;
     vint leader; // the first lane whose field is the same
 };
@@ -40,6 +40,8 @@ struct Hits {
 /// Bounds of the fields of a packet's rays: often enough to decide for all of them at once.
 struct FieldBounds {
     svec low, high; // of the origins
+    svec least_slope, most_slope;
+    sbool sloped; // whether any slope is not 0
     sfloat least_radius, most_radius, least_base, most_base, least_growth, most_growth;
 };
 
@@ -479,12 +481,13 @@ inline void visit_cells(const Group& g, const View& v, pointer<float> block, con
 inline void fix_target(sfloat target, Rays& r) {
     r.base = vfloat(target);
     r.growth = vfloat(0.0F);
+    r.slope = {r.growth, r.growth, r.growth};
     r.leader = vint(0);
 }
 
 /// The rays' fields, one a lane.
 struct Fields {
-    vvec origin;
+    vvec origin, slope;
     vfloat radius, base, growth;
 };
 inline Fields load_fields(const Context& c) {
@@ -496,6 +499,9 @@ inline Fields load_fields(const Context& c) {
     f.radius = load_vector(at + 3 * isa::width);
     f.base = load_vector(at + 4 * isa::width);
     f.growth = load_vector(at + 5 * isa::width);
+    f.slope.x = load_vector(at + 6 * isa::width);
+    f.slope.y = load_vector(at + 7 * isa::width);
+    f.slope.z = load_vector(at + 8 * isa::width);
     return f;
 }
 
@@ -509,6 +515,9 @@ inline Field field_of(const Context& c, sint leader, const svec& mesh_origin) {
     f.radius = load(at + 3 * isa::width);
     f.base = load(at + 4 * isa::width);
     f.growth = load(at + 5 * isa::width);
+    f.slope.x = load(at + 6 * isa::width);
+    f.slope.y = load(at + 7 * isa::width);
+    f.slope.z = load(at + 8 * isa::width);
     f.origin = f.origin - mesh_origin;
     return f;
 }
@@ -527,12 +536,44 @@ inline Span span_of(const vfloat& origin, const vfloat& low, const vfloat& high)
     return s;
 }
 
+/// Bounds of |base + slope . (place - origin)| over a box, one a lane; `margin`: what roundings may add to
+/// it.
+struct Blur {
+    vfloat least, most, margin;
+};
+inline Blur blur_in(const Fields& f, const vvec& low, const vvec& high) {
+    const vfloat* origins[3] = {&f.origin.x, &f.origin.y, &f.origin.z};
+    const vfloat* slopes[3] = {&f.slope.x, &f.slope.y, &f.slope.z};
+    const vfloat* lows[3] = {&low.x, &low.y, &low.z};
+    const vfloat* highs[3] = {&high.x, &high.y, &high.z};
+    vfloat least = f.base;
+    vfloat most = f.base;
+    vfloat size = abs(f.base);
+    for (int k = 0; k < 3; ++k) {
+        vfloat at_low = *lows[k] - *origins[k];
+        vfloat at_high = *highs[k] - *origins[k];
+        at_low = at_low * *slopes[k];
+        at_high = at_high * *slopes[k];
+        vfloat less = min(at_low, at_high);
+        vfloat more = max(at_low, at_high);
+        least = least + less;
+        most = most + more;
+        size = size + max(-less, more);
+    }
+    Blur b;
+    b.margin = size * 1.0e-6F;
+    b.most = max(most, -least);
+    b.least = max(max(least, -most), 0.0F);
+    return b;
+}
+
 /// Bounds of each field's target edge lengths in a box (scene coordinates), rounded outward. Least is no more
 /// than any target there, by more than what positions are rounded by; most no less.
 struct Targets {
     vfloat least, most;
 };
-inline Targets targets_in(const Context& c, const svec& low, const svec& high, sfloat slack) {
+inline Targets targets_in(const Context& c, const FieldBounds& all, const svec& low, const svec& high,
+                          sfloat slack) {
     Fields f = load_fields(c);
     vvec lowest = broadcast(low);
     vvec highest = broadcast(high);
@@ -546,12 +587,20 @@ inline Targets targets_in(const Context& c, const svec& low, const svec& high, s
     near = max(near, vfloat(0.0F));
     far = fma(far, vfloat(1.0F + 1.0e-6F), wide) - f.radius;
     far = max(far, vfloat(0.0F));
-    vfloat at_near = fma(f.growth, near, f.base);
-    vfloat at_far = fma(f.growth, far, f.base);
+    Blur blur{f.base, f.base, abs(f.base) * 1.0e-6F};
+    if (branch(all.sloped)) {
+        // Positions are off by their slack.
+        vvec room{wide, wide, wide};
+        vvec lower = lowest - room;
+        vvec higher = highest + room;
+        blur = blur_in(f, lower, higher);
+    }
+    vfloat at_near = f.growth * near;
+    vfloat at_far = f.growth * far;
     Targets t;
-    vfloat less = min(at_near, at_far);
-    vfloat more = max(at_near, at_far);
-    vfloat margin = abs(f.base) * 1.0e-6F;
+    vfloat less = min(at_near, at_far) + blur.least;
+    vfloat more = max(at_near, at_far) + blur.most;
+    vfloat margin = blur.margin;
     t.least = fma(less, vfloat(1.0F - 1.0e-6F), -margin);
     t.most = fma(more, vfloat(1.0F + 1.0e-6F), margin);
     vfloat floor(least_target);
@@ -566,6 +615,40 @@ inline Targets targets_in(const Context& c, const svec& low, const svec& high, s
 struct CommonTargets {
     sfloat least, greatest_least, most;
 };
+
+/// Bounds of all fields' |base + slope . (place - origin)| over a box, their roundings included.
+struct CommonBlur {
+    sfloat least, most;
+};
+inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+    sfloat lows[3] = {low.x, low.y, low.z};
+    sfloat highs[3] = {high.x, high.y, high.z};
+    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
+    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
+    sfloat least_slope[3] = {f.least_slope.x, f.least_slope.y, f.least_slope.z};
+    sfloat most_slope[3] = {f.most_slope.x, f.most_slope.y, f.most_slope.z};
+    sfloat least = f.least_base;
+    sfloat most = f.most_base;
+    sfloat size = max(most, -least);
+    for (int k = 0; k < 3; ++k) {
+        sfloat at_low = lows[k] - last[k] - slack;
+        sfloat at_high = highs[k] - first[k] + slack;
+        sfloat a = at_low * least_slope[k];
+        sfloat b = at_low * most_slope[k];
+        sfloat c = at_high * least_slope[k];
+        sfloat d = at_high * most_slope[k];
+        sfloat less = min(a, min(b, min(c, d)));
+        sfloat more = max(a, max(b, max(c, d)));
+        least = least + less;
+        most = most + more;
+        size = size + max(-less, more);
+    }
+    sfloat margin = size * 2.0e-6F;
+    CommonBlur blur;
+    blur.most = max(most, -least) + margin;
+    blur.least = max(max(least, -most) - margin, 0.0F);
+    return blur;
+}
 inline CommonTargets common_targets_in(const FieldBounds& f, const svec& low, const svec& high,
                                        sfloat slack) {
     sfloat lows[3] = {low.x, low.y, low.z};
@@ -600,11 +683,14 @@ inline CommonTargets common_targets_in(const FieldBounds& f, const svec& low, co
     sfloat rising = max(f.most_growth, 0.0F);
     sfloat falling = min(f.least_growth, 0.0F);
     sfloat slowest = max(f.least_growth, 0.0F);
+    CommonBlur blur{f.least_base, f.most_base};
+    if (branch(f.sloped))
+        blur = common_blur_in(f, low, high, slack);
     CommonTargets t;
-    sfloat fallen = fma(falling, far, f.least_base);
+    sfloat fallen = fma(falling, far, blur.least);
     t.least = fma(slowest, near, fallen) * down;
-    t.greatest_least = fma(rising, every, f.most_base) * up;
-    t.most = fma(rising, far, f.most_base) * up;
+    t.greatest_least = fma(rising, every, blur.most) * up;
+    t.most = fma(rising, far, blur.most) * up;
     return t;
 }
 
@@ -730,7 +816,7 @@ template <Features F, bool Mixed>
             CommonTargets all_fields = common_targets_in(g.fields, low, high, g.slack);
             sbool some = all_fields.most > begin;
             if (branch(some | (absolute < listed.level))) {
-                Targets t = targets_in(c, low, high, g.slack);
+                Targets t = targets_in(c, g.fields, low, high, g.slack);
                 moved = met & (t.most > vfloat(begin));
                 moved = moved | (met & vmask(absolute < listed.level));
                 most = reduce_max(select(moved, t.most, vfloat(0.0F)));

@@ -41,6 +41,9 @@ template <Features F> void trace_all(const WorkerArguments& w, const TraceArgume
         } else {
             r.base = load_vector(in(a.base) + i, r.active);
             r.growth = load_vector(in(a.growth) + i, r.active);
+            r.slope.x = load_vector(in(a.slope[0]) + i, r.active);
+            r.slope.y = load_vector(in(a.slope[1]) + i, r.active);
+            r.slope.z = load_vector(in(a.slope[2]) + i, r.active);
         }
         if (a.any_hit) {
             Hits h = trace<F, true>(c, r);

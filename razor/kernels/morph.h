@@ -26,10 +26,12 @@ inline sfloat moving_from(sint birth) {
     return gone_from(birth) * morph_begin;
 }
 
-/// What a ray, or several, ask for: edges of length base + growth x distance from a ball about `origin`.
-/// |growth| is at most gradation_cap.
+/// What a ray, or several, ask for: edges of length |base + slope . (place - origin)| + growth x distance
+/// from a ball about `origin`. The first term is what a lens blurs, nothing on the plane in focus; without a
+/// lens the slope is 0. |slope| + |growth| is at most gradation_cap.
 struct Field {
     svec origin;
+    svec slope;
     sfloat radius, base, growth;
 };
 
@@ -38,8 +40,10 @@ inline vfloat target_at(const Field& f, const vvec& anchor) {
     vfloat distance = sqrt(dot(d, d));
     distance = distance - vfloat(f.radius);
     distance = max(distance, 0.0F);
+    vfloat along = dot(broadcast(f.slope), d);
+    along = along + vfloat(f.base);
     vfloat growth = vfloat(f.growth);
-    vfloat target = fma(growth, distance, vfloat(f.base));
+    vfloat target = fma(growth, distance, abs(along));
     return max(target, vfloat(least_target));
 }
 inline sfloat target_at(const Field& f, const svec& anchor) {
@@ -47,7 +51,8 @@ inline sfloat target_at(const Field& f, const svec& anchor) {
     sfloat square = fma(d.x, d.x, fma(d.y, d.y, d.z * d.z));
     sfloat distance = sqrt(square) - f.radius;
     distance = max(distance, 0.0F);
-    sfloat target = fma(f.growth, distance, f.base);
+    sfloat along = dot(f.slope, d) + f.base;
+    sfloat target = fma(f.growth, distance, abs(along));
     return max(target, least_target);
 }
 

@@ -14,7 +14,11 @@ inline constexpr int packet_height = isa::width / packet_width;
 
 struct Camera {
     vvec position, corner, x, y;
-    vfloat growth;
+    vfloat base, growth; // of the field of all its rays
+    vvec slope;
+    vvec lens_x, lens_y; // radii of the lens
+    vfloat focus;        // the depth in focus
+    sbool lens;
     sfloat fixed; // target edge length of all rays; 0: none
 };
 
@@ -25,7 +29,14 @@ inline Camera load_camera(const Context& c) {
     k.x = load_broadcast_vec(field(c.frame, &FrameHeader::film_x));
     k.y = load_broadcast_vec(field(c.frame, &FrameHeader::film_y));
     k.growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
+    k.base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
+    k.slope = load_broadcast_vec(field(c.frame, &FrameHeader::camera_slope));
     k.fixed = load(field(c.frame, &FrameHeader::fixed_target));
+    k.lens_x = load_broadcast_vec(field(c.frame, &FrameHeader::lens_x));
+    k.lens_y = load_broadcast_vec(field(c.frame, &FrameHeader::lens_y));
+    sfloat focus = load(field(c.frame, &FrameHeader::focus));
+    k.focus = vfloat(focus);
+    k.lens = focus > 0.0F;
     return k;
 }
 
@@ -38,14 +49,21 @@ inline Rays camera_rays(const Camera& k, const vint& column, const vint& row, co
     vvec d = madd(y, k.y, madd(x, k.x, k.corner));
     Rays r;
     r.origin = k.position;
+    if (branch(k.lens)) {
+        vpoint on = concentric_disk(sample_square(pixel, vint(sample), dimension_lens));
+        vvec from = madd(on.v, k.lens_y, k.lens_x * on.u);
+        r.origin = r.origin + from;
+        d = d * k.focus - from;
+    }
     r.direction = d * reciprocal_sqrt(dot(d, d));
     r.t_min = vfloat(0.0F);
     r.t_max = vfloat(infinite);
     r.active = active;
     r.field_origin = k.position;
     r.radius = vfloat(0.0F);
-    r.base = vfloat(0.0F);
+    r.base = k.base;
     r.growth = k.growth;
+    r.slope = k.slope;
     r.leader = vint(0);
     if (branch(k.fixed > 0.0F))
         fix_target(k.fixed, r);

@@ -3,11 +3,12 @@
 // on threads, tiles or sharing.
 #pragma once
 
+#include "isa/math.h"
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {
 
-enum SampleDimension : int { dimension_film = 1, dimension_light = 2, dimension_sky = 3 };
+enum SampleDimension : int { dimension_film = 1, dimension_light = 2, dimension_sky = 3, dimension_lens = 4 };
 
 /// A permutation of 32-bit integers with good avalanche (after O'Neill's PCG output function RXS-M-XS).
 inline vint scramble(const vint& x) {
@@ -32,12 +33,32 @@ struct vpoint {
 inline vpoint sample_square(const vint& pixel, const vint& sample, int dimension) {
     vint seed = scramble(pixel + vint(std::int32_t(0x9e3779b9U * static_cast<std::uint32_t>(dimension))));
     vint other = scramble(seed);
-    vint x = sample * vint(std::int32_t(3242174889U)) + seed;  // 2^32 / p, p the plastic constant
-    vint y = sample * vint(std::int32_t(2447445414U)) + other; // 2^32 / p^2
+    // 2^32 / p and 2^32 / p^2, p the plastic constant; on the lens 2^32 (sqrt(2) - 1) and 2^32 (sqrt(3) - 1):
+    // with the same steps as on the film, a place on one would always go with the same place on the other.
+    const bool lens = dimension == dimension_lens;
+    vint x = sample * vint(std::int32_t(lens ? 1779033703U : 3242174889U)) + seed;
+    vint y = sample * vint(std::int32_t(lens ? 3144134277U : 2447445414U)) + other;
     vpoint s;
     s.u = unit(x);
     s.v = unit(y);
     return s;
+}
+
+/// From the unit square to the unit disk: squares about the middle become circles, and equal areas stay equal
+/// (Shirley & Chiu, A Low Distortion Map Between Disk and Square, 1997).
+inline vpoint concentric_disk(const vpoint& square) {
+    vfloat x = fma(square.u, 2.0F, -1.0F);
+    vfloat y = fma(square.v, 2.0F, -1.0F);
+    vfloat width = abs(x);
+    vmask steep = abs(y) > width;
+    vfloat radius = select(steep, y, x);
+    vfloat other = select(steep, x, y);
+    vmask middle = radius == vfloat(0.0F);
+    vfloat angle = other / select(middle, vfloat(1.0F), radius);
+    angle = angle * 0.78539816339744830962F;
+    vfloat along = radius * cos(angle);
+    vfloat across = radius * sin(angle);
+    return {select(steep, across, along), select(steep, along, across)};
 }
 
 } // namespace razor::ISA_TARGET

@@ -18,7 +18,7 @@ struct Surface {
     vvec geometric; // unit normal of the triangle, towards the viewer
     vvec shading;   // unit, interpolated, towards the viewer
     vvec albedo;
-    vfloat target, growth; // of the edge length that the camera ray asked for here
+    vfloat target, growth; // the edge length that the camera ray asked for here, and how fast it changes
     vint pixel;            // number of the pixel, for sampling
 };
 
@@ -173,6 +173,15 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
 /// can move: what they see there is no further from what was hit.
 inline constexpr float leaving_share = 0.5F;
 
+/// The target edge length that each ray asks for `way` from its field's origin (see target_at()).
+inline vfloat asked_at(const Rays& r, const vvec& way) {
+    vfloat distance = sqrt(dot(way, way)) - r.radius;
+    distance = max(distance, 0.0F);
+    vfloat along = dot(r.slope, way) + r.base;
+    vfloat target = fma(r.growth, distance, abs(along));
+    return max(target, vfloat(least_target));
+}
+
 [[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
     phase_scope phase(phase_shade);
     Surface s;
@@ -183,8 +192,9 @@ inline constexpr float leaving_share = 0.5F;
     vvec edge2 = k.c - k.a;
     vvec n = normalise(cross(edge1, edge2), toward);
     s.shading = normalise(k.normal, n);
-    s.growth = r.growth;
-    s.target = max(fma(r.growth, h.t, r.base), vfloat(least_target));
+    vvec way = madd(h.t, r.direction, r.origin - r.field_origin);
+    s.target = asked_at(r, way);
+    s.growth = r.growth + sqrt(dot(r.slope, r.slope));
 
     // Both normals face the viewer: surfaces are two-sided.
     vfloat zero(0.0F);
@@ -263,6 +273,7 @@ inline void leave_surface(const Context& c, const Surface& s, const vfloat& grow
     r.growth = growth;
     r.leader = lane_index();
     vfloat zero(0.0F);
+    r.slope = {zero, zero, zero};
     for (vmask left = s.hit; branch(any(left));) {
         sint leader = first(left);
         vint from = vint(leader);

@@ -256,7 +256,7 @@ template <Features F, bool AnyHit, bool Mixed>
                 if (branch(all.greatest_least < coarse)) {
                     deeper = g.alive;
                 } else if (branch(all.least < coarse)) {
-                    Targets t = targets_in(c, low, high, g.slack);
+                    Targets t = targets_in(c, g.fields, low, high, g.slack);
                     deeper = g.alive & (t.least < vfloat(coarse));
                 }
             }
@@ -330,6 +330,13 @@ inline FieldBounds bound_fields(const Rays& r, const vmask& m) {
     bound_component(r.field_origin.x, m, f.low.x, f.high.x);
     bound_component(r.field_origin.y, m, f.low.y, f.high.y);
     bound_component(r.field_origin.z, m, f.low.z, f.high.z);
+    bound_component(r.slope.x, m, f.least_slope.x, f.most_slope.x);
+    bound_component(r.slope.y, m, f.least_slope.y, f.most_slope.y);
+    bound_component(r.slope.z, m, f.least_slope.z, f.most_slope.z);
+    vmask flat = r.slope.x == vfloat(0.0F);
+    flat = flat & (r.slope.y == vfloat(0.0F));
+    flat = flat & (r.slope.z == vfloat(0.0F));
+    f.sloped = any(m & !flat);
     bound_component(r.radius, m, f.least_radius, f.most_radius);
     bound_component(r.base, m, f.least_base, f.most_base);
     bound_component(r.growth, m, f.least_growth, f.most_growth);
@@ -344,6 +351,9 @@ inline void store_fields(const Context& c, const Rays& r) {
     store_vector(at + 3 * isa::width, r.radius);
     store_vector(at + 4 * isa::width, r.base);
     store_vector(at + 5 * isa::width, r.growth);
+    store_vector(at + 6 * isa::width, r.slope.x);
+    store_vector(at + 7 * isa::width, r.slope.y);
+    store_vector(at + 8 * isa::width, r.slope.z);
     store_vector(as<std::int32_t>(c.packets + packet_leader), r.leader);
 }
 

@@ -66,6 +66,10 @@ inline svec operator*(const svec& a, sfloat s) {
     return {a.x * s, a.y * s, a.z * s};
 }
 
+inline sfloat dot(const svec& a, const svec& b) {
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+
 inline svec load_svec(pointer<const float> p) {
     svec v;
     v.x = load(p);

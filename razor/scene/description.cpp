@@ -288,6 +288,8 @@ std::string to_toml(const SceneDescription& description) {
     fmt::format_to(out, "\n[camera]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n",
                    vector3(camera.position), vector3(camera.target), vector3(camera.up),
                    number(camera.fov_degrees));
+    fmt::format_to(out, "aperture_radius = {}\nfocus_distance = {}\n", number(camera.aperture_radius),
+                   number(focus_distance(camera)));
     fmt::format_to(out, "\n[sky]\nradiance = {}\n", vector3(description.sky));
     for (const RectangleLight& light : description.lights) {
         fmt::format_to(out, "\n[[light]]\ncorner = {}\nedge_u = {}\nedge_v = {}\nradiance = {}\n",

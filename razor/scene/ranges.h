@@ -12,6 +12,8 @@ inline constexpr Range samples_range{1, 65536};       // a pixel
 inline constexpr Range shadow_samples_range{1, 4096}; // a hit, to the light or the sky
 inline constexpr Range edge_pixels_range{0.01, 1e4};
 inline constexpr Range coordinate_range{-1e30, 1e30};
+inline constexpr Range aperture_range{0, 1e30};
+inline constexpr Range focus_range{0, 1e30};     // 0: at the camera's target
 inline constexpr Range angle_range{-1e6, 1e6};   // degrees
 inline constexpr Range scale_range{1e-30, 1e30}; // of what is not mirrored
 inline constexpr Range rate_range{1e-3, 1e3};    // factor on a target edge length

@@ -5,6 +5,7 @@
 
 #include "razor/scene/graph/graph.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -74,7 +75,16 @@ struct Camera {
     glm::dvec3 target{0, 0, 0};
     glm::dvec3 up{0, 1, 0};
     double fov_degrees = 35; // vertical, full angle, in (0, 180)
+    /// Of a thin lens, world units; 0: a pinhole, everything is in focus.
+    double aperture_radius = 0;
+    /// From the camera to the plane in focus, along the line of sight; 0: to the target.
+    double focus_distance = 0;
 };
+
+/// The same, resolved.
+inline double focus_distance(const Camera& camera) {
+    return camera.focus_distance > 0 ? camera.focus_distance : glm::length(camera.target - camera.position);
+}
 
 /// One-sided rectangle: corner + s edge_u + t edge_v, s,t in [0,1]; emits towards cross(edge_u, edge_v).
 struct RectangleLight {

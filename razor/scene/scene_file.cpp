@@ -58,6 +58,8 @@ Camera read_camera(TomlTable table) {
     camera.target = table.vector("target", camera.target, coordinate_range);
     camera.up = table.vector("up", camera.up, coordinate_range);
     camera.fov_degrees = table.number("fov", camera.fov_degrees, {1e-3, 179});
+    camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
+    camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
     table.finish();
     if (camera.position == camera.target) {
         table.fail("position", "camera.position equals camera.target; move one of them");

@@ -52,10 +52,12 @@ struct Case {
     dvec3 normal{0, 0, 1};
     dvec3 lens_x{1, 0, 0}, lens_y{0, 1, 0};
     double base = 0, spacing = 1, cosine = 1, inverse_distance = 1;
+    double square_u = 0, square_v = 0;
 };
 struct Result {
     dvec3 direction_x, direction_y, origin_x, origin_y;
     double across, moved_across, lens_across, growth_to_area, growth_to_sky;
+    double disk_x, disk_y;
 };
 
 std::vector<Result> run(const Target& target, const std::vector<Case>& cases) {
@@ -89,6 +91,10 @@ std::vector<Result> run(const Target& target, const std::vector<Case>& cases) {
     a.spacing = one(&Case::spacing);
     a.cosine = one(&Case::cosine);
     a.inverse_distance = one(&Case::inverse_distance);
+    a.square_u = one(&Case::square_u);
+    a.square_v = one(&Case::square_v);
+    for (float** out : {&a.disk_x, &a.disk_y})
+        *out = room(1);
     for (float** out : {&a.direction_x, &a.direction_y, &a.origin_x, &a.origin_y})
         *out = room(3);
     for (float** out : {&a.across, &a.moved_across, &a.lens_across, &a.growth_to_area, &a.growth_to_sky})
@@ -99,7 +105,7 @@ std::vector<Result> run(const Target& target, const std::vector<Case>& cases) {
         const auto vec = [&](const float* v) { return dvec3(v[i], v[i + n], v[i + 2 * n]); };
         results.push_back({vec(a.direction_x), vec(a.direction_y), vec(a.origin_x), vec(a.origin_y),
                            a.across[i], a.moved_across[i], a.lens_across[i], a.growth_to_area[i],
-                           a.growth_to_sky[i]});
+                           a.growth_to_sky[i], a.disk_x[i], a.disk_y[i]});
     }
     return results;
 }
@@ -198,6 +204,44 @@ TEST(Differentials, OfALensAreFiniteDifferencesAndVanishInFocus) {
                 << target.name << ", case " << i;
             ASSERT_NEAR(parallelogram(px, py, unit), confusion, 1e-6 * lens);
         }
+    }
+}
+
+/// Squares about the middle become circles of as large a part of the whole, and every eighth of a turn gets
+/// as much.
+TEST(Differentials, LensSamplesCoverTheDiskEvenly) {
+    constexpr int side = 256;
+    std::vector<Case> cases;
+    for (int i = 0; i < side * side; ++i) {
+        Case c;
+        c.square_u = (i % side + 0.5) / side;
+        c.square_v = (i / side + 0.5) / side;
+        cases.push_back(c);
+    }
+    cases.emplace_back().square_u = 0.5; // the middle
+    cases.back().square_v = 0.5;
+    for (const Target& target : probes()) {
+        const std::vector<Result> results = run(target, cases);
+        std::vector<int> sectors(8);
+        double moments[3] = {};
+        for (std::size_t i = 0; i + 1 < results.size(); ++i) {
+            const double x = results[i].disk_x, y = results[i].disk_y;
+            const double from_middle =
+                2 * std::max(std::abs(cases[i].square_u - 0.5), std::abs(cases[i].square_v - 0.5));
+            ASSERT_NEAR(std::hypot(x, y), from_middle, 1e-6) << target.name;
+            const double turn = std::atan2(y, x) / (2 * std::numbers::pi) + 1 + 1.0 / 16;
+            ++sectors[static_cast<std::size_t>(turn * 8) % 8];
+            moments[0] += x * x;
+            moments[1] += y * y;
+            moments[2] += x * y;
+        }
+        for (int n : sectors)
+            EXPECT_NEAR(n * 8.0 / (side * side), 1, 0.02) << target.name;
+        EXPECT_NEAR(moments[0] / (side * side), 0.25, 1e-4) << target.name;
+        EXPECT_NEAR(moments[1] / (side * side), 0.25, 1e-4) << target.name;
+        EXPECT_NEAR(moments[2] / (side * side), 0, 1e-4) << target.name;
+        EXPECT_EQ(results.back().disk_x, 0);
+        EXPECT_EQ(results.back().disk_y, 0);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "tests/kernels/differentials_kernel.h"
 
 #include "razor/kernels/differentials.h"
+#include "razor/kernels/sampling.h"
 
 namespace razor::test::ISA_TARGET {
 
@@ -50,6 +51,10 @@ void differentials(const DifferentialArrays& a) {
         store_vector(pointer<float>(a.across + i), footprint(r, unit, t));
         store_vector(pointer<float>(a.moved_across + i), footprint(moved, unit, vfloat(0.0F)));
         store_vector(pointer<float>(a.lens_across + i), footprint(lens, unit, t));
+        vfloat u = at(a.square_u, i);
+        vpoint disk = concentric_disk({u, at(a.square_v, i)});
+        store_vector(pointer<float>(a.disk_x + i), disk.u);
+        store_vector(pointer<float>(a.disk_y + i), disk.v);
         vfloat spacing = at(a.spacing, i);
         vfloat cosine = at(a.cosine, i);
         vfloat to_area = growth_to_area(at(a.base, i), spacing, cosine, at(a.inverse_distance, i));

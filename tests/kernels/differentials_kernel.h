@@ -1,4 +1,4 @@
-// razor/kernels/differentials.h over arrays, once a target, for its tests.
+// razor/kernels/differentials.h and concentric_disk() over arrays, once a target, for its tests.
 #pragma once
 
 namespace razor::test {
@@ -11,11 +11,13 @@ struct DifferentialArrays {
     float* normal = nullptr;
     float *lens_x = nullptr, *lens_y = nullptr;
     float *base = nullptr, *spacing = nullptr, *cosine = nullptr, *inverse_distance = nullptr;
+    float *square_u = nullptr, *square_v = nullptr; // of a sample
     // Results.
     float *direction_x = nullptr, *direction_y = nullptr; // of the pinhole's ray
     float *origin_x = nullptr, *origin_y = nullptr;       // moved to the surface
     float *across = nullptr, *moved_across = nullptr;     // footprints of these two
     float* lens_across = nullptr;
+    float *disk_x = nullptr, *disk_y = nullptr;
     float *growth_to_area = nullptr, *growth_to_sky = nullptr;
 };
 

@@ -75,7 +75,9 @@ FieldSurface::Seen FieldSurface::see(const Grid& g, const Ray& ray) const {
     Seen seen{g.anchors, 0};
     const auto blend = [&](int i, int j, int birth, const glm::dvec3& mean) {
         const glm::dvec3& anchor = g.anchors[at(i, j)];
-        const double w = weight(ray.base + ray.growth * glm::length(anchor - from), birth);
+        const glm::dvec3 way = anchor - from;
+        const double blur = std::abs(ray.base + glm::dot(vec(ray.slope), way));
+        const double w = weight(blur + ray.growth * glm::length(way), birth);
         seen.between += w > 0 && w < 1 ? 1 : 0;
         seen.points[at(i, j)] = w * anchor + (1 - w) * mean;
     };

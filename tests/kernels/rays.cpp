@@ -52,10 +52,14 @@ TraceArguments Tracer::fill(const std::vector<Ray>& rays) {
         in_[7][i] = rays[i].t_max;
         in_[8][i] = rays[i].base;
         in_[9][i] = rays[i].growth;
+        for (std::size_t k = 0; k < 3; ++k)
+            in_[10 + k][i] = rays[i].slope[k];
     }
     bool any_field = std::any_of(rays.begin(), rays.end(), [](const Ray& r) { return r.base != 0; });
     a.base = any_field ? in_[8] : nullptr;
     a.growth = any_field ? in_[9] : nullptr;
+    for (std::size_t k = 0; k < 3; ++k)
+        a.slope[k] = in_[10 + k];
     a.t_min = in_[6];
     a.t_max = in_[7];
     a.count = static_cast<int>(rays.size());

@@ -14,6 +14,7 @@ struct Ray {
     float t_min = 0, t_max = 3.0e38F;
     /// Target edge length at the origin, and its growth with distance; base 0: the finest level everywhere.
     float base = 0, growth = 0;
+    Point slope{}; // see TraceArguments
 };
 
 struct Hit {
@@ -41,7 +42,7 @@ private:
     TraceArguments fill(const std::vector<Ray>& rays);
     Frame& frame_;
     std::size_t capacity_;
-    float* in_[10];
+    float* in_[13];
     float* out_[3];
     std::int32_t* names_[2];
 };

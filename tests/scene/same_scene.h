@@ -48,6 +48,8 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.camera.target, b.camera.target);
     EXPECT_EQ(a.camera.up, b.camera.up);
     EXPECT_EQ(a.camera.fov_degrees, b.camera.fov_degrees);
+    EXPECT_EQ(a.camera.aperture_radius, b.camera.aperture_radius);
+    EXPECT_EQ(focus_distance(a.camera), focus_distance(b.camera));
     EXPECT_EQ(a.sky, b.sky);
     ASSERT_EQ(a.lights.size(), b.lights.size());
     for (std::size_t i = 0; i < a.lights.size(); ++i) {

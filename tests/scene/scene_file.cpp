@@ -55,6 +55,8 @@ TEST(SceneFile, ReadsEveryKey) {
         target = [4, 5, 6.5]
         up = [0, 0, 1]
         fov = 50
+        aperture_radius = 0.125
+        focus_distance = 7
         [sky]
         radiance = 0.5
         [[light]]
@@ -93,6 +95,8 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(scene.camera.target, glm::dvec3(4, 5, 6.5));
     EXPECT_EQ(scene.camera.up, glm::dvec3(0, 0, 1));
     EXPECT_EQ(scene.camera.fov_degrees, 50);
+    EXPECT_EQ(scene.camera.aperture_radius, 0.125);
+    EXPECT_EQ(scene.camera.focus_distance, 7);
     EXPECT_EQ(scene.sky, glm::vec3(0.5F));
     ASSERT_EQ(scene.lights.size(), 1U);
     EXPECT_EQ(scene.lights[0].corner, glm::dvec3(0, 9, 0));
@@ -207,6 +211,12 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
         {"[camera]\nposition = [1, 2, inf]\n" + mesh, "out of range"},
         {"[camera]\nfov = 180\n" + mesh,
          "camera.fov = 180 is out of range; write a number from 0.001 to 179"},
+        {"[camera]\naperture_radios = 1\n" + mesh,
+         "unknown key 'camera.aperture_radios'; did you mean 'aperture_radius'?"},
+        {"[camera]\naperture_radius = -0.5\n" + mesh,
+         "s.toml:2:19: camera.aperture_radius = -0.5 is out of range"},
+        {"[camera]\nfocus_distance = -1\n" + mesh, "camera.focus_distance = -1 is out of range"},
+        {"[camera]\nfocus_distance = \"far\"\n" + mesh, "camera.focus_distance is text; write a number"},
         {"[camera]\nposition = [1, 1, 1]\ntarget = [1, 1, 1]\n" + mesh,
          "s.toml:2:12: camera.position equals camera.target"},
         {"[camera]\nup = [0, 0, 0]\n" + mesh, "camera.up is zero or along the line of sight"},
