@@ -485,10 +485,12 @@ void Frame::Impl::place_view(const Scene& scene) {
     }
     h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive ? 1 : 0;
-    const CameraField asked = camera_field(scene.camera, s);
+    const Camera& dicing = dicing_camera(scene);
+    const CameraField asked = camera_field(dicing, s);
+    put(h.field_origin, dicing.position - geometry.origin);
     h.camera_base = static_cast<float>(asked.base);
     h.camera_growth = static_cast<float>(asked.growth);
-    put(h.camera_slope, v.forward * asked.slope);
+    put(h.camera_slope, view_of(dicing).forward * asked.slope);
     if (scene.camera.aperture_radius > 0) {
         h.focus = static_cast<float>(focus_distance(scene.camera));
         put(h.lens_x, v.right * scene.camera.aperture_radius);
@@ -576,6 +578,14 @@ void Frame::build_all(const KernelTable& kernels) {
     }
 }
 
+void Frame::dice_all(const KernelTable& kernels) {
+    try {
+        kernels.dice_all(impl_->arguments(0));
+    } catch (const isa::trapped& trap) {
+        explain(trap);
+    }
+}
+
 void Frame::set_reach(double distance) {
     impl_->header->reach = static_cast<float>(impl_->geometry.reach + distance);
 }
@@ -599,6 +609,9 @@ Plan Frame::plan() const {
 }
 int Frame::workers() const {
     return impl_->options.workers;
+}
+int Frame::instances() const {
+    return static_cast<int>(impl_->geometry.instances.size());
 }
 glm::dvec3 Frame::origin() const {
     return impl_->geometry.origin;

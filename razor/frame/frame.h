@@ -65,6 +65,8 @@ public:
     void trace(const KernelTable& kernels, const TraceArguments& arguments);
     /// Builds the whole tree, so that traces find nothing left to build (worker 0 alone).
     void build_all(const KernelTable& kernels);
+    /// Makes all blocks that camera rays may ask for, seen or not (worker 0 alone).
+    void dice_all(const KernelTable& kernels);
     /// Room in frame memory for tests and benchmarks that trace rays of their own. Call before anything is
     /// rendered.
     template <class T> T* extra(const std::string& structure, std::size_t count) {
@@ -82,6 +84,8 @@ public:
     FrameStatistics statistics() const;
     Plan plan() const;
     int workers() const;
+    /// How many: header().instances.
+    int instances() const;
     /// Fraction of the tiles taken from the queue.
     double progress() const;
     /// The film as it stands.

@@ -52,6 +52,9 @@ struct KernelTable {
     /// Refits and splits every node, so that every patch is opened and nothing is lazy: the oracle's tree.
     /// One worker only.
     void (*build_all)(const WorkerArguments&);
+    /// Refits and makes, of every patch, the blocks that camera rays may ask for anywhere, seen or not, with
+    /// normals. One worker only.
+    void (*dice_all)(const WorkerArguments&);
 };
 
 // One a target; those that the build left out are not defined.

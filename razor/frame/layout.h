@@ -383,7 +383,9 @@ struct FrameHeader {
     isa::ref<QueueRecord> queues;
     isa::ref<float> film;
     isa::ref<std::int32_t> blend_table;
-    float camera_base, camera_growth; // of the field of all camera rays (razor/kernels/morph.h)
+    float field_origin[3];            // of the field of all camera rays (razor/kernels/morph.h): where the
+                                      // dicing camera is
+    float camera_base, camera_growth; // of it
     float camera_slope[3];
     float lens_x[3], lens_y[3]; // radii of the lens
     float focus;                // depth in focus; 0: a pinhole

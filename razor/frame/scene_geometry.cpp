@@ -25,7 +25,7 @@ double distance_to(const Box& b, const glm::dvec3& p) {
 /// One level serves a whole mesh for now: the footprint of a pixel at the mesh's nearest point, but no nearer
 /// than an eighth of the way to its centre (a floor reaches under the camera).
 double automatic_edge_length(const Scene& scene, const Box& box) {
-    const Camera& camera = scene.camera;
+    const Camera& camera = dicing_camera(scene);
     double centre = glm::length(box.centre() - camera.position);
     double distance = std::max(distance_to(box, camera.position), centre / 8);
     double length = scene.settings.edge_pixels * pixel_footprint(camera, scene.settings) * distance;
@@ -146,7 +146,10 @@ SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
     if (std::find(seen.begin(), seen.end(), true) != seen.end())
         g.graph = build_hierarchy(flat, seen);
     g.reach = glm::length(all.high - all.low) + glm::length(scene.camera.position - g.origin);
-    g.reach = std::max(g.reach + scene.camera.aperture_radius, 1e-30);
+    g.reach =
+        std::max(g.reach + scene.camera.aperture_radius,
+                 glm::length(all.high - all.low) + glm::length(dicing_camera(scene).position - g.origin));
+    g.reach = std::max(g.reach, 1e-30);
     return g;
 }
 

@@ -75,6 +75,56 @@ void build_all(const WorkerArguments& w) {
     }
 }
 
+/// Depth first, the blocks left to look at on the traversal stack.
+void dice_all(const WorkerArguments& w) {
+    Context c = begin(w);
+    refit(c);
+    Rays r;
+    ask_for_camera(load_camera(c), r);
+    FieldBounds asked = bound_fields(r, vmask(true));
+    sfloat slack = position_slack(c);
+    sint patches = load(field(c.frame, &FrameHeader::patch_count));
+    pointer<std::int32_t> left = as<std::int32_t>(c.stack);
+    for (sint patch = 0; branch(patch < patches); ++patch) {
+        sint instance = load(c.cluster_instance + (patch >> refit_log2));
+        pointer<InstanceRecord> record = c.instances + instance;
+        sint first = load(field(record, &InstanceRecord::first_patch));
+        sint count = load(field(record, &InstanceRecord::patch_count));
+        if (branch(patch - first >= count))
+            continue;
+        svec origin = load_svec(field(record, &InstanceRecord::origin));
+        pointer<OpenPatch> open = open_patch(c, patch);
+        sint root = load(field(open, &OpenPatch::root));
+        store(left, root);
+        sint depth = 1;
+        while (branch(depth > 0)) {
+            --depth;
+            sint line = load(left + depth);
+            pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+            sint level = load(field(block, &BlockHeader::level));
+            sint absolute = load(field(block, &BlockHeader::absolute));
+            svec low = load_svec(field(block, &BlockHeader::box_low)) + origin;
+            svec high = load_svec(field(block, &BlockHeader::box_high)) + origin;
+            CommonTargets t = common_targets_in(asked, low, high, slack);
+            sbool finer = t.least < power_of_two(absolute);
+            if (branch(finer & (level > 0))) {
+                ensure_children(c, line, block);
+                sint child = load(field(block, &BlockHeader::child_line));
+                sint lines = load(field(block, &BlockHeader::child_lines));
+                sint columns = load(field(block, &BlockHeader::child_columns));
+                sint rows = load(field(block, &BlockHeader::child_rows));
+                for (sint i = columns * rows; branch(i > 0); --i) {
+                    store(left + depth, child);
+                    child = child + lines;
+                    ++depth;
+                }
+            } else {
+                ensure_normals(c, line);
+            }
+        }
+    }
+}
+
 constexpr Features flat{.hanging = false};
 constexpr Features hanging{.hanging = true};
 #define RAZOR_NAME(target) #target
@@ -82,10 +132,8 @@ constexpr Features hanging{.hanging = true};
 
 } // namespace
 
-constinit const KernelTable kernels = {RAZOR_TARGET_NAME(ISA_TARGET),
-                                       isa::width,
-                                       {render<flat>, render<hanging>},
-                                       {trace_all<flat>, trace_all<hanging>},
-                                       build_all};
+constinit const KernelTable kernels = {
+    RAZOR_TARGET_NAME(ISA_TARGET),         isa::width, {render<flat>, render<hanging>},
+    {trace_all<flat>, trace_all<hanging>}, build_all,  dice_all};
 
 } // namespace razor::ISA_TARGET

@@ -14,8 +14,8 @@ inline constexpr int packet_height = isa::width / packet_width;
 
 struct Camera {
     vvec position, corner, x, y;
-    vfloat base, growth; // of the field of all its rays
-    vvec slope;
+    vvec field_origin, slope; // of the field of all its rays
+    vfloat base, growth;
     vvec lens_x, lens_y; // radii of the lens
     vfloat focus;        // the depth in focus
     sbool lens;
@@ -29,6 +29,7 @@ inline Camera load_camera(const Context& c) {
     k.x = load_broadcast_vec(field(c.frame, &FrameHeader::film_x));
     k.y = load_broadcast_vec(field(c.frame, &FrameHeader::film_y));
     k.growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
+    k.field_origin = load_broadcast_vec(field(c.frame, &FrameHeader::field_origin));
     k.base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
     k.slope = load_broadcast_vec(field(c.frame, &FrameHeader::camera_slope));
     k.fixed = load(field(c.frame, &FrameHeader::fixed_target));
@@ -38,6 +39,18 @@ inline Camera load_camera(const Context& c) {
     k.focus = vfloat(focus);
     k.lens = focus > 0.0F;
     return k;
+}
+
+/// What rays of the camera ask for, all the same.
+inline void ask_for_camera(const Camera& k, Rays& r) {
+    r.field_origin = k.field_origin;
+    r.radius = vfloat(0.0F);
+    r.base = k.base;
+    r.growth = k.growth;
+    r.slope = k.slope;
+    r.leader = vint(0);
+    if (branch(k.fixed > 0.0F))
+        fix_target(k.fixed, r);
 }
 
 /// Rays through the pixels (column, row), one lane each, at this sample's place in the pixel.
@@ -59,14 +72,7 @@ inline Rays camera_rays(const Camera& k, const vint& column, const vint& row, co
     r.t_min = vfloat(0.0F);
     r.t_max = vfloat(infinite);
     r.active = active;
-    r.field_origin = k.position;
-    r.radius = vfloat(0.0F);
-    r.base = k.base;
-    r.growth = k.growth;
-    r.slope = k.slope;
-    r.leader = vint(0);
-    if (branch(k.fixed > 0.0F))
-        fix_target(k.fixed, r);
+    ask_for_camera(k, r);
     return r;
 }
 

@@ -1,16 +1,23 @@
 // razor: the native renderer's program.
 #include "razor/program/arguments.h"
 #include "razor/program/compare_command.h"
+#include "razor/program/export_command.h"
 #include "razor/program/render_command.h"
 
 int main(int argc, char** argv) {
-    CLI::App app("Renders Catmull-Clark and bilinear-patch scenes, and compares pictures.", "razor");
+    CLI::App app("Renders Catmull-Clark and bilinear-patch scenes, compares pictures and exports meshes.",
+                 "razor");
     app.set_version_flag("--version", "razor " + std::string(razor::version()));
     app.require_subcommand(1);
     razor::RenderCommand render;
     render.add_to(app);
     razor::CompareCommand compare;
     compare.add_to(app);
-    return razor::run_program(app, argc, argv,
-                              [&] { return compare.given() ? compare.run() : render.run(); });
+    razor::ExportCommand dice;
+    dice.add_to(app);
+    return razor::run_program(app, argc, argv, [&] {
+        if (compare.given())
+            return compare.run();
+        return dice.given() ? dice.run() : render.run();
+    });
 }

@@ -177,6 +177,15 @@ private:
     std::vector<bool> placed_;
 };
 
+void print_camera(std::string& text, const Camera& camera, std::string_view header) {
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n", header,
+                   vector3(camera.position), vector3(camera.target), vector3(camera.up),
+                   number(camera.fov_degrees));
+    fmt::format_to(out, "aperture_radius = {}\nfocus_distance = {}\n", number(camera.aperture_radius),
+                   number(focus_distance(camera)));
+}
+
 void print_object(std::string& text, const ObjectDescription& object, std::string_view header) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "\n[[{}]]\nname = {}\n", header, toml_text(object.name));
@@ -258,6 +267,7 @@ Scene build_scene(const SceneDescription& description) {
     scene.name = description.name;
     scene.settings = description.settings;
     scene.camera = description.camera;
+    scene.dicing_camera = description.dicing_camera;
     scene.sky = description.sky;
     scene.lights = description.lights;
     scene.materials = description.materials;
@@ -284,12 +294,10 @@ std::string to_toml(const SceneDescription& description) {
         settings.light_samples, settings.sky_samples);
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
-    const Camera& camera = description.camera;
-    fmt::format_to(out, "\n[camera]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n",
-                   vector3(camera.position), vector3(camera.target), vector3(camera.up),
-                   number(camera.fov_degrees));
-    fmt::format_to(out, "aperture_radius = {}\nfocus_distance = {}\n", number(camera.aperture_radius),
-                   number(focus_distance(camera)));
+    print_camera(text, description.camera, "camera");
+    if (description.dicing_camera) {
+        print_camera(text, *description.dicing_camera, "dicing_camera");
+    }
     fmt::format_to(out, "\n[sky]\nradiance = {}\n", vector3(description.sky));
     for (const RectangleLight& light : description.lights) {
         fmt::format_to(out, "\n[[light]]\ncorner = {}\nedge_u = {}\nedge_v = {}\nradiance = {}\n",

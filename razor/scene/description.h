@@ -56,6 +56,7 @@ struct SceneDescription {
     std::string name;
     Settings settings;
     Camera camera;
+    std::optional<Camera> dicing_camera;
     glm::vec3 sky{0};
     std::vector<RectangleLight> lights;
     std::vector<Material> materials;

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -116,7 +117,13 @@ struct Scene {
     std::vector<RectangleLight> lights; // at most one for now
     glm::vec3 sky{0};                   // constant radiance
     Camera camera;
+    std::optional<Camera> dicing_camera; // from which levels of detail are measured; else `camera`
     Settings settings;
 };
+
+/// The camera from which levels of detail are measured.
+inline const Camera& dicing_camera(const Scene& scene) {
+    return scene.dicing_camera ? *scene.dicing_camera : scene.camera;
+}
 
 } // namespace razor

@@ -61,12 +61,13 @@ Camera read_camera(TomlTable table) {
     camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
     camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
     table.finish();
+    const std::string name = table.name();
     if (camera.position == camera.target) {
-        table.fail("position", "camera.position equals camera.target; move one of them");
+        table.fail("position", fmt::format("{0}.position equals {0}.target; move one of them", name));
     }
     const glm::dvec3 view = glm::normalize(camera.target - camera.position);
     if (camera.up == glm::dvec3(0) || glm::length(glm::cross(view, glm::normalize(camera.up))) < 1e-9) {
-        table.fail("up", "camera.up is zero or along the line of sight; turn it");
+        table.fail("up", fmt::format("{}.up is zero or along the line of sight; turn it", name));
     }
     return camera;
 }
@@ -162,6 +163,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     scene.name = root.text("name", std::filesystem::path(file_name).stem().string());
     scene.settings = read_settings(root.table("settings"));
     TomlTable camera = root.table("camera");
+    TomlTable dicing_camera = root.table("dicing_camera");
     TomlTable sky = root.table("sky");
     scene.sky = glm::vec3(sky.vector_or_number("radiance", glm::dvec3(scene.sky), radiances));
     sky.finish();
@@ -193,6 +195,9 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         scene.camera = read_camera(std::move(camera));
     } else {
         place_camera(scene);
+    }
+    if (dicing_camera.stated()) {
+        scene.dicing_camera = read_camera(std::move(dicing_camera));
     }
     if (scene.lights.empty() && !sky.stated()) {
         place_light_and_sky(scene);

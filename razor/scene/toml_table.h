@@ -26,6 +26,7 @@ public:
     /// `name` says in messages which table it is. `table` may be null: every value is then its default.
     TomlTable(const toml::table* table, std::string_view name, std::string_view file_name);
 
+    const std::string& name() const { return name_; }
     bool stated() const { return table_ != nullptr; }
     bool has(std::string_view key) const;
 

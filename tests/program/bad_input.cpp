@@ -127,6 +127,29 @@ TEST_F(Razor, RefusesBadInput) {
     expect_refused("render good.obj", "no output; add -o");
     expect_refused("render good.obj -o picture.exr --spp", "--spp: 1 required");
     expect_refused("--sise", "--sise");
+    expect_refused("export-mesh good.obj", "--output is required");
+    expect_refused("export-mesh good.obj -o mesh.ply", "mesh.ply: the mesh is written as OBJ only");
+    expect_refused("export-mesh good.obj -o none/mesh.obj", "no folder none");
+    expect_refused("export-mesh none.obj -o mesh.obj", "none.obj: no such file");
+    expect_refused("export-mesh good.obj -o mesh.obj --isa mmx",
+                   "--isa mmx: this build on this processor has");
+}
+
+/// What is exported is a scene again: a triangle and the floor it is given, or without.
+TEST_F(Razor, WritesMeshesThatItReads) {
+    const Outcome result = razor("export-mesh good.obj --no-floor --lod recursive -o mesh.obj");
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.out.find("mesh.obj: "), std::string::npos) << result.out;
+    const Outcome again = razor("render mesh.obj --size 8x8 --quiet -o again.exr");
+    EXPECT_EQ(again.code, 0) << again.err;
+    const std::size_t before = folder_.count();
+    const Outcome full =
+        run("ulimit -f 4; trap '' XFSZ; " + quoted_argument(RAZOR_PROGRAM) + " export-mesh -o big.obj",
+            folder_.path());
+    EXPECT_EQ(full.code, 2) << full.err;
+    EXPECT_EQ(full.error_lines(), 1) << full.err;
+    EXPECT_EQ(folder_.count(), before);
 }
 
 TEST_F(Razor, LoadsOrRefusesEveryOddFile) {

@@ -35,6 +35,15 @@ inline void expect_same(const Mesh& a, const Mesh& b) {
     }
 }
 
+inline void expect_same(const Camera& a, const Camera& b) {
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.target, b.target);
+    EXPECT_EQ(a.up, b.up);
+    EXPECT_EQ(a.fov_degrees, b.fov_degrees);
+    EXPECT_EQ(a.aperture_radius, b.aperture_radius);
+    EXPECT_EQ(focus_distance(a), focus_distance(b));
+}
+
 inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.name, b.name);
     EXPECT_EQ(a.settings.width, b.settings.width);
@@ -44,12 +53,10 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
     EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);
     EXPECT_EQ(a.settings.lod, b.settings.lod);
-    EXPECT_EQ(a.camera.position, b.camera.position);
-    EXPECT_EQ(a.camera.target, b.camera.target);
-    EXPECT_EQ(a.camera.up, b.camera.up);
-    EXPECT_EQ(a.camera.fov_degrees, b.camera.fov_degrees);
-    EXPECT_EQ(a.camera.aperture_radius, b.camera.aperture_radius);
-    EXPECT_EQ(focus_distance(a.camera), focus_distance(b.camera));
+    expect_same(a.camera, b.camera);
+    ASSERT_EQ(a.dicing_camera.has_value(), b.dicing_camera.has_value());
+    if (a.dicing_camera)
+        expect_same(*a.dicing_camera, *b.dicing_camera);
     EXPECT_EQ(a.sky, b.sky);
     ASSERT_EQ(a.lights.size(), b.lights.size());
     for (std::size_t i = 0; i < a.lights.size(); ++i) {

@@ -57,6 +57,8 @@ TEST(SceneFile, ReadsEveryKey) {
         fov = 50
         aperture_radius = 0.125
         focus_distance = 7
+        [dicing_camera]
+        position = [9, 2, 3]
         [sky]
         radiance = 0.5
         [[light]]
@@ -97,6 +99,9 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(scene.camera.fov_degrees, 50);
     EXPECT_EQ(scene.camera.aperture_radius, 0.125);
     EXPECT_EQ(scene.camera.focus_distance, 7);
+    ASSERT_TRUE(scene.dicing_camera.has_value());
+    EXPECT_EQ(scene.dicing_camera->position, glm::dvec3(9, 2, 3));
+    EXPECT_EQ(scene.dicing_camera->fov_degrees, Camera{}.fov_degrees);
     EXPECT_EQ(scene.sky, glm::vec3(0.5F));
     ASSERT_EQ(scene.lights.size(), 1U);
     EXPECT_EQ(scene.lights[0].corner, glm::dvec3(0, 9, 0));
@@ -217,6 +222,9 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
          "s.toml:2:19: camera.aperture_radius = -0.5 is out of range"},
         {"[camera]\nfocus_distance = -1\n" + mesh, "camera.focus_distance = -1 is out of range"},
         {"[camera]\nfocus_distance = \"far\"\n" + mesh, "camera.focus_distance is text; write a number"},
+        {"[dicing_camera]\nposition = [1, 1, 1]\ntarget = [1, 1, 1]\n" + mesh,
+         "s.toml:2:12: dicing_camera.position equals dicing_camera.target"},
+        {"[dicing_camera]\nfow = 1\n" + mesh, "unknown key 'dicing_camera.fow'; did you mean 'fov'?"},
         {"[camera]\nposition = [1, 1, 1]\ntarget = [1, 1, 1]\n" + mesh,
          "s.toml:2:12: camera.position equals camera.target"},
         {"[camera]\nup = [0, 0, 0]\n" + mesh, "camera.up is zero or along the line of sight"},
