@@ -1,11 +1,13 @@
 // razor: the native renderer's program.
 #include "razor/program/arguments.h"
+#include "razor/program/check_command.h"
 #include "razor/program/compare_command.h"
 #include "razor/program/export_command.h"
 #include "razor/program/render_command.h"
 
 int main(int argc, char** argv) {
-    CLI::App app("Renders Catmull-Clark and bilinear-patch scenes, compares pictures and exports meshes.",
+    CLI::App app("Renders Catmull-Clark and bilinear-patch scenes, examines them, compares pictures and exports "
+                 "meshes.",
                  "razor");
     app.set_version_flag("--version", "razor " + std::string(razor::version()));
     app.require_subcommand(1);
@@ -15,7 +17,11 @@ int main(int argc, char** argv) {
     compare.add_to(app);
     razor::ExportCommand dice;
     dice.add_to(app);
+    razor::CheckCommand check;
+    check.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
+        if (check.given())
+            return check.run();
         if (compare.given())
             return compare.run();
         return dice.given() ? dice.run() : render.run();

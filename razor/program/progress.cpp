@@ -8,7 +8,8 @@
 
 namespace razor {
 
-Progress::Progress(bool wanted) : shown_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool wanted, const char* doing)
+    : shown_(wanted && ::isatty(STDERR_FILENO) == 1), doing_(doing) {}
 
 Progress::~Progress() {
     if (shown_ && percent_ >= 0) {
@@ -19,7 +20,7 @@ Progress::~Progress() {
 void Progress::show(double fraction) {
     const int percent = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
     if (shown_ && percent_.exchange(percent) != percent) {
-        fmt::print(stderr, "\rrendering {:3} %", percent);
+        fmt::print(stderr, "\r{} {:3} %", doing_, percent);
     }
 }
 

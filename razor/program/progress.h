@@ -8,7 +8,7 @@ namespace razor {
 class Progress {
 public:
     /// Shows nothing unless `wanted` and the error stream is a terminal.
-    explicit Progress(bool wanted);
+    explicit Progress(bool wanted, const char* doing = "rendering");
     /// Clears the line.
     ~Progress();
     Progress(const Progress&) = delete;
@@ -20,6 +20,7 @@ public:
 
 private:
     bool shown_;
+    const char* doing_;
     std::atomic<int> percent_{-1};
 };
 

@@ -17,6 +17,8 @@ public:
 
     /// The scene that the parsed options ask for; the built-in one where none is named. Throws UserError.
     SceneDescription describe() const;
+    /// Whether --lod was.
+    bool lod_given() const { return !lod_.empty(); }
 
 private:
     std::string scene_, size_, samples_, light_samples_, sky_samples_, edge_pixels_, lod_, scheme_, up_ = "y";

@@ -1,8 +1,9 @@
 // Rays that each ask for a level of detail of their own, against the surface that they see by definition;
 // from inside closed meshes none may escape. RAZOR_WATERTIGHT_RAYS: how many a scene (200000; a tenth of that
 // on sse4).
+#include "razor/check/escapes.h"
+#include "razor/check/field_surface.h"
 #include "tests/kernels/cages.h"
-#include "tests/kernels/field_surface.h"
 #include "tests/kernels/oracle.h"
 #include "tests/kernels/targets.h"
 
@@ -84,12 +85,12 @@ TEST_P(Fields, HitsAreOnTheSurfaceByDefinition) {
         const std::vector<bool> any = tracer.any(*target, rays);
         std::size_t between = 0, met = 0, wrong = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
+            SeenSurface seen(surface, rays[i]);
             if (i % 8 == 0)
-                between += surface.between(rays[i]);
+                between += seen.between();
             EXPECT_EQ(any[i], hits[i].patch >= 0) << target->name << ", ray " << i;
-            constexpr double near_miss = 2e-4; // of a triangle's size
-            const auto possible = surface.crossings(rays[i], near_miss);
-            const auto certain = surface.crossings(rays[i], -near_miss);
+            const auto possible = seen.crossings(rays[i], hit_roundings);
+            const auto certain = seen.crossings(rays[i], -hit_roundings);
             bool right = hits[i].patch < 0 && certain.empty();
             if (hits[i].patch >= 0) {
                 ++met;
@@ -136,7 +137,7 @@ TEST_P(Fields, NoRayEscapes) {
             bool inside = true;
             for (int i = 0; i < 3; ++i) {
                 r.direction = make.random_direction();
-                inside = inside && surface.crossings(r, 0).size() % 2 == 1;
+                inside = inside && SeenSurface(surface, r).crossings(r, 0).size() % 2 == 1;
             }
             if (inside)
                 starts.push_back({r});

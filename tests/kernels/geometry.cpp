@@ -1,6 +1,6 @@
 // Tessellated blocks: vertices where the surface is, the same bits from every neighbour, no T-junction.
+#include "razor/check/dump.h"
 #include "tests/kernels/cages.h"
-#include "tests/kernels/dump.h"
 #include "tests/kernels/reference_surface.h"
 #include "tests/kernels/targets.h"
 

@@ -1,7 +1,7 @@
 // Scene graphs as frames see them: the pictures of models written out where the graph puts them, levels of
 // detail, shared topology, bounds.
+#include "razor/check/dump.h"
 #include "tests/kernels/cages.h"
-#include "tests/kernels/dump.h"
 #include "tests/kernels/targets.h"
 #include "tests/scene/temporary_folder.h"
 

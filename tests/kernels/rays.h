@@ -1,51 +1,14 @@
-// Rays for tests, ways to make them, and tracing them by a target's kernels.
+// Ways to make rays for tests.
 #pragma once
 
-#include "tests/kernels/dump.h"
+#include "razor/check/tracer.h"
 
-#include <cstdint>
 #include <random>
 #include <vector>
 
 namespace razor::test {
 
-struct Ray {
-    Point origin{}, direction{};
-    float t_min = 0, t_max = 3.0e38F;
-    /// Target edge length at the origin, and its growth with distance; base 0: the finest level everywhere.
-    float base = 0, growth = 0;
-    Point slope{}; // see TraceArguments
-};
-
-struct Hit {
-    int patch = -1, triangle = -1;
-    float t = 0, u = 0, v = 0;
-
-    /// The same hit: everything if it is one, u and v as numbers (a zero's sign is nobody's business).
-    bool operator==(const Hit& o) const {
-        if (patch < 0 || o.patch < 0)
-            return patch < 0 && o.patch < 0;
-        return patch == o.patch && triangle == o.triangle && t == o.t && u == o.u && v == o.v;
-    }
-};
-
-/// Traces rays through a frame's tree, which is built as they go. Made before anything else happens to the
-/// frame.
-class Tracer {
-public:
-    Tracer(Frame& frame, int capacity);
-    std::vector<Hit> closest(const KernelTable& kernels, const std::vector<Ray>& rays);
-    /// Whether each ray meets anything.
-    std::vector<bool> any(const KernelTable& kernels, const std::vector<Ray>& rays);
-
-private:
-    TraceArguments fill(const std::vector<Ray>& rays);
-    Frame& frame_;
-    std::size_t capacity_;
-    float* in_[13];
-    float* out_[3];
-    std::int32_t* names_[2];
-};
+using namespace check;
 
 /// Makes rays about a set of triangles, in scene coordinates. All are deterministic.
 class RayMaker {
@@ -81,8 +44,5 @@ private:
     Point low_{}, high_{};
     std::mt19937 random_;
 };
-
-/// Of all instances, in scene coordinates.
-std::vector<Point> instance_origins(Frame& frame);
 
 } // namespace razor::test

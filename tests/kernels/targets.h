@@ -6,7 +6,11 @@
 #include <cstring>
 #include <vector>
 
+namespace razor::check {}
+
 namespace razor::test {
+
+using namespace check;
 
 /// All native targets, and `simulated` where it is built: it runs here on a timing port that keeps no time.
 inline std::vector<const KernelTable*> all_targets() {

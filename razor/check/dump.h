@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace razor::test {
+namespace razor::check {
 
 using Point = std::array<float, 3>;
 
@@ -49,4 +49,4 @@ std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0, int leve
 /// All triangles of all opened patches.
 std::vector<Triangle> triangles_of(Frame& frame, int tree = 0);
 
-} // namespace razor::test
+} // namespace razor::check

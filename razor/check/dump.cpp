@@ -1,8 +1,8 @@
-#include "tests/kernels/dump.h"
+#include "razor/check/dump.h"
 
 #include <algorithm>
 
-namespace razor::test {
+namespace razor::check {
 
 Point BlockView::vertex(int i) const {
     const float* x = words + block_header_words;
@@ -114,4 +114,4 @@ std::vector<Triangle> triangles_of(Frame& frame, int tree) {
     return triangles;
 }
 
-} // namespace razor::test
+} // namespace razor::check

@@ -1,0 +1,143 @@
+#include "razor/program/check_command.h"
+
+#include "razor/check/report.h"
+#include "razor/image/output_file.h"
+#include "razor/native/targets.h"
+#include "razor/program/arguments.h"
+#include "razor/program/interrupt.h"
+#include "razor/program/progress.h"
+#include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
+#include "razor/scene/words.h"
+#include "razor/surface/topology.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace razor {
+namespace {
+
+constexpr Range rays_range{1, 2e9};
+constexpr Range per_origin_range{1, 8192};
+constexpr Range seed_range{0, 2147483647};
+constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
+
+std::vector<check::MeshReport> examine(const Scene& scene) {
+    std::vector<check::MeshReport> reports;
+    for (const Mesh& mesh : scene.meshes) {
+        validate_mesh(mesh);
+        reports.push_back(check::examine(mesh));
+        reports.back().name = printable(mesh.name);
+    }
+    return reports;
+}
+
+} // namespace
+
+void CheckCommand::add_to(CLI::App& app) {
+    command_ = app.add_subcommand("check", "examine a scene file or a model; shoot rays from inside it");
+    CLI::App& check = *command_;
+    scene_.add_to(check, "scene");
+    check
+        .add_option("--escape", escape_,
+                    "shoot N rays from inside its closed bodies, each origin with a level of detail of its "
+                    "own; without --lod, recursive")
+        ->type_name("N");
+    check.add_option("--compare", compare_, "of these, compare N hits with the surface by its definition")
+        ->type_name("N");
+    check.add_option("--rays-an-origin", per_origin_, "rays of each origin; without it, 1000")
+        ->type_name("N");
+    check.add_option("--seed", seed_, "of the random rays; without it, 1")->type_name("S");
+    check.add_option("--isa", isa_, "instruction set: auto, plain, sse4, avx2 or avx512")->type_name("NAME");
+    check.add_option("--json", json_, "write all findings for programs")->type_name("FILE.json");
+    check.add_flag("--quiet", quiet_, "show no progress");
+    check.footer(
+        "Exit code 0: no ray escaped, and no hit differs from the surface by definition by more than "
+        "single precision rounds; 1: some did; 2: the model cannot be used.");
+}
+
+int CheckCommand::run() const {
+    check::EscapeOptions options;
+    const bool shoots = !escape_.empty();
+    if (shoots) {
+        options.rays = parse_whole("--escape", escape_, rays_range);
+    } else if (!compare_.empty() || !per_origin_.empty()) {
+        throw UserError("--compare and --rays-an-origin are about rays; add --escape N");
+    }
+    if (!compare_.empty()) {
+        options.compared = parse_whole("--compare", compare_, rays_range);
+    }
+    if (!per_origin_.empty()) {
+        options.rays_an_origin = parse_whole("--rays-an-origin", per_origin_, per_origin_range);
+    }
+    if (!seed_.empty()) {
+        options.seed = static_cast<unsigned>(parse_whole("--seed", seed_, seed_range));
+    }
+    const KernelTable& kernels =
+        native_target(std::string(isa_words[parse_choice("--isa", isa_, isa_words)]));
+    if (!json_.empty()) {
+        check_writable(json_);
+    }
+    options.cancel = &watch_interrupts();
+
+    SceneDescription description = scene_.describe();
+    if (!scene_.lod_given()) {
+        description.settings.lod = Lod::recursive;
+    }
+    Scene scene = build_scene(description);
+    const std::vector<check::MeshReport> meshes = examine(scene);
+    std::optional<check::EscapeReport> escapes;
+    if (shoots) {
+        Scene closed = check::closed_part(scene, meshes);
+        if (closed.meshes.empty()) {
+            throw UserError(
+                fmt::format("{}: nothing in it is closed, so no ray can be kept inside: {}; close it, "
+                            "or leave out --escape",
+                            printable(scene.name), check::why_open(meshes)));
+        }
+        Progress progress(!quiet_, "checking");
+        options.progress = [&](double fraction) { progress.show(fraction); };
+        Frame frame(closed, {});
+        escapes = check::shoot_from_inside(frame, kernels, closed.settings.lod, options);
+        if (escapes->cancelled) {
+            fmt::print(stderr, "{}razor: interrupted; nothing written\n", progress.shown() ? "\r\x1b[K" : "");
+            return interrupted_exit;
+        }
+        if (escapes->origins == 0) {
+            throw UserError(
+                fmt::format("{}: no point inside was found that {} level of detail has inside; the "
+                            "bodies are too thin for rays from inside",
+                            printable(scene.name), closed.settings.lod == Lod::discrete ? "every" : "its"));
+        }
+    }
+
+    const OutputGuard guard;
+    if (!json_.empty()) {
+        nlohmann::ordered_json report{{"program", "razor"}, {"version", version()}, {"scene", scene.name}};
+        report["meshes"] = nlohmann::ordered_json::array();
+        for (const check::MeshReport& m : meshes) {
+            report["meshes"].push_back(check::json_of(m));
+        }
+        if (escapes) {
+            report["escape"] = {{"lod", word_of(lod_words, description.settings.lod)},
+                                {"isa", kernels.name},
+                                {"seed", options.seed}};
+            report["escape"].update(check::json_of(*escapes));
+        }
+        // Names need not be UTF-8.
+        write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    }
+    fmt::print("{}", check::text_of(meshes));
+    if (!escapes) {
+        return 0;
+    }
+    fmt::print("{} on {}: {}", word_of(lod_words, description.settings.lod), kernels.name,
+               check::text_of(*escapes));
+    return escapes->escapes + escapes->different > 0 ? 1 : 0;
+}
+
+} // namespace razor
