@@ -218,9 +218,10 @@ struct alignas(line_bytes) BlockHeader {
     std::int32_t curve[4]; // exponent at level 0 of the curve this side lies on; straight_curve; inner_side
     std::int32_t
         cells_at; // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
-    std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0: none
-    std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
-    isa::shared<std::int32_t> normals;    // a BuildState
+    std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0:
+                               // none. Then [corner][xyz]: see corner_anchor
+    std::int32_t normals_at;           // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
+    isa::shared<std::int32_t> normals; // a BuildState
     isa::shared<std::int32_t> children;   // a BuildState
     std::int32_t child_line, child_lines; // of the first child; from one child to the next
     std::int32_t child_columns, child_rows;
@@ -231,10 +232,14 @@ struct alignas(line_bytes) BlockHeader {
     /// and below move, and its corners do not.
     float sway[blend_passes];
     float middle_sway; // how far a corner that is the middle of an edge does; 0: none is
-    std::int32_t padding[4];
+    /// How far corners on sides that hang from longer edges are born from where the block has them, and from
+    /// the means of the parent's; 0: there are none in either.
+    float corner_sway;
+    std::int32_t padding[3];
 };
 static_assert(sizeof(BlockHeader) == 192);
 inline constexpr int block_header_words = 48;
+inline constexpr int ancestor_words = 24;
 inline constexpr int cell_boxes = 16;
 /// Target edge lengths grow by no more than this per unit of distance: steeper rays see a finer surface than
 /// they ask for, which stays within three levels of itself over a block.

@@ -61,14 +61,6 @@ inline void store_svec(pointer<float> to, const svec& p) {
     store(to + 2, p.z);
 }
 
-inline svec corner_anchor(pointer<BlockHeader> block, int k) {
-    sint quads_u = load(field(block, &BlockHeader::quads_u));
-    sint quads_v = load(field(block, &BlockHeader::quads_v));
-    sint stride = load(field(block, &BlockHeader::stride));
-    pointer<float> vertices = as<float>(block) + block_header_words;
-    return load_vertex(vertices, stride, corner_vertex(k, quads_u, quads_v));
-}
-
 /// Corners of a sub-face that are middles of edges move towards the mean of the edge's ends.
 inline void move_middles(const Field& f, pointer<BlockHeader> block, pointer<BlockHeader> root,
                          pointer<float> corners) {

@@ -12,24 +12,6 @@ struct Reach {
     svec low, high;
 };
 
-inline svec load_vertex(pointer<float> vertices, sint stride, sint i) {
-    svec p;
-    p.x = load(vertices + i);
-    p.y = load(vertices + stride + i);
-    p.z = load(vertices + stride * 2 + i);
-    return p;
-}
-
-/// Number of the vertex at corner k.
-inline sint corner_vertex(int k, sint quads_u, sint quads_v) {
-    sint last_row = (quads_u + 1) * quads_v;
-    if (k == 0)
-        return 0;
-    if (k == 1)
-        return quads_u;
-    return k == 2 ? last_row + quads_u : last_row;
-}
-
 /// How far a corner of the block that is the middle of an edge moves where target edge lengths are `target`.
 inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sfloat most = load(field(block, &BlockHeader::middle_sway));
@@ -48,6 +30,7 @@ inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat 
 inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sfloat sum = middle_moves(c, block, target);
     for (;;) {
+        sum = sum + load(field(block, &BlockHeader::corner_sway));
         sint parent = load(field(block, &BlockHeader::parent));
         sint absolute = load(field(block, &BlockHeader::absolute));
         sint birth = absolute + earliest_birth(block) + block_log2;

@@ -317,6 +317,139 @@ inline void place_sides(const Context& c, const Cage& g, const Dicing& d, const 
         place_side<Straight>(c, g, b, d.side[1], 1, d.nv, b.row, b.quads_v, b.quads_u, width);
 }
 
+inline svec load_vertex(pointer<float> vertices, sint stride, sint i) {
+    svec p;
+    p.x = load(vertices + i);
+    p.y = load(vertices + stride + i);
+    p.z = load(vertices + stride * 2 + i);
+    return p;
+}
+
+/// Number of the vertex at corner k.
+inline sint corner_vertex(int k, sint quads_u, sint quads_v) {
+    sint last_row = (quads_u + 1) * quads_v;
+    if (k == 0)
+        return 0;
+    if (k == 1)
+        return quads_u;
+    return k == 2 ? last_row + quads_u : last_row;
+}
+
+/// Where corner k of a block is if it has not moved. On a side that hangs from an edge longer than the block
+/// that is not where the block has it, but where its curve has it at the level that it is born at.
+inline svec corner_anchor(pointer<BlockHeader> block, int k) {
+    sint ancestors_at = load(field(block, &BlockHeader::ancestors_at));
+    if (branch(ancestors_at != 0))
+        return load_svec(as<float>(block) + ancestors_at + (ancestor_words + 3 * k));
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    pointer<float> vertices = as<float>(block) + block_header_words;
+    return load_vertex(vertices, stride, corner_vertex(k, quads_u, quads_v));
+}
+
+/// The corner at (i, j), each 0 or 1.
+inline svec corner_anchor_at(pointer<BlockHeader> block, sint i, sint j) {
+    svec low = corner_anchor(block, 0);
+    if (branch(i > j))
+        low = corner_anchor(block, 1);
+    if (branch(j > i))
+        low = corner_anchor(block, 3);
+    if (branch((i & j) != 0))
+        low = corner_anchor(block, 2);
+    return low;
+}
+
+inline sfloat largest_component_of(const svec& p) {
+    return max(abs(p.x), max(abs(p.y), abs(p.z)));
+}
+
+/// One end of side s of a block, from the curve as it is at level 0, if it is born at all.
+inline void place_corner(const Context& c, const Cage& finest, const Dicing& d, int s, sint along,
+                         pointer<float> out) {
+    const Side& side = d.side[s];
+    sint flat = (s % 2 == 0 ? d.nu : d.nv) + half(side);
+    sint finer = side.whole - flat;
+    sint index = select(finer >= 0, along << max(finer, 0), along >> max(-finer, 0));
+    sint rest = along & ((sint(1) << max(-finer, 0)) - 1);
+    if (branch(rest != 0))
+        return; // hangs at every level
+    sint chunks = sint(1) << max(side.whole - block_log2, 0);
+    sint chunk = min(index >> block_log2, chunks - 1);
+    pointer<float> points = curve_points<false>(c, finest, finest.curves + side.curve, side.whole, chunk);
+    svec p = get_point(points, index - chunk * block_quads);
+    store(out, p.x);
+    store(out + 1, p.y);
+    store(out + 2, p.z);
+}
+
+/// The corners of a block that has ancestors: see corner_anchor.
+template <bool Straight>
+inline void place_corners(const Context& c, Cage g, const Dicing& d, const Block& b) {
+    pointer<float> out = b.words + b.ancestors_at + ancestor_words;
+    for (int k = 0; k < 4; ++k) {
+        svec p = load_vertex(b.x, b.stride, corner_vertex(k, b.quads_u, b.quads_v));
+        store(out + 3 * k, p.x);
+        store(out + 3 * k + 1, p.y);
+        store(out + 3 * k + 2, p.z);
+    }
+    if constexpr (!Straight) {
+        g.level = 0;
+        constexpr int ends[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
+        sint last_column = (sint(1) << max(d.nu - block_log2, 0)) - 1;
+        sint last_row = (sint(1) << max(d.nv - block_log2, 0)) - 1;
+        sbool border[4] = {b.row == 0, b.column == last_column, b.row == last_row, b.column == 0};
+        for (int s = 0; s < 4; ++s) {
+            const Side& side = d.side[s];
+            sint quads = s % 2 == 0 ? b.quads_u : b.quads_v;
+            if (branch(border[s] & ((sint(1) << side.hang) > quads))) {
+                sint total = sint(1) << ((s % 2 == 0 ? d.nu : d.nv) + half(side));
+                sint begin = (s % 2 == 0 ? b.column : b.row) * block_quads;
+                for (int e = 0; e < 2; ++e) {
+                    sint along = begin + (e == 0 ? sint(0) : quads);
+                    sbool reversed = (side.flags & side_reversed) != 0;
+                    along = select(reversed, total - along, along);
+                    place_corner(c, g, d, s, along, out + 3 * ends[s][e]);
+                }
+            }
+        }
+    }
+}
+
+/// Of a limit surface: what ancestors add to how far a block's corners are from where they lie in it, and
+/// from the means of corners of its parent: see BlockHeader::corner_sway.
+inline sfloat measure_corners(const Context& c, const Dicing& d, const Block& b, sint parent) {
+    sfloat lie = 0.0F;
+    sfloat off = 0.0F;
+    pointer<BlockHeader> above = b.header;
+    if (branch(parent >= 0))
+        above = as<BlockHeader>(c.grids + parent);
+    sint ancestors = load(field(b.header, &BlockHeader::ancestors_at));
+    sint ancestors_above = load(field(above, &BlockHeader::ancestors_at));
+    if (branch((ancestors | ancestors_above) == 0))
+        return 0.0F;
+    sbool split_u = d.nu > block_log2;
+    sbool split_v = d.nv > block_log2;
+    for (int k = 0; k < 4; ++k) {
+        int right = k == 1 || k == 2 ? 1 : 0;
+        int up = k >= 2 ? 1 : 0;
+        svec own = corner_anchor(b.header, k);
+        svec there = load_vertex(b.x, b.stride, corner_vertex(k, b.quads_u, b.quads_v));
+        lie = max(lie, largest_component_of(own - there));
+        if (branch(parent >= 0)) {
+            // In halves of the parent.
+            sint i = select(split_u, (b.column & 1) + right, sint(2 * right));
+            sint j = select(split_v, (b.row & 1) + up, sint(2 * up));
+            sint odd_i = i & 1;
+            sint odd_j = j & 1;
+            svec one = corner_anchor_at(above, (i - odd_i) >> 1, (j - odd_j) >> 1);
+            svec other = corner_anchor_at(above, (i + odd_i) >> 1, (j + odd_j) >> 1);
+            off = max(off, largest_component_of(own - middle(one, other)));
+        }
+    }
+    return lie + off;
+}
+
 /// Boxes of the block's cells (stored if there are several); the block's own is made to hold them. One lane a
 /// cell.
 inline void bound_block(const Block& b, sint cells_at) {
@@ -413,7 +546,7 @@ inline Shape block_shape(const Dicing& d) {
     s.cells_at = select(several_cells, words, sint(0));
     words = words + select(several_cells, sint(6 * cell_boxes), sint(0));
     s.ancestors_at = select(long_ancestor, words, sint(0));
-    words = words + select(long_ancestor, sint(24), sint(0));
+    words = words + select(long_ancestor, sint(ancestor_words + 12), sint(0));
     s.middles_at = select(middles, words, sint(0));
     words = words + select(middles, sint(ends_words), sint(0));
     s.normals_at = select(flat, sint(0), words);
@@ -677,6 +810,8 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
         if (branch(d.level > 0))
             bound_surface(b, bilinear_deviation(c, g, d));
         place_sides<true>(c, g, d, b);
+        if (branch(s.ancestors_at != 0))
+            place_corners<true>(c, g, d, b);
         if (branch(s.middles_at != 0))
             place_middles<true>(c, g, d, b.words + s.middles_at);
     } else {
@@ -689,12 +824,19 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
         if (branch(d.level > 0))
             bound_surface(b, limit_deviation(c, g, d, b));
         place_sides<false>(c, g, d, b);
+        if (branch(s.ancestors_at != 0))
+            place_corners<false>(c, g, d, b);
         if (branch(s.middles_at != 0))
             place_middles<false>(c, g, d, b.words + s.middles_at);
     }
     bound_block(b, s.cells_at);
-    if (branch(!flat))
+    sfloat corners = 0.0F;
+    if (branch(!flat)) {
         measure_sway(c, b);
+        if (branch(d.kind == static_cast<int>(PatchKind::catmull_clark)))
+            corners = measure_corners(c, d, b, parent);
+    }
+    store(field(h, &BlockHeader::corner_sway), corners);
     sfloat middle = 0.0F;
     if (branch(part))
         middle = middle_sway(c, d, s, b, parent);

@@ -103,6 +103,15 @@ Mesh stretched(Mesh mesh) {
     return mesh;
 }
 
+Mesh tapered_cage() {
+    Mesh m = cube_cage();
+    m.name = "tapered";
+    for (glm::dvec3& p : m.points)
+        if (p.y > 0)
+            p = {0.02 * p.x, p.y, 0.02 * p.z};
+    return m;
+}
+
 Mesh bilinear(Mesh mesh) {
     mesh.scheme = Scheme::bilinear;
     mesh.name += " bilinear";
@@ -200,6 +209,7 @@ std::vector<std::string> scene_names() {
             "urchin",
             "urchin_stretched",
             "torus_bilinear",
+            "tapered",
             "default",
             "cube_bilinear_stretched",
             "urchin_bilinear",
@@ -232,6 +242,8 @@ std::optional<NamedScene> named_scene(const std::string& name) {
         return of(cube_cage(), 60);
     if (name == "torus_stretched")
         return of(stretched(torus_cage(9, 6)), 90);
+    if (name == "tapered")
+        return of(tapered_cage(), 90);
     if (name == "urchin")
         return of(urchin_cage(), 70);
     if (name == "urchin_stretched")

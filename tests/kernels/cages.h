@@ -16,6 +16,8 @@ Mesh urchin_cage();
 /// Squeezed along the axes and jittered, so that neighbouring edges differ in length by powers of two. Stays
 /// closed.
 Mesh stretched(Mesh mesh);
+/// A cube whose top is a fiftieth of its bottom: sides hang from edges many times longer than a block.
+Mesh tapered_cage();
 /// As bilinear patches, most of them not planar once jittered.
 Mesh bilinear(Mesh mesh);
 /// Nothing where the shared scenes are not there.
