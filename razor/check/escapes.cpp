@@ -17,6 +17,7 @@ namespace {
 constexpr int capacity = 8192; // rays traced at once
 constexpr int tries_an_origin = 2000;
 constexpr int patches_an_origin = 24; // that rays are aimed at
+constexpr int rays_a_patch = 64;      // one after the other: as coherent as a camera's
 constexpr std::size_t bad_rays_kept = 3;
 
 class Shooting {
@@ -136,12 +137,12 @@ private:
         return starts;
     }
 
-    Point aim(Start& start) {
-        const std::uint32_t kind = bits() % 8;
-        if (kind < 2)
+    /// Anywhere, or to vertices and edges of one patch.
+    Point aim(Start& start, std::optional<std::uint32_t> patch) {
+        if (!patch)
             return direction();
-        const double along = kind < 5 ? 0 : uniform(0, 1);
-        const glm::dvec3 to = start.seen->feature(start.aims[bits() % start.aims.size()], bits(), along);
+        const double along = bits() % 2 == 0 ? 0 : uniform(0, 1);
+        const glm::dvec3 to = start.seen->feature(*patch, bits(), along);
         const glm::dvec3 from(start.ray.origin[0], start.ray.origin[1], start.ray.origin[2]);
         const double length = glm::length(to - from);
         return length > 0 ? to_point((to - from) / length) : direction();
@@ -151,10 +152,16 @@ private:
         const int each = std::clamp(options_.rays_an_origin, 1, capacity);
         std::vector<Ray> rays;
         std::vector<std::size_t> of; // number of each one's start
+        std::optional<std::uint32_t> patch;
         for (std::size_t s = 0; s < starts.size(); ++s)
             for (int i = 0; i < each; ++i) {
+                if (i % rays_a_patch == 0) {
+                    patch = starts[s].aims[bits() % starts[s].aims.size()];
+                    if (bits() % 8 == 0)
+                        patch.reset();
+                }
                 Ray ray = starts[s].ray;
-                ray.direction = aim(starts[s]);
+                ray.direction = aim(starts[s], patch);
                 rays.push_back(ray);
                 of.push_back(s);
             }

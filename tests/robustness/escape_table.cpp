@@ -1,6 +1,6 @@
 // razor-check-table: rays from inside closed meshes, every pair of model, surface, growth, footprint, levels,
 // place, size and target. None may escape, and hits are where the surface is by its definition.
-#include "razor/check/escapes.h"
+#include "razor/check/report.h"
 #include "razor/native/targets.h"
 #include "razor/scene/words.h"
 #include "tests/kernels/cages.h"
@@ -27,7 +27,7 @@ constexpr double edges_across[] = {20, 60, 200};     // the model, so that it ha
 constexpr double offsets[] = {0, 1e3, 1e5, 1e6};     // in units of its scale
 constexpr double companions[] = {0, 1e5};            // distance of a second body; 0: none
 constexpr double scales[] = {1e-12, 1e-6, 1, 1e6, 1e12};
-constexpr const char* targets[] = {"plain", "sse4", "avx2", "avx512"};
+constexpr const char* targets[] = {"sse4", "avx2", "avx512"}; // other tests hold plain to the bits of avx2
 
 std::optional<Mesh> model(const std::string& name) {
     if (name == "sphere")
@@ -154,24 +154,16 @@ int main_(int argc, char** argv) {
         fmt::print("{} {:>10} {:>8} {:>8} {:>8} {:>7} {:>6.2f} {:>8.3f}\n", name, r.rays, r.origins,
                    r.escapes, r.compared, r.different, r.worst,
                    1e-6 * static_cast<double>(r.rays) / r.seconds);
+        if (r.escapes + r.different > 0)
+            fmt::print("{}", check::text_of(r));
         std::fflush(stdout);
-        rows.push_back({{"case", i},
-                        {"model", c.model},
-                        {"surface", word_of(scheme_words, c.scheme)},
-                        {"growth", c.growth},
-                        {"base", c.base},
-                        {"edges", c.edges},
-                        {"offset", c.offset},
-                        {"apart", c.companion},
-                        {"scale", c.scale},
-                        {"target", c.target},
-                        {"rays", r.rays},
-                        {"origins", r.origins},
-                        {"escapes", r.escapes},
-                        {"through_holes", r.holes},
-                        {"compared", r.compared},
-                        {"different", r.different},
-                        {"worst_of_bound", r.worst}});
+        nlohmann::ordered_json row{
+            {"case", i},          {"model", c.model},     {"surface", word_of(scheme_words, c.scheme)},
+            {"growth", c.growth}, {"base", c.base},       {"edges", c.edges},
+            {"offset", c.offset}, {"apart", c.companion}, {"scale", c.scale},
+            {"target", c.target}};
+        row.update(check::json_of(r));
+        rows.push_back(row);
         rays += r.rays;
         bad += r.escapes + r.different + (r.origins == 0 ? 1 : 0);
     }
