@@ -5,14 +5,15 @@
 
 namespace razor::check {
 
-Tracer::Tracer(Frame& frame, int capacity) : frame_(frame), capacity_(static_cast<std::size_t>(capacity)) {
+Tracer::Tracer(Frame& frame, int capacity, double reaches)
+    : frame_(frame), capacity_(static_cast<std::size_t>(capacity)) {
     for (float*& p : in_)
         p = frame.extra<float>("packets", capacity_);
     for (float*& p : out_)
         p = frame.extra<float>("packets", capacity_);
     for (std::int32_t*& p : names_)
         p = frame.extra<std::int32_t>("packets", capacity_);
-    frame.set_reach(100 * static_cast<double>(frame.header().reach));
+    frame.set_reach(reaches * static_cast<double>(frame.header().reach));
 }
 
 TraceArguments Tracer::fill(const std::vector<Ray>& rays) {

@@ -32,7 +32,8 @@ struct Hit {
 /// frame.
 class Tracer {
 public:
-    Tracer(Frame& frame, int capacity);
+    /// Rays may begin so many times the reach of scene and camera away.
+    Tracer(Frame& frame, int capacity, double reaches = 100);
     std::vector<Hit> closest(const KernelTable& kernels, const std::vector<Ray>& rays);
     /// Whether each ray meets anything.
     std::vector<bool> any(const KernelTable& kernels, const std::vector<Ray>& rays);

@@ -284,6 +284,34 @@ inline void blend_ancestor(const Context& c, const Field& f, sint line, int s, s
     store_svec(out + 3, load_vertex(x, stride, first + to * step));
 }
 
+/// Whether side s of a block blended in `out`, if all of it is the half of an edge of which the block's patch
+/// is a part, lies on the whole edge but for rounding: the field has the edge's middle at the mean of its
+/// ends. Then these are stored as the side's ancestor.
+inline sbool blend_whole_edge(const Context& c, const Field& f, pointer<BlockHeader> block, int s,
+                              pointer<float> out) {
+    sbool whole = false;
+    if (s != 0 && s != 3)
+        return whole;
+    sint patch = load(field(block, &BlockHeader::patch));
+    sint root_line = load(field(c.open + patch, &OpenPatch::root));
+    pointer<BlockHeader> root = as<BlockHeader>(c.grids + root_line);
+    sint middles = load(field(root, &BlockHeader::middles));
+    sint curve = load(field(block, &BlockHeader::curve) + s);
+    sint exponent = load(field(block, &BlockHeader::exponent) + (s == 0 ? 0 : 1));
+    sbool beyond = curve >= 0;
+    beyond = beyond & (middles != 0);
+    beyond = beyond & (exponent <= block_log2);
+    if (branch(beyond)) {
+        svec middle = corner_anchor(block, s == 0 ? 1 : 3);
+        sfloat weight = weight_of(target_at(f, middle), birth_of_middle(root, s));
+        whole = weight == 0.0F;
+        pointer<float> ends = out + (blend_ancestors + 6 * s);
+        store_svec(ends, corner_anchor(block, 0));
+        store_svec(ends + 3, load_svec(as<float>(root) + middles + (ends_far + s)));
+    }
+    return whole;
+}
+
 /// How far vertices of the block are from their anchors where target edge lengths are at most `target`.
 inline sfloat sway_of(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sint absolute = load(field(block, &BlockHeader::absolute));

@@ -95,6 +95,8 @@ struct View {
     sint line, patch, number, triangles;
     sint quads_u, quads_v;
     sint cells_at, ancestors_at, hang[4], hangs;
+    /// log2 of the sub-edges on the longest edge that a coarser block may have in their place; hang or more.
+    sint longest[4];
     sint field; // as in Hits
 };
 
@@ -129,8 +131,7 @@ inline sint side_vertex(const View& v, int s, sint i) {
 }
 
 /// The flat ancestor of the sub-edge from vertex number `i` to i+1 along side s.
-inline Edge ancestor_edge(const Group& g, const View& v, int s, sint i) {
-    sint hang = v.hang[s];
+inline Edge ancestor_edge(const Group& g, const View& v, int s, sint hang, sint i) {
     sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
     Projected ends[2];
     if (branch((sint(1) << hang) > quads)) {
@@ -262,8 +263,8 @@ inline Along along(const vmask& steep, const Edge& e) {
 /// block, and is hit as a point of the sub-edge. Lengths of sub-edges add up to the ancestor's exactly, so
 /// that modulo 2 every point is covered as if the gap were filled with triangles: the surface is closed in
 /// every projection, folded or not.
-inline void fill_gap(const Group& g, const View& v, int s, sint i, sint triangle, Hits& hits) {
-    Edge whole = ancestor_edge(g, v, s, i);
+inline void fill_gap(const Group& g, const View& v, int s, sint hang, sint i, sint triangle, Hits& hits) {
+    Edge whole = ancestor_edge(g, v, s, hang, i);
     Edge part;
     part.p = project_vertex(g, v, side_vertex(v, s, i));
     part.q = project_vertex(g, v, side_vertex(v, s, i + 1));
@@ -307,8 +308,10 @@ inline void fill_gap(const Group& g, const View& v, int s, sint i, sint triangle
     sint quad = ((j << block_log2) + i) * 2;
     sint triangle = (v.number << 7) + quad;
     for (int s = 0; s < 4; ++s) {
-        if (branch(border.side[s] & (v.hang[s] > 0)))
-            fill_gap(g, v, s, s % 2 == 0 ? i : j, triangle, hits);
+        if (branch(border.side[s] & (v.longest[s] > 0))) {
+            for (sint hang = max(v.hang[s], 1); branch(hang <= v.longest[s]); ++hang)
+                fill_gap(g, v, s, hang, s % 2 == 0 ? i : j, triangle, hits);
+        }
     }
 }
 
@@ -702,6 +705,24 @@ struct Listed {
     sint level; // of the leaf
 };
 
+/// Beside a block whose vertices along a side are means of their parents, a coarser one may have the edge
+/// that these lie on but for their rounding. log2 of its sub-edges, as long as the block at most.
+inline sint longest_edge(const View& v, int s, pointer<float> weights) {
+    sint longest = v.hang[s];
+    sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
+    for (;;) {
+        sint step = sint(1) << longest;
+        if (branch(step + step > quads))
+            return longest;
+        for (sint i = step; branch(i < quads); i += step + step) {
+            sfloat weight = load(weights + side_vertex(v, s, i));
+            if (branch(weight != 0.0F))
+                return longest;
+        }
+        ++longest;
+    }
+}
+
 /// The same for rays that see the block's vertices off their anchors. Which cells they may meet is found once
 /// for all, with room for how far vertices may be; only then is it blended, once a field.
 template <Features F, bool Mixed>
@@ -727,12 +748,8 @@ template <Features F, bool Mixed>
     moved = cells_of_lane != vint(0);
     if constexpr (F.hanging) {
         v.ancestors_at = blend_ancestors;
-        sint hangs = 0;
-        for (int s = 0; s < 4; ++s) {
+        for (int s = 0; s < 4; ++s)
             v.hang[s] = hang_at(header, s, listed.level);
-            hangs = hangs | v.hang[s];
-        }
-        v.hangs = hangs;
     }
     sint cells_u = (v.quads_u + 1) >> 1;
     sbool wide = cells_u > 2;
@@ -745,8 +762,21 @@ template <Features F, bool Mixed>
         moved = moved & !same;
         tally(c.counters->blended_tests, 1);
         v.field = leader;
-        pointer<float> words = blend_block(c, field_of(c, leader, origin), listed.line, listed.level);
+        Field seen = field_of(c, leader, origin);
+        pointer<float> words = blend_block(c, seen, listed.line, listed.level);
         set_vertices(g, v, stride, words, origin_at);
+        if constexpr (F.hanging) {
+            v.hangs = 0;
+            for (int s = 0; s < 4; ++s) {
+                v.longest[s] = longest_edge(v, s, words + blend_weights);
+                sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
+                if (branch((sint(1) << v.longest[s]) == quads)) {
+                    sbool whole = blend_whole_edge(c, seen, header, s, words);
+                    v.longest[s] = v.longest[s] + select(whole, sint(1), sint(0));
+                }
+                v.hangs = v.hangs | v.longest[s];
+            }
+        }
         sint left = cells;
         for (sint cell = 0; branch(left != 0); ++cell) {
             sint here = left & 1;
@@ -800,7 +830,7 @@ template <Features F, bool Mixed>
         v.hangs = load(field(header, &BlockHeader::hangs));
         v.ancestors_at = load(field(header, &BlockHeader::ancestors_at));
         for (int s = 0; s < 4; ++s)
-            v.hang[s] = load(field(header, &BlockHeader::hang) + s);
+            v.longest[s] = v.hang[s] = load(field(header, &BlockHeader::hang) + s);
     }
     vmask all = g.alive;
     vmask moved = vmask(false);

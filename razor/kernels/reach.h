@@ -30,7 +30,7 @@ inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat 
 inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sfloat sum = middle_moves(c, block, target);
     for (;;) {
-        sum = sum + load(field(block, &BlockHeader::corner_sway));
+
         sint parent = load(field(block, &BlockHeader::parent));
         sint absolute = load(field(block, &BlockHeader::absolute));
         sint birth = absolute + earliest_birth(block) + block_log2;
@@ -38,6 +38,7 @@ inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat 
             break;
         if (branch(target < moving_from(birth)))
             break;
+        sum = sum + load(field(block, &BlockHeader::corner_sway));
         block = as<BlockHeader>(c.grids + parent);
         sfloat all = load(field(block, &BlockHeader::sway) + (blend_passes - 1));
         sfloat own = load(field(block, &BlockHeader::sway) + (blend_passes - 2));

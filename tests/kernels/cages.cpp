@@ -108,7 +108,7 @@ Mesh tapered_cage() {
     m.name = "tapered";
     for (glm::dvec3& p : m.points)
         if (p.y > 0)
-            p = {0.02 * p.x, p.y, 0.02 * p.z};
+            p = {p.x / 32, p.y, p.z / 32};
     return m;
 }
 
@@ -209,7 +209,6 @@ std::vector<std::string> scene_names() {
             "urchin",
             "urchin_stretched",
             "torus_bilinear",
-            "tapered",
             "default",
             "cube_bilinear_stretched",
             "urchin_bilinear",
@@ -242,8 +241,6 @@ std::optional<NamedScene> named_scene(const std::string& name) {
         return of(cube_cage(), 60);
     if (name == "torus_stretched")
         return of(stretched(torus_cage(9, 6)), 90);
-    if (name == "tapered")
-        return of(tapered_cage(), 90);
     if (name == "urchin")
         return of(urchin_cage(), 70);
     if (name == "urchin_stretched")

@@ -16,7 +16,7 @@ Mesh urchin_cage();
 /// Squeezed along the axes and jittered, so that neighbouring edges differ in length by powers of two. Stays
 /// closed.
 Mesh stretched(Mesh mesh);
-/// A cube whose top is a fiftieth of its bottom: sides hang from edges many times longer than a block.
+/// A cube whose top is 1/32 of its bottom: a side of many blocks has an exponent of its own that is five less.
 Mesh tapered_cage();
 /// As bilinear patches, most of them not planar once jittered.
 Mesh bilinear(Mesh mesh);

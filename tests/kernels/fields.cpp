@@ -167,5 +167,38 @@ TEST_P(Fields, NoRayEscapes) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Fields, testing::ValuesIn(scene_names()),
                          [](const auto& name) { return name.param; });
 
+/// Where what decides about a block's border lies several blocks away.
+TEST(FieldsOfTaperedPatches, HitsAreOnTheSurfaceByDefinition) {
+    Scene scene = scene_of(tapered_cage(), 200);
+    scene.settings.lod = Lod::recursive;
+    for (const KernelTable* target : native_targets()) {
+        if (target != native_targets().back() && target->name != std::string("sse4"))
+            continue;
+        Frame frame(scene, {});
+        EscapeOptions options;
+        options.rays = options.compared = 6000;
+        options.rays_an_origin = 200;
+        const EscapeReport r = shoot_from_inside(frame, *target, Lod::recursive, options);
+        EXPECT_EQ(r.escapes, 0) << target->name;
+        EXPECT_EQ(r.different, 0) << target->name;
+        EXPECT_GE(r.compared, 6000) << target->name;
+    }
+}
+
+/// Beside a coarse block the vertices of a finer one are means, rounded; rays are aimed at them. Rounding
+/// once let one of some ten thousand through.
+TEST(FieldsOfNeighbours, NoRayPassesBetweenLevels) {
+    std::optional<Mesh> mesh = shared_mesh("spot/spot_control_mesh.obj");
+    Scene scene = mesh ? scene_of(*mesh, 20) : named_scene("torus_stretched")->scene;
+    scene.settings.lod = Lod::recursive;
+    Frame frame(scene, {});
+    EscapeOptions options;
+    options.rays = 200'000;
+    options.growth = 0.02;
+    options.base = 1.9;
+    const EscapeReport r = shoot_from_inside(frame, *native_targets().back(), Lod::recursive, options);
+    EXPECT_EQ(r.escapes, 0);
+}
+
 } // namespace
 } // namespace razor::test
