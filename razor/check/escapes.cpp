@@ -86,8 +86,16 @@ private:
             std::exp2(options_.base ? std::log2(*options_.base) + uniform(-0.5, 0.5) : uniform(-1, octaves));
         ray.growth = static_cast<float>(std::clamp(growth, -cap, cap));
         ray.base = std::max(static_cast<float>(edge_ * base), least_target_edge);
+        if (bits() % 4 == 0) { // through a lens
+            const double slope = cap * uniform(0, 1);
+            const Point axis = direction();
+            for (std::size_t k = 0; k < 3; ++k)
+                ray.slope[k] = static_cast<float>(slope * axis[k]);
+            ray.growth = static_cast<float>(std::clamp(growth, slope - cap, cap - slope));
+        }
         if (lod_ == Lod::fixed) {
             ray.growth = 0;
+            ray.slope = {};
             ray.base = least_target_edge;
         }
     }

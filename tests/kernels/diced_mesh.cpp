@@ -1,7 +1,9 @@
 // Exported meshes: closed where the cage is, the triangles that rays meet, and what the dicing camera asks
 // for whatever the camera.
+#include "razor/check/escapes.h"
+#include "razor/check/field_surface.h"
 #include "tests/kernels/cages.h"
-#include "tests/kernels/field_surface.h"
+#include "tests/kernels/rays.h"
 #include "tests/kernels/targets.h"
 
 #include "razor/frame/diced_mesh.h"
@@ -181,7 +183,9 @@ TEST(DicedMeshes, AreWhatCameraRaysSee) {
                     if (u >= 0 && v >= 0 && u + v <= 1 && w > 0)
                         t = std::min(t, w);
                 }
-            const auto possible = surface.crossings(ray, 1e-3), certain = surface.crossings(ray, -1e-3);
+            SeenSurface seen(surface, ray);
+            constexpr double roundings = 4 * hit_roundings; // the mesh is written in world coordinates
+            const auto possible = seen.crossings(ray, roundings), certain = seen.crossings(ray, -roundings);
             bool right = t > 1e29 && certain.empty();
             for (const auto& c : possible)
                 right = right || std::abs(c.t - t) <= c.slack + 1e-5;
