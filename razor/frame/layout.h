@@ -220,8 +220,8 @@ struct alignas(line_bytes) BlockHeader {
         cells_at; // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
     std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0:
                                // none. Then [corner][xyz]: see corner_anchor
-    std::int32_t normals_at;           // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
-    isa::shared<std::int32_t> normals; // a BuildState
+    std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
+    isa::shared<std::int32_t> normals;    // a BuildState
     isa::shared<std::int32_t> children;   // a BuildState
     std::int32_t child_line, child_lines; // of the first child; from one child to the next
     std::int32_t child_columns, child_rows;

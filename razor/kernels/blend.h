@@ -303,7 +303,8 @@ inline sbool blend_whole_edge(const Context& c, const Field& f, pointer<BlockHea
     beyond = beyond & (exponent <= block_log2);
     if (branch(beyond)) {
         svec middle = corner_anchor(block, s == 0 ? 1 : 3);
-        sfloat weight = weight_of(target_at(f, middle), birth_of_middle(root, s));
+        sfloat target = target_at(f, middle);
+        sfloat weight = weight_of(target, birth_of_middle(root, s));
         whole = weight == 0.0F;
         pointer<float> ends = out + (blend_ancestors + 6 * s);
         store_svec(ends, corner_anchor(block, 0));

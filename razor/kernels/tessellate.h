@@ -361,7 +361,10 @@ inline svec corner_anchor_at(pointer<BlockHeader> block, sint i, sint j) {
 }
 
 inline sfloat largest_component_of(const svec& p) {
-    return max(abs(p.x), max(abs(p.y), abs(p.z)));
+    sfloat y = abs(p.y);
+    sfloat z = abs(p.z);
+    z = max(y, z);
+    return max(abs(p.x), z);
 }
 
 /// One end of side s of a block, from the curve as it is at level 0, if it is born at all.
@@ -370,12 +373,15 @@ inline void place_corner(const Context& c, const Cage& finest, const Dicing& d, 
     const Side& side = d.side[s];
     sint flat = (s % 2 == 0 ? d.nu : d.nv) + half(side);
     sint finer = side.whole - flat;
-    sint index = select(finer >= 0, along << max(finer, 0), along >> max(-finer, 0));
-    sint rest = along & ((sint(1) << max(-finer, 0)) - 1);
+    sint up = max(finer, 0);
+    sint down = max(-finer, 0);
+    sint index = (along << up) >> down;
+    sint rest = along & ((sint(1) << down) - 1);
     if (branch(rest != 0))
         return; // hangs at every level
     sint chunks = sint(1) << max(side.whole - block_log2, 0);
-    sint chunk = min(index >> block_log2, chunks - 1);
+    sint last = chunks - 1;
+    sint chunk = min(index >> block_log2, last);
     pointer<float> points = curve_points<false>(c, finest, finest.curves + side.curve, side.whole, chunk);
     svec p = get_point(points, index - chunk * block_quads);
     store(out, p.x);
@@ -442,8 +448,12 @@ inline sfloat measure_corners(const Context& c, const Dicing& d, const Block& b,
             sint j = select(split_v, (b.row & 1) + up, sint(2 * up));
             sint odd_i = i & 1;
             sint odd_j = j & 1;
-            svec one = corner_anchor_at(above, (i - odd_i) >> 1, (j - odd_j) >> 1);
-            svec other = corner_anchor_at(above, (i + odd_i) >> 1, (j + odd_j) >> 1);
+            sint low_i = (i - odd_i) >> 1;
+            sint low_j = (j - odd_j) >> 1;
+            svec one = corner_anchor_at(above, low_i, low_j);
+            sint high_i = low_i + odd_i;
+            sint high_j = low_j + odd_j;
+            svec other = corner_anchor_at(above, high_i, high_j);
             off = max(off, largest_component_of(own - middle(one, other)));
         }
     }

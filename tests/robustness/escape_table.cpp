@@ -2,6 +2,7 @@
 // place, size and target. None may escape, and hits are where the surface is by its definition.
 #include "razor/check/report.h"
 #include "razor/native/targets.h"
+#include "razor/scene/framing.h"
 #include "razor/scene/words.h"
 #include "tests/kernels/cages.h"
 #include "tests/robustness/pairwise.h"
@@ -14,7 +15,9 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
+#include <unistd.h>
 
 namespace razor::test {
 namespace {
@@ -25,7 +28,7 @@ constexpr double growths[] = {-1, -0.05, 0, 0.02, 10};
 constexpr double bases[] = {1e-30, 0.7, 1.9, 5, 40}; // in finest target edges
 constexpr double edges_across[] = {20, 60, 200};     // the model, so that it has 2 to 8 levels
 constexpr double offsets[] = {0, 1e3, 1e5, 1e6};     // in units of its scale
-constexpr double companions[] = {0, 1e5};            // distance of a second body; 0: none
+constexpr double companions[] = {0, 1e3};            // distance of a second body; 0: none
 constexpr double scales[] = {1e-12, 1e-6, 1, 1e6, 1e12};
 constexpr const char* targets[] = {"sse4", "avx2", "avx512"}; // other tests hold plain to the bits of avx2
 
@@ -64,23 +67,54 @@ void place(Mesh& mesh, double scale, const glm::dvec3& offset) {
         p = (p + offset) * scale;
 }
 
+/// Written to a file and read again, as models are: where they are very small or large, in other units.
+Mesh reread(const Mesh& mesh) {
+    const auto path =
+        std::filesystem::temp_directory_path() / fmt::format("razor-check-table-{}.obj", getpid());
+    {
+        std::ofstream out(path);
+        for (const glm::dvec3& p : mesh.points)
+            out << fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+        std::size_t corner = 0;
+        for (const int size : mesh.face_sizes) {
+            out << 'f';
+            for (int i = 0; i < size; ++i)
+                out << ' ' << mesh.face_vertices[corner++] + 1;
+            out << '\n';
+        }
+        if (!out.flush())
+            throw std::runtime_error(path.string() + ": cannot be written");
+    }
+    FramingOptions framing;
+    framing.floor = false;
+    framing.scheme = mesh.scheme;
+    Scene scene = build_scene(frame_model(path, framing));
+    std::filesystem::remove(path);
+    return scene.meshes.at(0);
+}
+
+double diagonal(const Mesh& mesh) {
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const glm::dvec3& p : mesh.points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    return glm::length(high - low);
+}
+
 /// Nothing where the model is not there.
 std::optional<Scene> scene_of_case(const Case& c) {
     std::optional<Mesh> mesh = model(c.model);
     if (!mesh)
         return {};
-    glm::dvec3 low(1e300), high(-1e300);
-    for (const glm::dvec3& p : mesh->points) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
     mesh->scheme = c.scheme;
-    const double size = glm::length(high - low);
+    const double size = diagonal(*mesh);
     place(*mesh, c.scale / size, glm::dvec3(1, -0.7, 0.3) * c.offset * size);
-    Scene scene = scene_of(*mesh, c.edges);
+    Scene scene = scene_of(reread(*mesh), c.edges);
     if (c.companion > 0) {
+        const double unit = diagonal(scene.meshes[0]);
         Mesh other = cube_cage();
-        place(other, 0.1 * c.scale, glm::dvec3(10 * (c.offset + c.companion), 0, 0));
+        place(other, 0.1 * unit, glm::dvec3(10 * (c.offset + c.companion), 0, 0));
         other.edge_length = scene.meshes[0].edge_length;
         scene.meshes.push_back(other);
     }
