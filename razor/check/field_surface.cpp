@@ -27,7 +27,7 @@ int twos(int i) {
 /// Of a vertex born at absolute level `birth` (Design: rule 2; the last quarter of an octave).
 double weight(double target, int birth) {
     const double gone = std::ldexp(1.0, birth + 1);
-    const double x = std::clamp((target / gone - 0.875) * 8, 0.0, 1.0);
+    const double x = std::clamp((target * level_rounding / gone - 0.875) * 8, 0.0, 1.0);
     return 1 - x * x * (3 - 2 * x);
 }
 

@@ -7,6 +7,7 @@ namespace razor {
 
 struct Counters {
     std::int64_t camera_rays = 0, shadow_rays = 0;
+    std::int64_t camera_hits = 0;
     std::int64_t camera_packets = 0, shadow_packets = 0; // rays / (packets x width) is their utilisation
     std::int64_t groups = 0; // of rays alike in direction, traversed one after the other
     std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
@@ -26,6 +27,7 @@ struct Counters {
 template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("camera_rays", c.camera_rays);
     visit("shadow_rays", c.shadow_rays);
+    visit("camera_hits", c.camera_hits);
     visit("camera_packets", c.camera_packets);
     visit("shadow_packets", c.shadow_packets);
     visit("groups", c.groups);

@@ -25,7 +25,7 @@ struct Field {
         const double blur = std::abs(base + glm::dot(slope, way));
         const double target = blur + growth * glm::length(way);
         // Design: razor/kernels/morph.h.
-        const double x = std::clamp((std::ldexp(target, -birth - 1) - 0.875) * 8, 0.0, 1.0);
+        const double x = std::clamp((std::ldexp(target * level_rounding, -birth - 1) - 0.875) * 8, 0.0, 1.0);
         return 1 - x * x * (3 - 2 * x);
     }
 };

@@ -55,6 +55,7 @@ constexpr int nodes_a_line = line_bytes / static_cast<int>(sizeof(KdNode));
 enum Coloured : int {
     colour_stack,
     colour_packets,
+    colour_blends,
     colour_grids,
     colour_nodes,
     colour_lists,
@@ -440,6 +441,7 @@ void Frame::Impl::place_workers() {
         WorkerRecord& r = header->workers.get()[w];
         r.stack.set(coloured<float>("stack", w, stack_floats, colour_stack));
         r.packets.set(coloured<float>("packets", w, packet_floats, colour_packets));
+        r.blends.set(coloured<float>("blended blocks", w, blends_floats, colour_blends));
         r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
     }
 }
@@ -484,7 +486,8 @@ void Frame::Impl::place_view(const Scene& scene) {
         put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
     }
     h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
-    h.morphs = s.lod == Lod::recursive ? 1 : 0;
+    h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera ? 1 : 0;
+    h.one_field = s.lod == Lod::camera ? 1 : 0;
     const Camera& dicing = dicing_camera(scene);
     const CameraField asked = camera_field(dicing, s);
     put(h.field_origin, dicing.position - geometry.origin);
@@ -521,6 +524,7 @@ void Frame::Impl::reset() {
         r.list_next = first_list_line(w);
         r.list_end = r.list_next + list_lines_each;
         std::fill_n(reinterpret_cast<std::int32_t*>(r.stack.get() + scratch_free_lists), list_sizes, -1);
+        r.next_field = 1; // 0: the camera's
         counters[static_cast<std::size_t>(w)] = {};
     }
 }

@@ -243,7 +243,10 @@ inline constexpr int ancestor_words = 24;
 inline constexpr int cell_boxes = 16;
 /// Target edge lengths grow by no more than this per unit of distance: steeper rays see a finer surface than
 /// they ask for, which stays within three levels of itself over a block.
-inline constexpr float gradation_cap = 0.25F;
+inline constexpr float gradation_cap = 0.125F;
+/// Levels are powers of two: fields are held times this, so that the level used is the nearest in the
+/// logarithm.
+inline constexpr float level_rounding = 1.41421356F;
 inline constexpr float least_target_edge = 1.0e-30F; // edge lengths asked for are positive
 inline constexpr int straight_curve = -2;            // of a bilinear patch: its vertices never leave it
 inline constexpr int inner_side = -1;                // the side is no side of the patch
@@ -315,9 +318,10 @@ struct alignas(line_bytes) WorkerRecord {
     std::int32_t node_next, node_end;
     std::int32_t list_next, list_end;
     std::int32_t tree;
-    std::int32_t padding;
+    std::int32_t next_field; // the next number of a field: see packet_field in razor/frame/scratch.h
     isa::ref<float> stack;   // traversal stack and builders' scratch
     isa::ref<float> packets; // the rays in flight
+    isa::ref<float> blends;  // blocks lately blended
 };
 
 // --- the frame
@@ -396,8 +400,9 @@ struct FrameHeader {
     float focus;                // depth in focus; 0: a pinhole
     float light_spacing;        // see growth_to_area() and growth_to_sky(), times edge_pixels
     float sky_spacing;
-    std::int32_t morphs; // 0: vertices stay at their anchors
-    float fixed_target;  // not 0: what all rays ask for, everywhere
+    std::int32_t morphs;    // 0: vertices stay at their anchors
+    std::int32_t one_field; // not 0: rays that leave surfaces ask for what camera rays do
+    float fixed_target;     // not 0: what all rays ask for, everywhere
 };
 
 inline constexpr int tile_side = 16; // pixels

@@ -40,11 +40,6 @@ double nearest_power_of_two(double length) {
     return std::exp2(std::round(std::log2(length)));
 }
 
-/// Finest level: no ray asks for less.
-double power_of_two_below(double length) {
-    return std::exp2(std::floor(std::log2(length)));
-}
-
 namespace {
 
 /// Boxes of meshes where they stand. Copies that only translate share the work.
@@ -138,7 +133,7 @@ SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
                        glm::length(boxes[n].high - boxes[n].low), placed);
         double length = mesh.edge_length > 0 ? mesh.edge_length : automatic_edge_length(scene, boxes[n]);
         length *= i.rate;
-        length = scene.settings.lod == Lod::fixed ? nearest_power_of_two(length) : power_of_two_below(length);
+        length = std::ldexp(nearest_power_of_two(length), scene.settings.lod.coarser);
         placed.mesh_edge_length = std::clamp(std::ldexp(length, i.level_offset), 1e-30, 1e30);
         placed.edge_length = std::clamp(std::ldexp(length, i.level_offset) * i.scale, 1e-30, 1e30);
         g.instances.push_back(placed);

@@ -14,8 +14,8 @@ inline constexpr int scratch_curve =
     (kd_depth_limit + 4) * stack_entry; // real points of a curve chunk: x[16], y, z; twice
 inline constexpr int scratch_curve_size = 3 * curve_row;
 inline constexpr int scratch_mailbox = scratch_curve + 2 * scratch_curve_size;
-/// A block as one field sees it, and another that it hangs from; laid out as a block, each part at its
-/// largest.
+/// A block as one field sees it, laid out as a block, each part at its largest. On the stack, one from which
+/// another hangs.
 inline constexpr int blend_cells = block_header_words + 3 * 96;
 inline constexpr int blend_ancestors = blend_cells + 6 * cell_boxes;
 inline constexpr int blend_weights = blend_ancestors + 24;
@@ -23,7 +23,7 @@ inline constexpr int blend_normals_at = blend_weights + 96;
 inline constexpr int blend_floats = blend_normals_at + 3 * 96;
 inline constexpr int scratch_blend = (scratch_mailbox + mailbox_slots + 15) / 16 * 16;
 /// Blocks on the way to the one whose corners do not move, and corners: [corner][xyz], twice.
-inline constexpr int scratch_climb = scratch_blend + 2 * blend_floats;
+inline constexpr int scratch_climb = scratch_blend + blend_floats;
 inline constexpr int scratch_corners = scratch_climb + 16;
 /// First line of the worker's unused item lists of each size, -1: none. Their first words are the lines of
 /// the next ones.
@@ -31,15 +31,43 @@ inline constexpr int scratch_free_lists = scratch_corners + 32;
 inline constexpr int list_sizes = 48;
 inline constexpr int stack_floats = scratch_free_lists + list_sizes;
 
+/// Blocks as fields lately saw them: `blend_slots` of a key and a blended block each.
+inline constexpr int blend_slots = 64;
+enum BlendSlot : int {
+    slot_line = 0,    // of the block; -1: the slot is empty
+    slot_field = 1,   // its number
+    slot_level = 2,   // of the leaf, which decides what its sides hang from
+    slot_normals = 3, // 1: they are made
+    slot_longest = 4, // 4 sides: log2 of their sub-edges on one edge, as packets test them
+    slot_block = 16,  // laid out as a block
+    slot_floats = slot_block + blend_floats
+};
+inline constexpr int blends_floats = blend_slots * slot_floats;
+
 inline constexpr int packet_origin = 0;                              // 3 vectors
 inline constexpr int packet_inverse = packet_origin + 3 * ISA_WIDTH; // 3 vectors: 1 / direction
 inline constexpr int packet_error = packet_inverse + 3 * ISA_WIDTH;  // 3 vectors: slack of a plane's distance
 inline constexpr int packet_sum =
     packet_error + 3 * ISA_WIDTH; // light gathered for each lane of a camera packet
-/// Target edge lengths: origin x, y, z, radius, base, growth and slope x, y, z of each lane's field, and the
-/// first lane with the same one.
+/// Target edge lengths: origin x, y, z, radius, base, growth and slope x, y, z of each lane's field, and its
+/// number: lanes of one number have the same field, in whatever packet of the worker.
 inline constexpr int packet_field = packet_sum + ISA_WIDTH;
-inline constexpr int packet_leader = packet_field + 9 * ISA_WIDTH;
-inline constexpr int packet_floats = packet_leader + ISA_WIDTH;
+inline constexpr int packet_number = packet_field + 9 * ISA_WIDTH;
+/// Fields that rays lately left surfaces with.
+inline constexpr int packet_left = packet_number + ISA_WIDTH;
+inline constexpr int left_fields = 4;
+enum LeftField : int {
+    left_origin = 0, // 3
+    left_reach = 3,  // how far from the origin a hit may be
+    left_radius = 4,
+    left_base = 5,
+    left_growth = 6,
+    left_least = 7, // target edge lengths of hits
+    left_most = 8,
+    left_number = 9, // -1: none
+    left_floats = 16
+};
+inline constexpr int packet_left_next = packet_left + left_fields * left_floats;
+inline constexpr int packet_floats = packet_left_next + 16;
 
 } // namespace razor

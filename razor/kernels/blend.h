@@ -267,7 +267,7 @@ inline void blend_ancestor(const Context& c, const Field& f, sint line, int s, s
         store_svec(out + 3, far);
         return;
     }
-    pointer<float> area = c.stack + (scratch_blend + blend_floats);
+    pointer<float> area = c.stack + scratch_blend;
     blend_vertices(c, f, line, area);
     strip = load(field(block, s % 2 == 0 ? &BlockHeader::column : &BlockHeader::row));
     sint quads_u = load(field(block, &BlockHeader::quads_u));
@@ -338,11 +338,39 @@ inline sint hang_at(pointer<BlockHeader> block, int s, sint level) {
     return hang + select(curve < 0, sint(0), more);
 }
 
-/// Block `line` as the field sees it in a leaf of `level`, in the first blend area: vertices and ancestors.
-[[gnu::noinline]] inline pointer<float> blend_block(const Context& c, const Field& f, sint line, sint level) {
+/// Where block `line` as field `number` sees it is kept.
+inline pointer<float> blend_slot(const Context& c, sint number, sint line) {
+    sint mixed = number * 40503;
+    mixed = line * 7919 + mixed;
+    sint slot = (mixed >> 8) & (blend_slots - 1);
+    return c.blends + slot * slot_floats;
+}
+
+/// Whether it is there now, whatever its sides hang from.
+inline sbool holds_block(pointer<float> slot, sint number, sint line) {
+    pointer<std::int32_t> key = as<std::int32_t>(slot);
+    sbool same = load(key + slot_line) == line;
+    return same & (load(key + slot_field) == number);
+}
+
+/// Forgets all.
+inline void clear_blends(const Context& c) {
+    for (int i = 0; i < blend_slots; ++i)
+        store(as<std::int32_t>(c.blends + i * slot_floats) + slot_line, -1);
+}
+
+/// Blends block `line` as the field, of this number, sees it in a leaf of `level`: vertices, boxes of cells,
+/// ancestors.
+[[gnu::noinline]] inline void blend_block(const Context& c, const Field& f, sint number, sint line,
+                                          sint level, pointer<float> slot) {
     phase_scope phase(phase_morph);
     tally(c.counters->blended_blocks, 1);
-    pointer<float> out = c.stack + scratch_blend;
+    pointer<std::int32_t> key = as<std::int32_t>(slot);
+    store(key + slot_line, line);
+    store(key + slot_field, number);
+    store(key + slot_level, level);
+    store(key + slot_normals, 0);
+    pointer<float> out = slot + slot_block;
     blend_vertices(c, f, line, out);
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     for (int s = 0; s < 4; ++s) {
@@ -351,7 +379,17 @@ inline sint hang_at(pointer<BlockHeader> block, int s, sint level) {
         if (branch((sint(1) << hang) > quads))
             blend_ancestor(c, f, line, s, hang, out + (blend_ancestors + 6 * s));
     }
-    return out;
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    sint shift = cells_shift(quads_u);
+    sint cells = ((quads_v + 1) >> 1) << shift;
+    for (sint from = 0; branch(from < cells); from += isa::width) {
+        vmask m = first_lanes(cells - from);
+        vvec lo, hi;
+        bound_cells(out + block_header_words, stride, quads_u, quads_v, shift, from, m, lo, hi);
+        store_cells(out + blend_cells + from, lo, hi, m);
+    }
 }
 
 } // namespace morph_kernel

@@ -32,6 +32,7 @@ struct Context {
     pointer<std::int32_t> cluster_instance;
     pointer<float> stack;   // traversal stack, then builders' scratch (scratch.h)
     pointer<float> packets; // rays in flight (scratch.h)
+    pointer<float> blends;  // blocks lately blended (scratch.h)
     isa::page_service* pages = nullptr;
     Counters* counters = nullptr;
     isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
@@ -56,6 +57,7 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     c.cluster_instance = load(field(frame, &FrameHeader::cluster_instance));
     c.stack = load(field(c.self, &WorkerRecord::stack));
     c.packets = load(field(c.self, &WorkerRecord::packets));
+    c.blends = load(field(c.self, &WorkerRecord::blends));
     return c;
 }
 

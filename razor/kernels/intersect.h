@@ -9,6 +9,7 @@
 #include "razor/kernels/kd_build.h"
 
 #include <cstddef>
+#include <type_traits>
 
 namespace razor::ISA_TARGET {
 inline namespace intersect_kernel {
@@ -25,7 +26,7 @@ struct Rays {
     // What each asks for: see Field.
     vvec field_origin, slope;
     vfloat radius, base, growth;
-    vint leader; // the first lane whose field is the same
+    vint number; // of the field: lanes of the same number have the same
 };
 
 struct Hits {
@@ -398,13 +399,16 @@ struct Slabs {
     vfloat origin[3], inverse[3], error[3];
 };
 
-/// Lanes whose ray meets a box before its present hit; the box is widened by the slack of positions. Its
-/// planes lie at low[k * step] and at low[(k + 3) * step].
+/// Distances between which rays are in a box, one a lane.
+struct Interval {
+    vfloat enter, leave;
+};
+
+/// Those of a box widened by the slack of positions. Its planes lie at low[k * step] and at low[(k + 3) *
+/// step].
 template <bool Mixed>
-inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> low, sint step,
-                       const vfloat& last_t) {
-    vfloat enter = g.t_min;
-    vfloat leave = last_t;
+inline Interval box_interval(const Group& g, const Slabs& rays, pointer<const float> low, sint step) {
+    Interval i;
     for (int k = 0; k < 3; ++k) {
         sint half = step * 3;
         sint near_at = select(g.sign[k] != 0, half, sint(0));
@@ -419,10 +423,21 @@ inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> l
             far = max(near, far);
             near = first;
         }
-        enter = max(near - rays.error[k], enter);
-        leave = min(far + rays.error[k], leave);
+        near = near - rays.error[k];
+        far = far + rays.error[k];
+        i.enter = k == 0 ? near : max(near, i.enter);
+        i.leave = k == 0 ? far : min(far, i.leave);
     }
-    return g.alive & (enter <= leave);
+    return i;
+}
+
+/// Lanes whose ray meets a box before its present hit.
+template <bool Mixed>
+inline vmask rays_meet(const Group& g, const Slabs& rays, pointer<const float> low, sint step,
+                       const vfloat& last_t) {
+    Interval i = box_interval<Mixed>(g, rays, low, step);
+    vfloat enter = max(i.enter, g.t_min);
+    return g.alive & (enter <= min(i.leave, last_t));
 }
 
 /// The block's vertices as the group sees them: blended ones or, at its own place, anchors.
@@ -441,13 +456,15 @@ inline void set_vertices(const Group& g, View& v, sint stride, pointer<float> wo
     v.oz = g.oz - mz;
 }
 
-/// Calls visit(column, row, cell, lanes) for each cell of the block that rays of the group meet, its box
-/// widened.
+/// What a visitor returns that wants no further cell.
+struct stop_visiting {};
+
+/// Calls visit(column, row) for each cell of the block that rays of the group meet, its box widened.
 template <bool Mixed, class Visit>
-inline void visit_cells(const Group& g, const View& v, pointer<float> block, const Slabs& scene, sfloat widen,
+inline void visit_cells(const Group& g, const View& v, const Slabs& scene, sfloat widen,
                         pointer<float> origin_at, const Hits& hits, Visit visit) {
     if (branch(v.cells_at == 0)) {
-        visit(sint(0), sint(0), sint(0), g.alive);
+        visit(sint(0), sint(0));
         return;
     }
     Slabs rays;
@@ -458,9 +475,7 @@ inline void visit_cells(const Group& g, const View& v, pointer<float> block, con
         rays.error[k] = fma(rate, vfloat(widen), scene.error[k]);
     }
     svec origin = load_svec(origin_at);
-    sint cells_u = (v.quads_u + 1) >> 1;
-    sbool wide = cells_u > 2;
-    sint shift = select(wide, sint(2), cells_u - 1);
+    sint shift = cells_shift(v.quads_u);
     sint cells = ((v.quads_v + 1) >> 1) << shift;
     vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
     sfloat last_t = reduce_max(furthest);
@@ -468,14 +483,19 @@ inline void visit_cells(const Group& g, const View& v, pointer<float> block, con
         vmask met = cells_met(g, v, origin, widen, from, cells, last_t);
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
-            pointer<const float> box = block + v.cells_at + cell;
+            pointer<const float> box = v.words + v.cells_at + cell;
             vmask lanes = rays_meet<Mixed>(g, rays, box, cell_boxes, hits.t);
             if (branch(none(lanes)))
                 continue;
             sint row = cell >> shift;
             sint column = cell - (row << shift);
             sint column_begin = column * 2;
-            visit(column_begin, row * 2, cell, lanes);
+            if constexpr (std::is_void_v<decltype(visit(sint(0), sint(0)))>) {
+                visit(column_begin, row * 2);
+            } else {
+                visit(column_begin, row * 2);
+                return;
+            }
         }
     }
 }
@@ -485,7 +505,20 @@ inline void fix_target(sfloat target, Rays& r) {
     r.base = vfloat(target);
     r.growth = vfloat(0.0F);
     r.slope = {r.growth, r.growth, r.growth};
-    r.leader = vint(0);
+    r.number = vint(0);
+}
+
+/// What rays of the camera ask for, all the same.
+inline void ask_for_camera(const Context& c, Rays& r) {
+    r.field_origin = load_broadcast_vec(field(c.frame, &FrameHeader::field_origin));
+    r.radius = vfloat(0.0F);
+    r.base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
+    r.growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
+    r.slope = load_broadcast_vec(field(c.frame, &FrameHeader::camera_slope));
+    r.number = vint(0);
+    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
+    if (branch(fixed > 0.0F))
+        fix_target(fixed, r);
 }
 
 /// The rays' fields, one a lane.
@@ -508,9 +541,9 @@ inline Fields load_fields(const Context& c) {
     return f;
 }
 
-/// The field of lane `leader`, in the coordinates of the mesh whose origin is given.
-inline Field field_of(const Context& c, sint leader, const svec& mesh_origin) {
-    pointer<float> at = c.packets + packet_field + leader;
+/// The field of a lane, in the coordinates of the mesh whose origin is given.
+inline Field field_of(const Context& c, sint lane, const svec& mesh_origin) {
+    pointer<float> at = c.packets + packet_field + lane;
     Field f;
     f.origin.x = load(at);
     f.origin.y = load(at + isa::width);
@@ -723,8 +756,22 @@ inline sint longest_edge(const View& v, int s, pointer<float> weights) {
     }
 }
 
-/// The same for rays that see the block's vertices off their anchors. Which cells they may meet is found once
-/// for all, with room for how far vertices may be; only then is it blended, once a field.
+/// Those of a block just blended, kept with it; where one is longer than the block, its ends as well.
+inline void find_longest_edges(const Context& c, const Field& seen, const View& v,
+                               pointer<BlockHeader> header, pointer<float> slot) {
+    pointer<float> words = slot + slot_block;
+    for (int s = 0; s < 4; ++s) {
+        sint longest = longest_edge(v, s, words + blend_weights);
+        sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
+        if (branch((sint(1) << longest) == quads)) {
+            sbool whole = blend_whole_edge(c, seen, header, s, words);
+            longest = longest + select(whole, sint(1), sint(0));
+        }
+        store(as<std::int32_t>(slot) + (slot_longest + s), longest);
+    }
+}
+
+/// The same for rays that see the block's vertices off their anchors: blended once a field, and kept.
 template <Features F, bool Mixed>
 [[gnu::noinline]] inline void intersect_blended(const Context& c, Group& g, View v, const Listed& listed,
                                                 const Slabs& rays, sint stride, vmask moved, sfloat most,
@@ -733,73 +780,66 @@ template <Features F, bool Mixed>
     sint instance = load(field(header, &BlockHeader::instance));
     pointer<float> origin_at = field(c.instances + instance, &InstanceRecord::origin);
     sfloat sway = sway_of(c, header, most);
-    vint cells_of_lane(0);
-    sint cells = 0;
-    g.alive = moved;
-    auto note = [&](sint, sint, sint cell, const vmask& lanes) {
-        sint bit = sint(1) << cell;
-        cells = cells | bit;
-        vint more = select(lanes, vint(bit), vint(0));
-        cells_of_lane = cells_of_lane | more;
-    };
-    visit_cells<Mixed>(g, v, as<float>(header), rays, sway, origin_at, hits, note);
-    if (branch(cells == 0))
-        return;
-    moved = cells_of_lane != vint(0);
     if constexpr (F.hanging) {
         v.ancestors_at = blend_ancestors;
         for (int s = 0; s < 4; ++s)
             v.hang[s] = hang_at(header, s, listed.level);
     }
-    sint cells_u = (v.quads_u + 1) >> 1;
-    sbool wide = cells_u > 2;
-    sint shift = select(wide, sint(2), cells_u - 1);
-    vint leaders = load_vector(as<std::int32_t>(c.packets + packet_leader));
     svec origin = load_svec(origin_at);
+    sint anchors_cells_at = v.cells_at;
+    vint numbers = load_vector(as<std::int32_t>(c.packets + packet_number));
     while (branch(any(moved))) {
-        sint leader = extract(leaders, first(moved));
-        vmask same = moved & (leaders == vint(leader));
+        sint lane = first(moved);
+        sint number = extract(numbers, lane);
+        vmask same = moved & (numbers == vint(number));
         moved = moved & !same;
+        g.alive = same;
+        pointer<float> slot = blend_slot(c, number, listed.line);
+        sbool there = holds_block(slot, number, listed.line);
+        there = there & (load(as<std::int32_t>(slot) + slot_level) == listed.level);
+        if (branch(!there)) {
+            // It is blended only if they meet a cell where its vertices may be.
+            v.cells_at = anchors_cells_at;
+            v.words = as<float>(header);
+            sbool near = false;
+            auto note = [&](sint, sint) {
+                near = true;
+                return stop_visiting{};
+            };
+            visit_cells<Mixed>(g, v, rays, sway, origin_at, hits, note);
+            if (branch(!near))
+                continue;
+            Field seen = field_of(c, lane, origin);
+            blend_block(c, seen, number, listed.line, listed.level, slot);
+            if constexpr (F.hanging)
+                find_longest_edges(c, seen, v, header, slot);
+        }
         tally(c.counters->blended_tests, 1);
-        v.field = leader;
-        Field seen = field_of(c, leader, origin);
-        pointer<float> words = blend_block(c, seen, listed.line, listed.level);
+        v.field = lane;
+        pointer<float> words = slot + slot_block;
         set_vertices(g, v, stride, words, origin_at);
         if constexpr (F.hanging) {
             v.hangs = 0;
             for (int s = 0; s < 4; ++s) {
-                v.longest[s] = longest_edge(v, s, words + blend_weights);
-                sint quads = s % 2 == 0 ? v.quads_u : v.quads_v;
-                if (branch((sint(1) << v.longest[s]) == quads)) {
-                    sbool whole = blend_whole_edge(c, seen, header, s, words);
-                    v.longest[s] = v.longest[s] + select(whole, sint(1), sint(0));
-                }
+                v.longest[s] = load(as<std::int32_t>(slot) + (slot_longest + s));
                 v.hangs = v.hangs | v.longest[s];
             }
         }
-        sint left = cells;
-        for (sint cell = 0; branch(left != 0); ++cell) {
-            sint here = left & 1;
-            left = left >> 1;
-            if (branch(here == 0))
-                continue;
-            vint bit = cells_of_lane >> vint(cell);
-            g.alive = same & ((bit & vint(1)) != vint(0));
-            if (branch(none(g.alive)))
-                continue;
+        v.cells_at = select(anchors_cells_at != 0, sint(blend_cells), sint(0));
+        auto visit = [&](sint column, sint row) {
             tally(c.counters->cell_tests, 1);
-            sint row = cell >> shift;
-            sint column = cell - (row << shift);
-            sint column_begin = column * 2;
-            intersect_cell<F>(c, g, v, column_begin, row * 2, hits);
-        }
+            intersect_cell<F>(c, g, v, column, row, hits);
+        };
+        visit_cells<Mixed>(g, v, rays, 0.0F, origin_at, hits, visit);
     }
 }
 
-/// Rays of the group against a block listed by a leaf that is fine enough for all of them. Those to which all
+/// Rays of the group against a block listed by a leaf that is fine enough for all of them, if any meets its
+/// box while it is in the leaf's cell; returns whether. Those to which all
 /// its vertices are at their anchors take it as it lies; for the others it is blended, once a field.
 template <Features F, bool Mixed>
-[[gnu::noinline]] inline void intersect_block(const Context& c, Group& g, const Listed& listed, Hits& hits) {
+[[gnu::noinline]] inline sbool intersect_block(const Context& c, Group& g, const Listed& listed,
+                                               const Interval& cell, Hits& hits) {
     phase_scope phase(phase_intersect);
     Slabs rays;
     for (int k = 0; k < 3; ++k) {
@@ -808,9 +848,13 @@ template <Features F, bool Mixed>
         rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
     }
     tally(c.counters->box_tests, 1);
-    vmask met = rays_meet<Mixed>(g, rays, listed.box, listed.box_step, hits.t);
-    if (branch(none(met)))
-        return;
+    Interval inside = box_interval<Mixed>(g, rays, listed.box, listed.box_step);
+    vfloat enter = max(inside.enter, cell.enter);
+    vmask in_cell = g.alive & (enter <= min(inside.leave, cell.leave));
+    if (branch(none(in_cell)))
+        return false;
+    enter = max(inside.enter, g.t_min);
+    vmask met = g.alive & (enter <= min(inside.leave, hits.t));
     tally(c.counters->block_tests, 1);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
     sint instance = load(field(header, &BlockHeader::instance));
@@ -859,17 +903,18 @@ template <Features F, bool Mixed>
     if (branch(any(plain))) {
         tally(c.counters->plain_tests, 1);
         g.alive = plain;
-        auto visit = [&](sint column, sint row, sint, const vmask&) {
+        auto visit = [&](sint column, sint row) {
             tally(c.counters->cell_tests, 1);
             intersect_cell<F>(c, g, v, column, row, hits);
         };
-        visit_cells<Mixed>(g, v, block, rays, 0.0F, origin_at, hits, visit);
+        visit_cells<Mixed>(g, v, rays, 0.0F, origin_at, hits, visit);
     }
     if constexpr (F.hanging) {
         if (branch(any(moved)))
             intersect_blended<F, Mixed>(c, g, v, listed, rays, stride, moved, most, hits);
     }
     g.alive = all;
+    return true;
 }
 
 } // namespace intersect_kernel

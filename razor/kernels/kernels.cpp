@@ -21,6 +21,7 @@ template <Features F> void render(const WorkerArguments& a) {
 template <Features F> void trace_all(const WorkerArguments& w, const TraceArguments& a) {
     Context c = begin(w);
     refit(c);
+    clear_blends(c);
     using in = pointer<const float>;
     for (sint i = 0; branch(i < a.count); i += isa::width) {
         Rays r;
@@ -35,7 +36,9 @@ template <Features F> void trace_all(const WorkerArguments& w, const TraceArgume
         r.t_max = load_vector(in(a.t_max) + i, r.active);
         r.field_origin = r.origin;
         r.radius = vfloat(0.0F);
-        r.leader = lane_index();
+        sint number = load(field(c.self, &WorkerRecord::next_field));
+        r.number = lane_index() + vint(number);
+        store(field(c.self, &WorkerRecord::next_field), number + isa::width);
         if (a.base == nullptr) {
             fix_target(least_target, r);
         } else {
@@ -80,7 +83,7 @@ void dice_all(const WorkerArguments& w) {
     Context c = begin(w);
     refit(c);
     Rays r;
-    ask_for_camera(load_camera(c), r);
+    ask_for_camera(c, r);
     FieldBounds asked = bound_fields(r, vmask(true));
     sfloat slack = position_slack(c);
     sint patches = load(field(c.frame, &FrameHeader::patch_count));

@@ -28,7 +28,7 @@ inline sfloat moving_from(sint birth) {
 
 /// What a ray, or several, ask for: edges of length |base + slope . (place - origin)| + growth x distance
 /// from a ball about `origin`. The first term is what a lens blurs, nothing on the plane in focus; without a
-/// lens the slope is 0. |slope| + |growth| is at most gradation_cap.
+/// lens the slope is 0. |slope| + |growth| is at most gradation_cap. All are held times level_rounding.
 struct Field {
     svec origin;
     svec slope;
@@ -119,7 +119,7 @@ inline sint birth_of_middle(pointer<BlockHeader> root, int k) {
 /// in it.
 inline sfloat coarsest_target(sfloat some, const svec& extent) {
     sfloat square = fma(extent.x, extent.x, fma(extent.y, extent.y, extent.z * extent.z));
-    sfloat grown = sqrt(square) * (gradation_cap * 1.001F);
+    sfloat grown = sqrt(square) * (gradation_cap * level_rounding * 1.001F);
     return fma(some, 1.001F, grown);
 }
 

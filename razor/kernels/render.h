@@ -14,12 +14,9 @@ inline constexpr int packet_height = isa::width / packet_width;
 
 struct Camera {
     vvec position, corner, x, y;
-    vvec field_origin, slope; // of the field of all its rays
-    vfloat base, growth;
     vvec lens_x, lens_y; // radii of the lens
     vfloat focus;        // the depth in focus
     sbool lens;
-    sfloat fixed; // target edge length of all rays; 0: none
 };
 
 inline Camera load_camera(const Context& c) {
@@ -28,11 +25,6 @@ inline Camera load_camera(const Context& c) {
     k.corner = load_broadcast_vec(field(c.frame, &FrameHeader::film_corner));
     k.x = load_broadcast_vec(field(c.frame, &FrameHeader::film_x));
     k.y = load_broadcast_vec(field(c.frame, &FrameHeader::film_y));
-    k.growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
-    k.field_origin = load_broadcast_vec(field(c.frame, &FrameHeader::field_origin));
-    k.base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
-    k.slope = load_broadcast_vec(field(c.frame, &FrameHeader::camera_slope));
-    k.fixed = load(field(c.frame, &FrameHeader::fixed_target));
     k.lens_x = load_broadcast_vec(field(c.frame, &FrameHeader::lens_x));
     k.lens_y = load_broadcast_vec(field(c.frame, &FrameHeader::lens_y));
     sfloat focus = load(field(c.frame, &FrameHeader::focus));
@@ -41,21 +33,9 @@ inline Camera load_camera(const Context& c) {
     return k;
 }
 
-/// What rays of the camera ask for, all the same.
-inline void ask_for_camera(const Camera& k, Rays& r) {
-    r.field_origin = k.field_origin;
-    r.radius = vfloat(0.0F);
-    r.base = k.base;
-    r.growth = k.growth;
-    r.slope = k.slope;
-    r.leader = vint(0);
-    if (branch(k.fixed > 0.0F))
-        fix_target(k.fixed, r);
-}
-
 /// Rays through the pixels (column, row), one lane each, at this sample's place in the pixel.
-inline Rays camera_rays(const Camera& k, const vint& column, const vint& row, const vint& pixel, sint sample,
-                        const vmask& active) {
+inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, const vint& row,
+                        const vint& pixel, sint sample, const vmask& active) {
     vpoint at = sample_square(pixel, vint(sample), dimension_film);
     vfloat x = to_float(column) + at.u;
     vfloat y = to_float(row) + at.v;
@@ -72,7 +52,7 @@ inline Rays camera_rays(const Camera& k, const vint& column, const vint& row, co
     r.t_min = vfloat(0.0F);
     r.t_max = vfloat(infinite);
     r.active = active;
-    ask_for_camera(k, r);
+    ask_for_camera(c, r);
     return r;
 }
 
@@ -89,6 +69,7 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint 
     Hits h = trace<F, false>(c, r);
     vfloat zero(0.0F);
     vmask hit = h.patch >= vint(0);
+    tally(c.counters->camera_hits, count(hit));
     vvec sky = load_broadcast_vec(field(c.frame, &FrameHeader::background));
     vmask open = r.active & !hit;
     sums.beauty = sums.beauty + select(open, sky, {zero, zero, zero});
@@ -157,6 +138,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     sint samples = load(field(c.frame, &FrameHeader::samples));
     sint tiles_x = load(field(c.frame, &FrameHeader::tiles_x));
     Camera camera = load_camera(c);
+    forget_fields(c); // so that it does not matter which tiles a worker had before
     vfloat exact = to_float(vint(tile)) + 0.5F;
     exact = exact / to_float(vint(tiles_x));
     sint tile_row = extract(to_int(exact), 0);
@@ -178,7 +160,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
             vfloat zero(0.0F);
             PixelSums sums{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero};
             for (sint s = 0; branch(s < samples); ++s) {
-                Rays r = camera_rays(camera, column, row, pixel, s, inside);
+                Rays r = camera_rays(c, camera, column, row, pixel, s, inside);
                 add_sample<F>(c, r, pixel, s, sums);
                 note_time(*c.watch, moment_first_packet);
             }
@@ -189,6 +171,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
 
 template <Features F> inline void render_worker(const Context& c) {
     refit(c);
+    clear_blends(c);
     pointer<QueueRecord> queues = load(field(c.frame, &FrameHeader::queues));
     sint tiles = load(field(c.frame, &FrameHeader::tiles));
     sint tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);

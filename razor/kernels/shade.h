@@ -78,9 +78,14 @@ inline vfloat position_error(const vvec& p, const vvec& origin) {
     return max(size, shift) * (16.0F / 16777216.0F);
 }
 
-/// Normals of a block whose vertices lie blended in `area`, with the same weights, beside them.
-inline pointer<float> blend_normals(const Context& c, sint line, pointer<float> normals,
-                                    pointer<float> area) {
+/// Normals of the block whose vertices lie blended in a slot, with the same weights, beside them.
+inline pointer<float> blended_normals(const Context& c, sint line, pointer<float> normals,
+                                      pointer<float> slot) {
+    pointer<float> area = slot + slot_block;
+    sint made = load(as<std::int32_t>(slot) + slot_normals);
+    if (branch(made != 0))
+        return area + blend_normals_at;
+    store(as<std::int32_t>(slot) + slot_normals, 1);
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     sint quads_u = load(field(block, &BlockHeader::quads_u));
     sint quads_v = load(field(block, &BlockHeader::quads_v));
@@ -112,17 +117,32 @@ inline pointer<float> blend_normals(const Context& c, sint line, pointer<float> 
     return x;
 }
 
+/// The slot that holds the block as the field of that lane sees it.
+inline pointer<float> blended_slot(const Context& c, sint lane, sint line) {
+    sint number = load(as<std::int32_t>(c.packets + packet_number) + lane);
+    pointer<float> slot = blend_slot(c, number, line);
+    sbool there = holds_block(slot, number, line);
+    if (branch(!there)) {
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        sint instance = load(field(block, &BlockHeader::instance));
+        svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
+        blend_block(c, field_of(c, lane, origin), number, line, least_level - 1, slot); // for no leaf
+    }
+    return slot;
+}
+
 /// The corners of the triangles hit, and their vertices' normals interpolated (zero where they have none).
 struct Corners {
-    vvec a, b, c, normal;
-    vfloat sway; // of the block's finest vertices
+    vvec a, b, c;
+    vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
+    vfloat sway;                   // of the block's finest vertices
 };
-/// Block after block; one that was blended for the rays is blended once more.
+/// Block after block.
 inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit) {
     TriangleWords t = locate(c, h, hit);
     vfloat zero(0.0F);
     vvec none_yet{zero, zero, zero};
-    Corners k{none_yet, none_yet, none_yet, none_yet, zero};
+    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero};
     vint first_word = h.block << 4;
     vint at_a = t.a - first_word;
     vint at_b = t.b - first_word;
@@ -130,9 +150,9 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
     for (vmask left = hit; branch(any(left));) {
         sint one = first(left);
         sint block = extract(h.block, one);
-        sint leader = extract(h.field, one);
+        sint lane = extract(h.field, one);
         vmask here = left & (h.block == vint(block));
-        here = here & (h.field == vint(leader));
+        here = here & (h.field == vint(lane));
         left = left & !here;
         pointer<float> words = as<float>(c.grids + block);
         sint movable = load(field(as<BlockHeader>(words), &BlockHeader::movable));
@@ -143,15 +163,11 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
         sint normals_at = ensure_normals(c, block);
         pointer<float> vertices = words + block_header_words;
         pointer<float> normals = words + normals_at;
-        if (branch(leader >= 0)) {
-            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
-            svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
-            pointer<float> area = c.stack + scratch_blend;
-            tally(c.counters->blended_blocks, 1);
-            blend_vertices(c, field_of(c, leader, origin), block, area);
-            vertices = area + block_header_words;
+        if (branch(lane >= 0)) {
+            pointer<float> slot = blended_slot(c, lane, block);
+            vertices = slot + (slot_block + block_header_words);
             if (branch(normals_at != 0))
-                normals = blend_normals(c, block, normals, area);
+                normals = blended_normals(c, block, normals, slot);
         }
         vvec a = gather_vec(vertices, at_a, t.stride, here);
         vvec b = gather_vec(vertices, at_b, t.stride, here);
@@ -163,6 +179,9 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
             vvec na = gather_vec(normals, at_a, t.stride, here);
             vvec nb = gather_vec(normals, at_b, t.stride, here);
             vvec nc = gather_vec(normals, at_c, t.stride, here);
+            k.at_a = select(here, na, k.at_a);
+            k.at_b = select(here, nb, k.at_b);
+            k.at_c = select(here, nc, k.at_c);
             k.normal = select(here, blend(na, nb, nc, h), k.normal);
         }
     }
@@ -171,7 +190,7 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
 
 /// Rays that leave a hit begin this far off the surface, in units of how far the finest vertices of its block
 /// can move: what they see there is no further from what was hit.
-inline constexpr float leaving_share = 0.5F;
+inline constexpr float leaving_share = 1.0F;
 
 /// The target edge length that each ray asks for `way` from its field's origin (see target_at()).
 inline vfloat asked_at(const Rays& r, const vvec& way) {
@@ -180,6 +199,29 @@ inline vfloat asked_at(const Rays& r, const vvec& way) {
     vfloat along = dot(r.slope, way) + r.base;
     vfloat target = fma(r.growth, distance, abs(along));
     return max(target, vfloat(least_target));
+}
+
+/// Adds how far a point lies behind the plane through a corner of its triangle, times the corner's weight.
+/// `side`: 1, or -1 where the normals point away from the viewer.
+inline void lift_to_plane(const vvec& p, const vvec& corner, const vvec& normal, const vfloat& side,
+                          const vfloat& weight, vvec& lift) {
+    vfloat behind = -(dot(p - corner, normal) * side);
+    behind = max(behind, 0.0F) * weight;
+    lift = madd(behind * side, normal, lift);
+}
+
+/// From a point of a facet to the curved surface that its corners' normals suggest, where that bulges towards
+/// the viewer: rays that leave from there are not stopped by the facets beside it while the shading normal
+/// still faces the light (Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021).
+inline vvec lift_of(const Corners& k, const Hits& h, const vvec& p, const vfloat& side) {
+    vfloat zero(0.0F);
+    vvec lift{zero, zero, zero};
+    vfloat w = vfloat(1.0F) - h.u;
+    w = w - h.v;
+    lift_to_plane(p, k.a, k.at_a, side, w, lift);
+    lift_to_plane(p, k.b, k.at_b, side, h.u, lift);
+    lift_to_plane(p, k.c, k.at_c, side, h.v, lift);
+    return lift;
 }
 
 [[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
@@ -217,6 +259,8 @@ inline vfloat asked_at(const Rays& r, const vvec& way) {
     vmask morphs = vmask(load(field(c.frame, &FrameHeader::morphs)) != 0);
     vfloat apart = fma(k.sway, vfloat(leaving_share), error);
     error = select(morphs, apart, error);
+    vfloat side = select(opposed, vfloat(-1.0F), vfloat(1.0F));
+    p = p + lift_of(k, h, p, side);
     p = p + origin;
     s.position = madd(error, s.geometric, p);
     return s;
@@ -252,58 +296,119 @@ struct LightRays {
     vfloat weight; // of the light's radiance (or the sky's), before albedo
 };
 
-/// Hits that lie together share a field, so that blocks need not be blended for each of them: those no
-/// further from the first one, in target edge lengths, and whose target edge lengths differ by no more than
-/// this factor.
+/// Rays that leave hits near each other share a field, whatever packet they are in, so that blocks need not
+/// be blended for each of them: hits no further from the first one, in target edge lengths, and whose target
+/// edge lengths differ by no more than this factor.
 inline constexpr float shared_reach = 16.0F;
-inline constexpr float shared_ratio = 1.05F;
+inline constexpr float shared_ratio = 1.02F;
+inline constexpr float growth_steps = 8.0F; // from 0 to the cap
 /// So far around its hits, in target edge lengths, a field is that of the rays that found them.
 inline constexpr float leaving_reach = 8.0F;
+
+inline void forget_fields(const Context& c) {
+    for (int i = 0; i < left_fields; ++i)
+        store(as<std::int32_t>(c.packets + (packet_left + i * left_floats)) + left_number, -1);
+    store(as<std::int32_t>(c.packets + packet_left_next), 0);
+}
+
+/// Puts a field around lane `lane`'s hit where it is found again. Within the ball that holds its hits the
+/// field is constant, and no finer than any ray that found them asked for at its hit.
+inline pointer<float> make_field(const Context& c, const Surface& s, sfloat growth, sint lane) {
+    pointer<std::int32_t> next = as<std::int32_t>(c.packets + packet_left_next);
+    sint slot = load(next);
+    store(next, (slot + 1) & (left_fields - 1));
+    pointer<float> f = c.packets + (packet_left + slot * left_floats);
+    sfloat target = extract(s.target, lane);
+    sfloat reach = target * shared_reach;
+    sfloat base = target * shared_ratio; // that of no hit is larger
+    store(f + left_origin, extract(s.position.x, lane));
+    store(f + left_origin + 1, extract(s.position.y, lane));
+    store(f + left_origin + 2, extract(s.position.z, lane));
+    store(f + left_reach, reach);
+    store(f + left_radius, fma(base, leaving_reach, reach));
+    store(f + left_base, base);
+    store(f + left_growth, growth);
+    store(f + left_least, target * (1.0F / shared_ratio));
+    store(f + left_most, base);
+    sint number = load(field(c.self, &WorkerRecord::next_field));
+    store(as<std::int32_t>(f) + left_number, number);
+    store(field(c.self, &WorkerRecord::next_field), number + 1);
+    return f;
+}
+
+/// Gives a kept field to those of the lanes `left` that may share it, and takes them from there.
+inline void share_field(pointer<float> f, const Surface& s, vmask& left, Rays& r) {
+    vvec origin = load_broadcast_vec(f + left_origin);
+    vfloat reach = load_broadcast(f + left_reach);
+    vvec d = s.position - origin;
+    vfloat square = dot(d, d);
+    vfloat most_square = reach * reach;
+    vmask same = left & (square <= most_square);
+    vfloat least = load_broadcast(f + left_least);
+    same = same & (s.target >= least);
+    vfloat most = load_broadcast(f + left_most);
+    same = same & (s.target <= most);
+    if (branch(none(same)))
+        return;
+    left = left & !same;
+    r.field_origin = select(same, origin, r.field_origin);
+    r.radius = select(same, load_broadcast(f + left_radius), r.radius);
+    r.base = select(same, load_broadcast(f + left_base), r.base);
+    r.number = select(same, load_broadcast(as<std::int32_t>(f) + left_number), r.number);
+}
+
+/// The growth that all rays of a packet go on with: the slowest that one of them asks for, rounded down to
+/// one of a few, so that packets agree.
+inline vfloat common_growth(const vmask& active, const vfloat& growth) {
+    constexpr float steps = growth_steps / gradation_cap;
+    vfloat cap(gradation_cap);
+    vfloat slowest = vfloat(reduce_min(select(active, growth, cap)));
+    slowest = max(slowest, -cap);
+    vfloat shifted = fma(slowest, vfloat(steps), vfloat(growth_steps));
+    vint step = to_int(shifted);
+    vfloat whole = to_float(step) * vfloat(1.0F / steps);
+    return whole - cap;
+}
 
 /// Rays that leave surfaces go on with the target edge lengths that they begin with. Within the ball that
 /// holds its hits a field is constant, and no finer than any ray that found them asked for at its hit: there
 /// a convex shape stays behind what was hit of it. Further away it falls back from any ray's plane by more
 /// than finer levels can bring it forward (its fall grows with the square of the distance, 32 times what an
-/// edge's chord cuts off at leaving_reach), so that from there on targets may shrink as well as grow: as
-/// slowly as those of the slowest active ray.
-inline void leave_surface(const Context& c, const Surface& s, const vfloat& growth, Rays& r) {
+/// edge's chord cuts off at leaving_reach), so that from there on targets may shrink as well as grow.
+inline void leave_surface(const Context& c, const Surface& s, const vfloat& wanted, Rays& r) {
     r.field_origin = s.position;
     r.radius = vfloat(0.0F);
     r.base = s.target;
-    r.growth = growth;
-    r.leader = lane_index();
+    r.growth = common_growth(r.active, wanted);
     vfloat zero(0.0F);
     r.slope = {zero, zero, zero};
-    for (vmask left = s.hit; branch(any(left));) {
-        sint leader = first(left);
-        vint from = vint(leader);
-        vvec centre = permute(s.position, from);
-        vfloat target = permute(s.target, from);
-        vvec d = s.position - centre;
-        vfloat square = dot(d, d);
-        vfloat reach = target * shared_reach;
-        vmask same = left & (square <= reach * reach);
-        same = same & (s.target <= target * shared_ratio);
-        same = same & (target <= s.target * shared_ratio);
-        same = same | (lane_index() == from);
-        left = left & !same;
-        vfloat radius = vfloat(reduce_max(select(same, sqrt(square), zero)));
-        vfloat steepest = vfloat(reduce_max(select(same, s.growth, zero)));
-        vmask rays = same & r.active;
-        vfloat slowest = vfloat(reduce_min(select(rays, growth, vfloat(gradation_cap))));
-        vfloat base = vfloat(reduce_max(select(same, s.target, zero)));
-        base = fma(steepest, radius, base);
-        radius = fma(base, vfloat(leaving_reach), radius);
-        slowest = max(slowest, vfloat(-gradation_cap));
-        r.field_origin = select(same, centre, r.field_origin);
-        r.radius = select(same, radius, r.radius);
-        r.base = select(same, base, r.base);
-        r.growth = select(same, slowest, r.growth);
-        r.leader = select(same, from, r.leader);
-    }
+    r.number = vint(-1);
     sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
-    if (branch(fixed > 0.0F))
+    if (branch(fixed > 0.0F)) {
         fix_target(fixed, r);
+        return;
+    }
+    sint one_field = load(field(c.frame, &FrameHeader::one_field));
+    if (branch(one_field != 0)) {
+        ask_for_camera(c, r);
+        return;
+    }
+    sfloat growth = extract(r.growth, 0);
+    vmask left = s.hit;
+    for (int i = 0; i < left_fields; ++i) {
+        pointer<float> f = c.packets + (packet_left + i * left_floats);
+        sbool fits = load(as<std::int32_t>(f) + left_number) >= 0;
+        fits = fits & (load(f + left_growth) == growth);
+        fits = fits & any(left);
+        if (branch(fits))
+            share_field(f, s, left, r);
+    }
+    while (branch(any(left))) {
+        sint lane = first(left);
+        pointer<float> f = make_field(c, s, growth, lane);
+        share_field(f, s, left, r);
+        left = left & (lane_index() != vint(lane)); // one at no place at all does not find even itself
+    }
 }
 
 /// A point on the rectangle light for each lane. header.light_radiance holds radiance x area / (pi x
@@ -326,10 +431,8 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
     l.rays.t_min = zero;
     l.rays.t_max = (square * inverse) * (1.0F - 1.0e-5F);
     vfloat cos_surface = dot(s.shading, l.rays.direction);
-    vfloat above = dot(s.geometric, l.rays.direction);
     vfloat cos_light = -dot(normal, l.rays.direction);
     vmask faces = apart & (cos_surface > zero);
-    faces = faces & (above > zero);
     faces = faces & (cos_light > zero);
     l.rays.active = s.hit & faces;
     vfloat spacing = load_broadcast(field(c.frame, &FrameHeader::light_spacing));

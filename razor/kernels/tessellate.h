@@ -460,48 +460,63 @@ inline sfloat measure_corners(const Context& c, const Dicing& d, const Block& b,
     return lie + off;
 }
 
+/// The box of each of some vertices' cells, one lane a cell from number `from` on; shift: log2 of the cells a
+/// row.
+inline void bound_cells(pointer<float> x, sint stride, sint quads_u, sint quads_v, sint shift, sint from,
+                        const vmask& m, vvec& lo, vvec& hi) {
+    vint cell = lane_index() + vint(from);
+    vint row = cell >> vint(shift);
+    vint column = cell - (row << vint(shift));
+    sint width = quads_u + 1;
+    lo = {vfloat(3.0e38F), vfloat(3.0e38F), vfloat(3.0e38F)};
+    hi = {vfloat(-3.0e38F), vfloat(-3.0e38F), vfloat(-3.0e38F)};
+    for (int j = 0; j < 3; ++j) {
+        vint vertex_row = (row << 1) + vint(j);
+        vertex_row = min(vertex_row, vint(quads_v));
+        vint row_begin = vertex_row * vint(width);
+        for (int i = 0; i < 3; ++i) {
+            vint vertex_column = (column << 1) + vint(i);
+            vertex_column = min(vertex_column, vint(quads_u));
+            vint at = row_begin + vertex_column;
+            vfloat px = gather(x, at, m);
+            vfloat py = gather(x + stride, at, m);
+            vfloat pz = gather(x + stride * 2, at, m);
+            lo = {min(px, lo.x), min(py, lo.y), min(pz, lo.z)};
+            hi = {max(px, hi.x), max(py, hi.y), max(pz, hi.z)};
+        }
+    }
+}
+
+/// As they lie in a block.
+inline void store_cells(pointer<float> out, const vvec& lo, const vvec& hi, const vmask& m) {
+    store_vector(out, lo.x, m);
+    store_vector(out + cell_boxes, lo.y, m);
+    store_vector(out + 2 * cell_boxes, lo.z, m);
+    store_vector(out + 3 * cell_boxes, hi.x, m);
+    store_vector(out + 4 * cell_boxes, hi.y, m);
+    store_vector(out + 5 * cell_boxes, hi.z, m);
+}
+
+/// log2 of the cells along u: of 1, 2 or 4.
+inline sint cells_shift(sint quads_u) {
+    sint cells_u = (quads_u + 1) >> 1;
+    sbool wide = cells_u > 2;
+    return select(wide, sint(2), cells_u - 1);
+}
+
 /// Boxes of the block's cells (stored if there are several); the block's own is made to hold them. One lane a
 /// cell.
 inline void bound_block(const Block& b, sint cells_at) {
-    sint cells_u = (b.quads_u + 1) >> 1;
-    sint cells_v = (b.quads_v + 1) >> 1;
-    sint cells = cells_u * cells_v;
-    sbool wide = cells_u > 2;
-    sint shift = select(wide, sint(2), cells_u - 1); // log2(cells_u) of 1, 2, 4
+    sint shift = cells_shift(b.quads_u);
+    sint cells = ((b.quads_v + 1) >> 1) << shift;
     svec low{sfloat(3.0e38F), sfloat(3.0e38F), sfloat(3.0e38F)};
     svec high{sfloat(-3.0e38F), sfloat(-3.0e38F), sfloat(-3.0e38F)};
-    sint width = b.quads_u + 1;
     for (sint from = 0; branch(from < cells); from += isa::width) {
         vmask m = first_lanes(cells - from);
-        vint cell = lane_index() + vint(from);
-        vint row = cell >> vint(shift);
-        vint column = cell - (row << vint(shift));
-        vvec lo{vfloat(3.0e38F), vfloat(3.0e38F), vfloat(3.0e38F)};
-        vvec hi{vfloat(-3.0e38F), vfloat(-3.0e38F), vfloat(-3.0e38F)};
-        for (int j = 0; j < 3; ++j) {
-            vint vertex_row = (row << 1) + vint(j);
-            vertex_row = min(vertex_row, vint(b.quads_v));
-            vint row_begin = vertex_row * vint(width);
-            for (int i = 0; i < 3; ++i) {
-                vint vertex_column = (column << 1) + vint(i);
-                vertex_column = min(vertex_column, vint(b.quads_u));
-                vint at = row_begin + vertex_column;
-                vfloat x = gather(b.x, at, m);
-                vfloat y = gather(b.x + b.stride, at, m);
-                vfloat z = gather(b.x + b.stride * 2, at, m);
-                lo = {min(x, lo.x), min(y, lo.y), min(z, lo.z)};
-                hi = {max(x, hi.x), max(y, hi.y), max(z, hi.z)};
-            }
-        }
-        if (branch(cells_at != 0)) {
-            pointer<float> out = b.words + cells_at + from;
-            store_vector(out, lo.x, m);
-            store_vector(out + cell_boxes, lo.y, m);
-            store_vector(out + 2 * cell_boxes, lo.z, m);
-            store_vector(out + 3 * cell_boxes, hi.x, m);
-            store_vector(out + 4 * cell_boxes, hi.y, m);
-            store_vector(out + 5 * cell_boxes, hi.z, m);
-        }
+        vvec lo, hi;
+        bound_cells(b.x, b.stride, b.quads_u, b.quads_v, shift, from, m, lo, hi);
+        if (branch(cells_at != 0))
+            store_cells(b.words + cells_at + from, lo, hi, m);
         vfloat far(3.0e38F);
         lo = select(m, lo, vvec{far, far, far});
         vfloat near(-3.0e38F);

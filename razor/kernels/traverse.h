@@ -133,7 +133,8 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
 /// The blocks of a leaf that is fine enough for the rays `here`, wherever these are. AnyHit: a hit retires
 /// its lane from the group.
 template <Features F, bool AnyHit, bool Mixed>
-inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, vmask here, Hits& hits) {
+inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, vmask here,
+                           const Interval& cell, Hits& hits) {
     pointer<std::int32_t> mailbox = as<std::int32_t>(c.stack + scratch_mailbox);
     vmask others = g.alive & !here;
     sbool everyone = none(others);
@@ -152,11 +153,11 @@ inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, v
         sint seen = load(mailbox + slot);
         if (branch(seen == listed.line))
             continue;
-        if (branch(everyone))
-            store(mailbox + slot, listed.line);
         listed.box = words + stride + i;
         g.alive = here;
-        intersect_block<F, Mixed>(c, g, listed, hits);
+        sbool tested = intersect_block<F, Mixed>(c, g, listed, cell, hits);
+        if (branch(everyone & tested))
+            store(mailbox + slot, listed.line);
         if constexpr (AnyHit) {
             vmask hit = hits.patch >= vint(0);
             here = here & !hit;
@@ -263,7 +264,7 @@ template <Features F, bool AnyHit, bool Mixed>
         }
         vmask here = g.alive & !deeper;
         if (branch(any(here))) {
-            intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, hits);
+            intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, {enter, leave}, hits);
             deeper = deeper & g.alive;
             if constexpr (AnyHit) {
                 if (branch(none(g.alive)))
@@ -330,16 +331,16 @@ inline FieldBounds bound_fields(const Rays& r, const vmask& m) {
     bound_component(r.field_origin.x, m, f.low.x, f.high.x);
     bound_component(r.field_origin.y, m, f.low.y, f.high.y);
     bound_component(r.field_origin.z, m, f.low.z, f.high.z);
-    bound_component(r.slope.x, m, f.least_slope.x, f.most_slope.x);
-    bound_component(r.slope.y, m, f.least_slope.y, f.most_slope.y);
-    bound_component(r.slope.z, m, f.least_slope.z, f.most_slope.z);
+    bound_component(r.slope.x * level_rounding, m, f.least_slope.x, f.most_slope.x);
+    bound_component(r.slope.y * level_rounding, m, f.least_slope.y, f.most_slope.y);
+    bound_component(r.slope.z * level_rounding, m, f.least_slope.z, f.most_slope.z);
     vmask flat = r.slope.x == vfloat(0.0F);
     flat = flat & (r.slope.y == vfloat(0.0F));
     flat = flat & (r.slope.z == vfloat(0.0F));
     f.sloped = any(m & !flat);
     bound_component(r.radius, m, f.least_radius, f.most_radius);
-    bound_component(r.base, m, f.least_base, f.most_base);
-    bound_component(r.growth, m, f.least_growth, f.most_growth);
+    bound_component(r.base * level_rounding, m, f.least_base, f.most_base);
+    bound_component(r.growth * level_rounding, m, f.least_growth, f.most_growth);
     return f;
 }
 
@@ -349,12 +350,12 @@ inline void store_fields(const Context& c, const Rays& r) {
     store_vector(at + isa::width, r.field_origin.y);
     store_vector(at + 2 * isa::width, r.field_origin.z);
     store_vector(at + 3 * isa::width, r.radius);
-    store_vector(at + 4 * isa::width, r.base);
-    store_vector(at + 5 * isa::width, r.growth);
-    store_vector(at + 6 * isa::width, r.slope.x);
-    store_vector(at + 7 * isa::width, r.slope.y);
-    store_vector(at + 8 * isa::width, r.slope.z);
-    store_vector(as<std::int32_t>(c.packets + packet_leader), r.leader);
+    store_vector(at + 4 * isa::width, r.base * level_rounding);
+    store_vector(at + 5 * isa::width, r.growth * level_rounding);
+    store_vector(at + 6 * isa::width, r.slope.x * level_rounding);
+    store_vector(at + 7 * isa::width, r.slope.y * level_rounding);
+    store_vector(at + 8 * isa::width, r.slope.z * level_rounding);
+    store_vector(as<std::int32_t>(c.packets + packet_number), r.number);
 }
 
 /// Traces a packet; the hits of lanes that hit something name a patch.

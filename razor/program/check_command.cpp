@@ -102,7 +102,7 @@ int CheckCommand::run() const {
         Progress progress(!quiet_, "checking");
         options.progress = [&](double fraction) { progress.show(fraction); };
         Frame frame(closed, {});
-        escapes = check::shoot_from_inside(frame, kernels, closed.settings.lod, options);
+        escapes = check::shoot_from_inside(frame, kernels, closed.settings.lod.lod, options);
         if (escapes->cancelled) {
             fmt::print(stderr, "{}razor: interrupted; nothing written\n", progress.shown() ? "\r\x1b[K" : "");
             return interrupted_exit;

@@ -23,7 +23,7 @@ Value parse_word(const char* option, std::string_view word,
 Scheme parse_scheme(std::string_view word) {
     return parse_word("--scheme", word, scheme_words);
 }
-Lod parse_lod(std::string_view word) {
+LevelOfDetail parse_lod(std::string_view word) {
     return parse_word("--lod", word, lod_words);
 }
 
@@ -42,9 +42,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
         ->type_name("X");
     app.add_option("--lod", lod_,
-                   "levels of detail: recursive (every ray its own), discrete (the same without blending) or "
-                   "fixed (the "
-                   "finest)")
+                   "levels of detail: recursive (every ray its own), discrete (the same without blending), "
+                   "camera (all rays the camera's), fixed (the finest) or fixed:K (K levels coarser)")
         ->type_name("NAME");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");

@@ -97,15 +97,26 @@ struct RectangleLight {
 enum class Lod : std::uint8_t {
     recursive, // every ray its own, continuously (razor/kernels/morph.h)
     discrete,  // the same levels, from one to the next at once: with holes and pops, to compare with
-    fixed,     // all rays each mesh's finest
+    camera,    // all rays what the camera's rays see
+    fixed,     // all rays the same level of each mesh
+};
+
+struct LevelOfDetail {
+    Lod lod = Lod::recursive;
+    int coarser = 0; // fixed: levels above each mesh's finest, each doubling the target edge
+
+    bool operator==(const LevelOfDetail&) const = default;
+    bool operator==(Lod other) const { return lod == other; }
+    LevelOfDetail() = default;
+    constexpr LevelOfDetail(Lod l, int c = 0) : lod(l), coarser(c) {}
 };
 
 struct Settings {
-    Lod lod = Lod::fixed;
+    LevelOfDetail lod{};
     int width = 512, height = 512; // pixels
     int samples = 4;               // camera samples a pixel
-    int light_samples = 4;         // shadow rays a hit to the rectangle light
-    int sky_samples = 4;           // shadow rays a hit to the sky
+    int light_samples = 4;         // shadow rays a hit to the rectangle light; 0: it is left out
+    int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
     double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
 };
 

@@ -17,10 +17,19 @@ inline constexpr std::array<Word<Scheme>, 2> scheme_words{{
     {"bilinear", Scheme::bilinear},
 }};
 
-inline constexpr std::array<Word<Lod>, 3> lod_words{{
-    {"recursive", Lod::recursive},
-    {"discrete", Lod::discrete},
-    {"fixed", Lod::fixed},
+inline constexpr std::array<Word<LevelOfDetail>, 12> lod_words{{
+    {"recursive", {Lod::recursive}},
+    {"discrete", {Lod::discrete}},
+    {"camera", {Lod::camera}},
+    {"fixed", {Lod::fixed}},
+    {"fixed:1", {Lod::fixed, 1}},
+    {"fixed:2", {Lod::fixed, 2}},
+    {"fixed:3", {Lod::fixed, 3}},
+    {"fixed:4", {Lod::fixed, 4}},
+    {"fixed:5", {Lod::fixed, 5}},
+    {"fixed:6", {Lod::fixed, 6}},
+    {"fixed:7", {Lod::fixed, 7}},
+    {"fixed:8", {Lod::fixed, 8}},
 }};
 
 /// The word for `value`, which must be in the table.

@@ -146,7 +146,8 @@ Scene scene_of(const Mesh& mesh, double edges_across) {
     s.camera.position = centre + glm::dvec3(0.3, 0.4, 1.3) * size;
     s.camera.target = centre;
     s.camera.fov_degrees = 50;
-    s.settings = {.width = 32, .height = 32, .samples = 1, .light_samples = 2, .sky_samples = 2};
+    s.settings = {
+        .lod = Lod::fixed, .width = 32, .height = 32, .samples = 1, .light_samples = 2, .sky_samples = 2};
     return s;
 }
 

@@ -401,7 +401,7 @@ TEST(Differentials, ConvexShapesDoNotShadowThemselves) {
                 for (int k = 0; k < 4; ++k) {
                     const dvec3 q =
                         light.corner + light.edge_u * double(k % 2) + light.edge_v * double(k / 2);
-                    all = all && glm::dot(glm::normalize(q - p), n) > 0.05 + 0.015 * edge_pixels;
+                    all = all && glm::dot(glm::normalize(q - p), n) > 0.1;
                 }
                 faces += all ? 1 : 0;
                 dark += all && film[i] == 0 ? 1 : 0;

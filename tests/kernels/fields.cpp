@@ -86,7 +86,7 @@ TEST_P(Fields, HitsAreOnTheSurfaceByDefinition) {
         std::size_t between = 0, met = 0, wrong = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             SeenSurface seen(surface, rays[i]);
-            if (i % 8 == 0)
+            if (i % 4 == 0)
                 between += seen.between();
             EXPECT_EQ(any[i], hits[i].patch >= 0) << target->name << ", ray " << i;
             const auto possible = seen.crossings(rays[i], hit_roundings);
