@@ -6,9 +6,10 @@
 #include "razor/program/render_command.h"
 
 int main(int argc, char** argv) {
-    CLI::App app("Renders Catmull-Clark and bilinear-patch scenes, examines them, compares pictures and exports "
-                 "meshes.",
-                 "razor");
+    CLI::App app(
+        "Renders Catmull-Clark and bilinear-patch scenes, examines them, compares pictures and exports "
+        "meshes.",
+        "razor");
     app.set_version_flag("--version", "razor " + std::string(razor::version()));
     app.require_subcommand(1);
     razor::RenderCommand render;

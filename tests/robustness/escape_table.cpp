@@ -114,7 +114,8 @@ std::optional<Scene> scene_of_case(const Case& c) {
     if (c.companion > 0) {
         const double unit = diagonal(scene.meshes[0]);
         Mesh other = cube_cage();
-        place(other, 0.1 * unit, glm::dvec3(10 * (c.offset + c.companion), 0, 0));
+        const glm::dvec3 apart = scene.meshes[0].points[0] / unit + glm::dvec3(c.companion, 0, 0);
+        place(other, 0.1 * unit, 10.0 * apart);
         other.edge_length = scene.meshes[0].edge_length;
         scene.meshes.push_back(other);
     }
