@@ -23,7 +23,7 @@ constexpr std::size_t bad_rays_kept = 3;
 class Shooting {
 public:
     Shooting(Frame& frame, const KernelTable& kernels, Lod lod, const EscapeOptions& options)
-        : frame_(frame), kernels_(kernels), lod_(lod), options_(options), tracer_(frame, capacity, 1),
+        : kernels_(kernels), lod_(lod), options_(options), tracer_(frame, capacity, 1),
           random_(options.seed) {
         frame.build_all(kernels);
         surface_ = std::make_unique<FieldSurface>(frame);
@@ -225,7 +225,6 @@ private:
             rays.push_back(ray);
     }
 
-    Frame& frame_;
     const KernelTable& kernels_;
     Lod lod_;
     EscapeOptions options_;
