@@ -6,6 +6,7 @@
 #pragma once
 
 #include "razor/kernels/blend.h"
+#include "razor/kernels/fields.h"
 #include "razor/kernels/kd_build.h"
 
 #include <cstddef>
@@ -19,16 +20,6 @@ struct Features {
     bool hanging = true; // some patch has sides coarser than its grid
 };
 
-struct Rays {
-    vvec origin, direction; // scene coordinates; unit directions
-    vfloat t_min, t_max;
-    vmask active;
-    // What each asks for: see Field.
-    vvec field_origin, slope;
-    vfloat radius, base, growth;
-    vint number; // of the field: lanes of the same number have the same
-};
-
 struct Hits {
     vfloat t;
     vfloat u, v;   // barycentric weights of the triangle's second and third vertex
@@ -36,14 +27,6 @@ struct Hits {
     vint triangle; // block number * 128 + quad (row * 8 + column) * 2 + which
     vint block;    // first line of the block in the grids
     vint field;    // the lane whose field the block was blended for; -1: it was not
-};
-
-/// Bounds of the fields of a packet's rays: often enough to decide for all of them at once.
-struct FieldBounds {
-    svec low, high; // of the origins
-    svec least_slope, most_slope;
-    sbool sloped; // whether any slope is not 0
-    sfloat least_radius, most_radius, least_base, most_base, least_growth, most_growth;
 };
 
 /// A group of rays of one packet whose directions agree in largest component, with all that is common to
@@ -498,236 +481,6 @@ inline void visit_cells(const Group& g, const View& v, const Slabs& scene, sfloa
             }
         }
     }
-}
-
-/// All ask for the same everywhere.
-inline void fix_target(sfloat target, Rays& r) {
-    r.base = vfloat(target);
-    r.growth = vfloat(0.0F);
-    r.slope = {r.growth, r.growth, r.growth};
-    r.number = vint(0);
-}
-
-/// What rays of the camera ask for, all the same.
-inline void ask_for_camera(const Context& c, Rays& r) {
-    r.field_origin = load_broadcast_vec(field(c.frame, &FrameHeader::field_origin));
-    r.radius = vfloat(0.0F);
-    r.base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
-    r.growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
-    r.slope = load_broadcast_vec(field(c.frame, &FrameHeader::camera_slope));
-    r.number = vint(0);
-    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
-    if (branch(fixed > 0.0F))
-        fix_target(fixed, r);
-}
-
-/// The rays' fields, one a lane.
-struct Fields {
-    vvec origin, slope;
-    vfloat radius, base, growth;
-};
-inline Fields load_fields(const Context& c) {
-    pointer<float> at = c.packets + packet_field;
-    Fields f;
-    f.origin.x = load_vector(at);
-    f.origin.y = load_vector(at + isa::width);
-    f.origin.z = load_vector(at + 2 * isa::width);
-    f.radius = load_vector(at + 3 * isa::width);
-    f.base = load_vector(at + 4 * isa::width);
-    f.growth = load_vector(at + 5 * isa::width);
-    f.slope.x = load_vector(at + 6 * isa::width);
-    f.slope.y = load_vector(at + 7 * isa::width);
-    f.slope.z = load_vector(at + 8 * isa::width);
-    return f;
-}
-
-/// The field of a lane, in the coordinates of the mesh whose origin is given.
-inline Field field_of(const Context& c, sint lane, const svec& mesh_origin) {
-    pointer<float> at = c.packets + packet_field + lane;
-    Field f;
-    f.origin.x = load(at);
-    f.origin.y = load(at + isa::width);
-    f.origin.z = load(at + 2 * isa::width);
-    f.radius = load(at + 3 * isa::width);
-    f.base = load(at + 4 * isa::width);
-    f.growth = load(at + 5 * isa::width);
-    f.slope.x = load(at + 6 * isa::width);
-    f.slope.y = load(at + 7 * isa::width);
-    f.slope.z = load(at + 8 * isa::width);
-    f.origin = f.origin - mesh_origin;
-    return f;
-}
-
-/// Nearest and furthest distance of a box from each field's origin, along one axis.
-struct Span {
-    vfloat near, far;
-};
-inline Span span_of(const vfloat& origin, const vfloat& low, const vfloat& high) {
-    vfloat before = low - origin;
-    vfloat after = origin - high;
-    Span s;
-    s.near = max(max(before, after), vfloat(0.0F));
-    vfloat most = min(before, after);
-    s.far = -most;
-    return s;
-}
-
-/// Bounds of |base + slope . (place - origin)| over a box, one a lane; `margin`: what roundings may add to
-/// it.
-struct Blur {
-    vfloat least, most, margin;
-};
-inline Blur blur_in(const Fields& f, const vvec& low, const vvec& high) {
-    const vfloat* origins[3] = {&f.origin.x, &f.origin.y, &f.origin.z};
-    const vfloat* slopes[3] = {&f.slope.x, &f.slope.y, &f.slope.z};
-    const vfloat* lows[3] = {&low.x, &low.y, &low.z};
-    const vfloat* highs[3] = {&high.x, &high.y, &high.z};
-    vfloat least = f.base;
-    vfloat most = f.base;
-    vfloat size = abs(f.base);
-    for (int k = 0; k < 3; ++k) {
-        vfloat at_low = *lows[k] - *origins[k];
-        vfloat at_high = *highs[k] - *origins[k];
-        at_low = at_low * *slopes[k];
-        at_high = at_high * *slopes[k];
-        vfloat less = min(at_low, at_high);
-        vfloat more = max(at_low, at_high);
-        least = least + less;
-        most = most + more;
-        size = size + max(-less, more);
-    }
-    Blur b;
-    b.margin = size * 1.0e-6F;
-    b.most = max(most, -least);
-    b.least = max(max(least, -most), 0.0F);
-    return b;
-}
-
-/// Bounds of each field's target edge lengths in a box (scene coordinates), rounded outward. Least is no more
-/// than any target there, by more than what positions are rounded by; most no less.
-struct Targets {
-    vfloat least, most;
-};
-inline Targets targets_in(const Context& c, const FieldBounds& all, const svec& low, const svec& high,
-                          sfloat slack) {
-    Fields f = load_fields(c);
-    vvec lowest = broadcast(low);
-    vvec highest = broadcast(high);
-    Span x = span_of(f.origin.x, lowest.x, highest.x);
-    Span y = span_of(f.origin.y, lowest.y, highest.y);
-    Span z = span_of(f.origin.z, lowest.z, highest.z);
-    vfloat near = sqrt(fma(x.near, x.near, fma(y.near, y.near, z.near * z.near)));
-    vfloat far = sqrt(fma(x.far, x.far, fma(y.far, y.far, z.far * z.far)));
-    vfloat wide = vfloat(slack);
-    near = fma(near, vfloat(1.0F - 1.0e-6F), -wide) - f.radius;
-    near = max(near, vfloat(0.0F));
-    far = fma(far, vfloat(1.0F + 1.0e-6F), wide) - f.radius;
-    far = max(far, vfloat(0.0F));
-    Blur blur{f.base, f.base, abs(f.base) * 1.0e-6F};
-    if (branch(all.sloped)) {
-        // Positions are off by their slack.
-        vvec room{wide, wide, wide};
-        vvec lower = lowest - room;
-        vvec higher = highest + room;
-        blur = blur_in(f, lower, higher);
-    }
-    vfloat at_near = f.growth * near;
-    vfloat at_far = f.growth * far;
-    Targets t;
-    vfloat less = min(at_near, at_far) + blur.least;
-    vfloat more = max(at_near, at_far) + blur.most;
-    vfloat margin = blur.margin;
-    t.least = fma(less, vfloat(1.0F - 1.0e-6F), -margin);
-    t.most = fma(more, vfloat(1.0F + 1.0e-6F), margin);
-    vfloat floor(least_target);
-    t.least = max(t.least, floor);
-    t.most = max(t.most, floor);
-    return t;
-}
-
-/// Bounds of all fields' target edge lengths in a box. Nowhere is a target less than `least` or more than
-/// `most`; and no field's own least is more than `greatest_least`. Growth of either sign: shrinking fields
-/// are bounded by what they begin with.
-struct CommonTargets {
-    sfloat least, greatest_least, most;
-};
-
-/// Bounds of all fields' |base + slope . (place - origin)| over a box, their roundings included.
-struct CommonBlur {
-    sfloat least, most;
-};
-inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
-    sfloat lows[3] = {low.x, low.y, low.z};
-    sfloat highs[3] = {high.x, high.y, high.z};
-    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
-    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
-    sfloat least_slope[3] = {f.least_slope.x, f.least_slope.y, f.least_slope.z};
-    sfloat most_slope[3] = {f.most_slope.x, f.most_slope.y, f.most_slope.z};
-    sfloat least = f.least_base;
-    sfloat most = f.most_base;
-    sfloat size = max(most, -least);
-    for (int k = 0; k < 3; ++k) {
-        sfloat at_low = lows[k] - last[k] - slack;
-        sfloat at_high = highs[k] - first[k] + slack;
-        sfloat a = at_low * least_slope[k];
-        sfloat b = at_low * most_slope[k];
-        sfloat c = at_high * least_slope[k];
-        sfloat d = at_high * most_slope[k];
-        sfloat less = min(a, min(b, min(c, d)));
-        sfloat more = max(a, max(b, max(c, d)));
-        least = least + less;
-        most = most + more;
-        size = size + max(-less, more);
-    }
-    sfloat margin = size * 2.0e-6F;
-    CommonBlur blur;
-    blur.most = max(most, -least) + margin;
-    blur.least = max(max(least, -most) - margin, 0.0F);
-    return blur;
-}
-inline CommonTargets common_targets_in(const FieldBounds& f, const svec& low, const svec& high,
-                                       sfloat slack) {
-    sfloat lows[3] = {low.x, low.y, low.z};
-    sfloat highs[3] = {high.x, high.y, high.z};
-    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
-    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
-    sfloat nearest = 0.0F; // squares of distances
-    sfloat near_of_all = 0.0F;
-    sfloat furthest = 0.0F;
-    for (int k = 0; k < 3; ++k) {
-        sfloat before = lows[k] - last[k];
-        sfloat after = first[k] - highs[k];
-        sfloat near = max(max(before, after), 0.0F);
-        nearest = fma(near, near, nearest);
-        sfloat widest_before = lows[k] - first[k];
-        sfloat widest_after = last[k] - highs[k];
-        near = max(max(widest_before, widest_after), 0.0F);
-        near_of_all = fma(near, near, near_of_all);
-        sfloat far_before = last[k] - lows[k];
-        sfloat far_after = highs[k] - first[k];
-        sfloat far = max(far_before, far_after);
-        furthest = fma(far, far, furthest);
-    }
-    constexpr float down = 1.0F - 2.0e-6F;
-    constexpr float up = 1.0F + 2.0e-6F;
-    sfloat near = sqrt(nearest) * down - slack;
-    near = max(near - f.most_radius, 0.0F);
-    sfloat every = sqrt(near_of_all) * up + slack;
-    every = max(every - f.least_radius, 0.0F);
-    sfloat far = sqrt(furthest) * up + slack;
-    far = max(far - f.least_radius, 0.0F);
-    sfloat rising = max(f.most_growth, 0.0F);
-    sfloat falling = min(f.least_growth, 0.0F);
-    sfloat slowest = max(f.least_growth, 0.0F);
-    CommonBlur blur{f.least_base, f.most_base};
-    if (branch(f.sloped))
-        blur = common_blur_in(f, low, high, slack);
-    CommonTargets t;
-    sfloat fallen = fma(falling, far, blur.least);
-    t.least = fma(slowest, near, fallen) * down;
-    t.greatest_least = fma(rising, every, blur.most) * up;
-    t.most = fma(rising, far, blur.most) * up;
-    return t;
 }
 
 /// What a leaf says of the blocks it lists.
