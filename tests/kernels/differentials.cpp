@@ -401,7 +401,7 @@ TEST(Differentials, ConvexShapesDoNotShadowThemselves) {
                 for (int k = 0; k < 4; ++k) {
                     const dvec3 q =
                         light.corner + light.edge_u * double(k % 2) + light.edge_v * double(k / 2);
-                    all = all && glm::dot(glm::normalize(q - p), n) > 0.1;
+                    all = all && glm::dot(glm::normalize(q - p), n) > 0.01 + 0.006 * edge_pixels;
                 }
                 faces += all ? 1 : 0;
                 dark += all && film[i] == 0 ? 1 : 0;
