@@ -6,3 +6,7 @@ if(RAZOR_WERROR)
 endif()
 # Targets must not fuse multiply and add unless asked by name; see isa/README.md.
 add_compile_options(-ffp-contract=off)
+# g++ 12 loses the rounding of pairs of doubles to float and back where it packs them into vectors (-O2, -O3).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-fno-tree-slp-vectorize)
+endif()

@@ -41,7 +41,7 @@ void expect_bounded(const Mesh& mesh, double items_a_face, double nodes_a_face, 
         frame.build_all(*target);
         FrameStatistics s = frame.statistics();
         // A node has a list when it is made and another when its patches are opened.
-        const double headers = static_cast<double>(sizeof(ItemList) * 2 * (2 * s.inner_nodes + 1));
+        const double headers = 2.0 * sizeof(ItemList) * static_cast<double>(2 * s.inner_nodes + 1);
         EXPECT_LT(static_cast<double>(s.list_bytes) - headers, items_a_face * faces * 7 * 4) << target->name;
         EXPECT_LT(static_cast<double>(s.inner_nodes), nodes_a_face * faces) << target->name;
         std::vector<Hit> hits = tracer.closest(*target, rays);

@@ -1,4 +1,5 @@
 // Where a scene lies and how large it is: rays from inside closed meshes never escape.
+#include "razor/frame/scene_geometry.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/oracle.h"
 #include "tests/kernels/targets.h"
@@ -74,6 +75,18 @@ INSTANTIATE_TEST_SUITE_P(ScalesAndOffsets, Placement,
                                  c = c == '-' ? 'm' : c;
                              return name;
                          });
+
+/// The origin of a mesh is where single precision can put it (a compiler that drops the rounding fails here).
+TEST(Placement, MeshesThatOnlyLieSomewhereAreNotMoved) {
+    Scene scene;
+    for (const glm::dvec3& at :
+         {glm::dvec3(0.1, 0.42, -0.5), glm::dvec3(-2.1, 1e3, 0.25), glm::dvec3(1e-4, 0.7, 1e5)})
+        scene.meshes.push_back(placed(torus_cage(9, 6), 1.1, at));
+    const SceneGeometry geometry = locate_scene(scene, std::vector<bool>(scene.meshes.size(), true));
+    ASSERT_EQ(geometry.instances.size(), scene.meshes.size());
+    for (const Instance& i : geometry.instances)
+        EXPECT_FALSE(i.moved()) << i.mesh;
+}
 
 TEST(Placement, SizesOfTenMillionToOne) {
     Scene scene = scene_of(stretched(torus_cage(9, 6)), 60);
