@@ -219,7 +219,8 @@ struct alignas(line_bytes) BlockHeader {
     std::int32_t
         cells_at; // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
     std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0:
-                               // none. Then [corner][xyz]: see corner_anchor
+                               // none. Then [corner][xyz]: see corner_anchor; then a box, low and high: the
+                               // block's own made to hold these ends
     std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
     isa::shared<std::int32_t> normals;    // a BuildState
     isa::shared<std::int32_t> children;   // a BuildState
@@ -240,6 +241,7 @@ struct alignas(line_bytes) BlockHeader {
 static_assert(sizeof(BlockHeader) == 192);
 inline constexpr int block_header_words = 48;
 inline constexpr int ancestor_words = 24;
+inline constexpr int ancestor_box = ancestor_words + 12;
 inline constexpr int cell_boxes = 16;
 /// Target edge lengths grow by no more than this per unit of distance: steeper rays see a finer surface than
 /// they ask for, which stays within three levels of itself over a block.

@@ -55,12 +55,6 @@ inline svec blend_vertex(const Field& f, sint birth, const svec& anchor, const s
     return blend_vertex(weight, anchor, one, other);
 }
 
-inline void store_svec(pointer<float> to, const svec& p) {
-    store(to, p.x);
-    store(to + 1, p.y);
-    store(to + 2, p.z);
-}
-
 /// Corners of a sub-face that are middles of edges move towards the mean of the edge's ends.
 inline void move_middles(const Field& f, pointer<BlockHeader> block, pointer<BlockHeader> root,
                          pointer<float> corners) {

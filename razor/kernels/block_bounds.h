@@ -74,9 +74,7 @@ inline void place_corner(const Context& c, const Cage& finest, const Dicing& d, 
     sint chunk = min(index >> block_log2, last);
     pointer<float> points = curve_points<false>(c, finest, finest.curves + side.curve, side.whole, chunk);
     svec p = get_point(points, index - chunk * block_quads);
-    store(out, p.x);
-    store(out + 1, p.y);
-    store(out + 2, p.z);
+    store_svec(out, p);
 }
 
 /// The corners of a block that has ancestors: see corner_anchor.
@@ -85,9 +83,7 @@ inline void place_corners(const Context& c, Cage g, const Dicing& d, const Block
     pointer<float> out = b.words + b.ancestors_at + ancestor_words;
     for (int k = 0; k < 4; ++k) {
         svec p = load_vertex(b.x, b.stride, corner_vertex(k, b.quads_u, b.quads_v));
-        store(out + 3 * k, p.x);
-        store(out + 3 * k + 1, p.y);
-        store(out + 3 * k + 2, p.z);
+        store_svec(out + 3 * k, p);
     }
     if constexpr (!Straight) {
         g.level = 0;
@@ -230,6 +226,25 @@ inline void bound_block(const Block& b, sint cells_at) {
     }
 }
 
+/// The block's box, made to hold the ends of ancestors: where these move, so do the vertices between them.
+inline void bound_ancestors(const Dicing& d, const Block& b) {
+    svec low = load_svec(field(b.header, &BlockHeader::box_low));
+    svec high = load_svec(field(b.header, &BlockHeader::box_high));
+    pointer<float> ancestors = b.words + b.ancestors_at;
+    for (int s = 0; s < 4; ++s) {
+        sint quads = s % 2 == 0 ? b.quads_u : b.quads_v;
+        if (branch((sint(1) << d.side[s].hang) > quads)) {
+            for (int e = 0; e < 2; ++e) {
+                svec end = load_svec(ancestors + (6 * s + 3 * e));
+                low = {min(end.x, low.x), min(end.y, low.y), min(end.z, low.z)};
+                high = {max(end.x, high.x), max(end.y, high.y), max(end.z, high.z)};
+            }
+        }
+    }
+    store_svec(ancestors + ancestor_box, low);
+    store_svec(ancestors + (ancestor_box + 3), high);
+}
+
 /// How the blocks of a patch at one level look.
 struct Shape {
     sint quads_u, quads_v;
@@ -261,7 +276,7 @@ inline Shape block_shape(const Dicing& d) {
     s.cells_at = select(several_cells, words, sint(0));
     words = words + select(several_cells, sint(6 * cell_boxes), sint(0));
     s.ancestors_at = select(long_ancestor, words, sint(0));
-    words = words + select(long_ancestor, sint(ancestor_words + 12), sint(0));
+    words = words + select(long_ancestor, sint(ancestor_box + 6), sint(0));
     s.middles_at = select(middles, words, sint(0));
     words = words + select(middles, sint(ends_words), sint(0));
     s.normals_at = select(flat, sint(0), words);

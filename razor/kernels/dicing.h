@@ -158,12 +158,8 @@ inline void place_side(const Context& c, const Cage& g, const Block& b, const Si
             low = out + 3;
             high = out;
         }
-        store(low, a.x);
-        store(low + 1, a.y);
-        store(low + 2, a.z);
-        store(high, z.x);
-        store(high + 1, z.y);
-        store(high + 2, z.z);
+        store_svec(low, a);
+        store_svec(high, z);
     }
 }
 

@@ -636,8 +636,11 @@ template <Features F, bool Mixed>
         sint movable = load(field(header, &BlockHeader::movable));
         if (branch(g.morphs & (movable != 0))) {
             svec origin = load_svec(origin_at);
-            svec low = load_svec(field(header, &BlockHeader::box_low)) + origin;
-            svec high = load_svec(field(header, &BlockHeader::box_high)) + origin;
+            pointer<float> box = field(header, &BlockHeader::box_low);
+            if (branch(v.ancestors_at != 0))
+                box = v.words + (v.ancestors_at + ancestor_box);
+            svec low = load_svec(box) + origin;
+            svec high = load_svec(box + 3) + origin;
             sint absolute = load(field(header, &BlockHeader::absolute));
             sfloat begin = moving_from(absolute);
             CommonTargets all_fields = common_targets_in(g.fields, low, high, g.slack);

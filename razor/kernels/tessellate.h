@@ -86,6 +86,8 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
             place_middles<false>(c, g, d, b.words + s.middles_at);
     }
     bound_block(b, s.cells_at);
+    if (branch(s.ancestors_at != 0))
+        bound_ancestors(d, b);
     sfloat corners = 0.0F;
     if (branch(!flat)) {
         measure_sway(c, b);

@@ -77,6 +77,11 @@ inline svec load_svec(pointer<const float> p) {
     v.z = load(p + 2);
     return v;
 }
+inline void store_svec(pointer<float> to, const svec& p) {
+    store(to, p.x);
+    store(to + 1, p.y);
+    store(to + 2, p.z);
+}
 inline vvec load_broadcast_vec(pointer<const float> p) {
     vvec v;
     v.x = load_broadcast(p);

@@ -186,6 +186,29 @@ TEST(FieldsOfTaperedPatches, HitsAreOnTheSurfaceByDefinition) {
     }
 }
 
+/// Blocks beside an edge longer than they are, of which only an end moves.
+TEST(FieldsOfTaperedPatches, SidesFollowTheEndsOfLongEdges) {
+    Scene scene = scene_of(tapered_cage(), 200);
+    scene.settings.lod = Lod::recursive;
+    Ray ray{{0.0782254711F, 0.334921628F, -0.101640604F}, {-0.817404985F, 0.523484826F, -0.240442738F}};
+    ray.base = 0.026112929F;
+    ray.slope = {0.0175380427F, 0.00564958667F, 0.0777799562F};
+    for (const KernelTable* target : native_targets()) {
+        Frame frame(scene, {});
+        Tracer tracer(frame, 64);
+        frame.build_all(*target);
+        const FieldSurface surface(frame);
+        const auto seen = SeenSurface(surface, ray).crossings(ray, 0);
+        Ray anchored = ray;
+        anchored.slope = {};
+        anchored.base = least_target_edge;
+        const auto finest = SeenSurface(surface, anchored).crossings(anchored, 0);
+        ASSERT_FALSE(seen.empty() || finest.empty());
+        ASSERT_GT(std::abs(seen.front().t - finest.front().t), 1e-4);
+        EXPECT_NEAR(tracer.closest(*target, {ray}).front().t, seen.front().t, 1e-5) << target->name;
+    }
+}
+
 /// Beside a coarse block the vertices of a finer one are means, rounded; rays are aimed at them. Rounding
 /// once let one of some ten thousand through.
 TEST(FieldsOfNeighbours, NoRayPassesBetweenLevels) {
