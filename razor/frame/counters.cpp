@@ -11,4 +11,17 @@ Counters& Counters::operator+=(const Counters& o) {
     return *this;
 }
 
+Counters CountersByKind::sum() const {
+    Counters all;
+    for (const Counters& c : kind)
+        all += c;
+    return all;
+}
+
+CountersByKind& CountersByKind::operator+=(const CountersByKind& o) {
+    for (int k = 0; k < kind_count; ++k)
+        kind[k] += o.kind[k];
+    return *this;
+}
+
 } // namespace razor

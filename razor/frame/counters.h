@@ -1,15 +1,17 @@
 // What a worker counts: instrumentation of the host, not part of the machine.
 #pragma once
 
+#include "razor/frame/ray_kinds.h"
+
 #include <cstdint>
 
 namespace razor {
 
 struct Counters {
-    std::int64_t camera_rays = 0, shadow_rays = 0;
+    std::int64_t rays = 0;
     std::int64_t camera_hits = 0;
-    std::int64_t camera_packets = 0, shadow_packets = 0; // rays / (packets x width) is their utilisation
-    std::int64_t groups = 0; // of rays alike in direction, traversed one after the other
+    std::int64_t packets = 0; // rays / (packets x width) is their utilisation
+    std::int64_t groups = 0;  // of rays alike in direction, traversed one after the other
     std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
     std::int64_t graph_openings = 0, cluster_openings = 0; // once a kd node that needs it
     std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;
@@ -23,13 +25,19 @@ struct Counters {
     Counters& operator+=(const Counters& o);
 };
 
+/// Of each kind of ray what tracing its packets took and built, and of kind_none all else.
+struct CountersByKind {
+    Counters kind[kind_count];
+
+    Counters sum() const;
+    CountersByKind& operator+=(const CountersByKind& o);
+};
+
 /// Name and value of each counter, in order.
 template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
-    visit("camera_rays", c.camera_rays);
-    visit("shadow_rays", c.shadow_rays);
+    visit("rays", c.rays);
     visit("camera_hits", c.camera_hits);
-    visit("camera_packets", c.camera_packets);
-    visit("shadow_packets", c.shadow_packets);
+    visit("packets", c.packets);
     visit("groups", c.groups);
     visit("node_visits", c.node_visits);
     visit("box_tests", c.box_tests);

@@ -85,7 +85,7 @@ struct Frame::Impl {
     std::unique_ptr<PageStore> pages;
     std::unique_ptr<isa::address_space> memory;
     FrameHeader* header = nullptr;
-    std::vector<Counters> counters; // one a worker
+    std::vector<CountersByKind> counters; // one a worker
     int trees = 1;
     int nodes_each = 0, grid_lines_each = 0, list_lines_each = 0; // arena sizes of a worker
     Plan plan = plan_flat;
@@ -138,7 +138,7 @@ struct Frame::Impl {
     WorkerArguments arguments(int worker) {
         const auto w = static_cast<std::size_t>(worker);
         const auto tree = static_cast<std::size_t>(options.tree_of_worker[w]);
-        return {header, worker, pages.get(), &counters[w], opened[tree].get(), &watch};
+        return {header, worker, pages.get(), counters[w].kind, opened[tree].get(), &watch};
     }
 };
 
@@ -633,8 +633,9 @@ double Frame::progress() const {
 
 FrameStatistics Frame::statistics() const {
     FrameStatistics s;
-    for (const Counters& c : impl_->counters)
-        s.counters += c;
+    for (const CountersByKind& c : impl_->counters)
+        s.by_kind += c;
+    s.counters = s.by_kind.sum();
     s.trees = impl_->trees;
     s.meshes = static_cast<std::int64_t>(impl_->meshes.size());
     s.instances = static_cast<std::int64_t>(impl_->geometry.instances.size());

@@ -26,7 +26,8 @@ struct FrameOptions {
 
 /// What was built, and what laziness left unbuilt.
 struct FrameStatistics {
-    Counters counters; // summed over workers
+    CountersByKind by_kind; // summed over workers
+    Counters counters;      // summed over kinds as well
     std::int64_t trees = 0;
     std::int64_t meshes = 0, instances = 0; // analysed once each; drawn
     std::int64_t patches = 0;               // of all instances, times the trees; likewise:

@@ -34,7 +34,7 @@ struct Context {
     pointer<float> packets; // rays in flight (scratch.h)
     pointer<float> blends;  // blocks lately blended (scratch.h)
     isa::page_service* pages = nullptr;
-    Counters* counters = nullptr;
+    Counters* counters = nullptr;    // of kind_none, or of the rays that are traced
     isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
     isa::stopwatch* watch = nullptr;
 };

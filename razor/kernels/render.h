@@ -64,9 +64,7 @@ struct PixelSums {
 
 template <Features F>
 inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint sample, PixelSums& sums) {
-    tally(c.counters->camera_packets, 1);
-    tally(c.counters->camera_rays, count(r.active));
-    Hits h = trace<F, false>(c, r);
+    Hits h = trace_packet<F, kind_camera>(c, r);
     vfloat zero(0.0F);
     vmask hit = h.patch >= vint(0);
     tally(c.counters->camera_hits, count(hit));

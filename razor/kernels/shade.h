@@ -5,8 +5,8 @@
 #include "isa/math.h"
 #include "razor/kernels/differentials.h"
 #include "razor/kernels/normals.h"
+#include "razor/kernels/packet.h"
 #include "razor/kernels/sampling.h"
-#include "razor/kernels/traverse.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -505,9 +505,7 @@ template <Features F, bool Sky>
                 l = sample_light(c, here, number + vint(first_sample));
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
-                tally(c.counters->shadow_packets, 1);
-                tally(c.counters->shadow_rays, count(l.rays.active));
-                Hits blocked = trace<F, true>(c, l.rays);
+                Hits blocked = trace_packet<F, (Sky ? kind_sky : kind_light)>(c, l.rays);
                 vmask arrives = l.rays.active & (blocked.patch < vint(0));
                 vfloat part = select(arrives, l.weight, vfloat(0.0F));
                 vint pair = lane_index() ^ vint(1);

@@ -31,6 +31,9 @@ struct RenderStatistics {
     double render_seconds = 0; // refit, builds and rays
 };
 
+/// Counters by name; those of a kind of ray under its name.
+void to_json(nlohmann::ordered_json& json, const Counters& counters);
+void to_json(nlohmann::ordered_json& json, const CountersByKind& counters);
 /// Every figure by name: counters, what was built, what laziness left unbuilt, host seconds apart.
 void to_json(nlohmann::ordered_json& json, const RenderStatistics& statistics);
 

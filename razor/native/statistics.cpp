@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <string>
+
 namespace razor {
 
 namespace {
@@ -12,16 +14,28 @@ double share(std::int64_t part, std::int64_t whole) {
 
 } // namespace
 
+void to_json(nlohmann::ordered_json& json, const Counters& counters) {
+    for_each_counter(counters, [&](const char* name, std::int64_t value) { json[name] = value; });
+}
+
+void to_json(nlohmann::ordered_json& json, const CountersByKind& counters) {
+    for (int k = 0; k < kind_count; ++k)
+        json[kind_names[k]] = counters.kind[k];
+}
+
 void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
     const FrameStatistics& f = s.frame;
     const Counters& c = f.counters;
     json["target"] = {{"isa", s.isa}, {"width", s.width_lanes}, {"threads", s.threads}};
     json["plan"] = f.plan;
     json["scene"] = {{"meshes", f.meshes}, {"instances", f.instances}};
-    nlohmann::ordered_json& counters = json["counters"];
-    for_each_counter(c, [&](const char* name, std::int64_t value) { counters[name] = value; });
-    json["utilisation"] = {{"camera_packets", share(c.camera_rays, c.camera_packets * s.width_lanes)},
-                           {"shadow_packets", share(c.shadow_rays, c.shadow_packets * s.width_lanes)}};
+    json["counters"] = c;
+    json["counters_by_kind"] = f.by_kind;
+    for (int k = kind_none + 1; k < kind_count; ++k) {
+        const Counters& kind = f.by_kind.kind[k];
+        json["utilisation"][kind_names[k] + std::string("_packets")] =
+            share(kind.rays, kind.packets * s.width_lanes);
+    }
     json["built"] = {{"trees", f.trees},
                      {"inner_nodes", f.inner_nodes},
                      {"leaves", f.leaves},

@@ -54,8 +54,8 @@ json renderer(const razor::FrameStatistics& s, const std::vector<int>& tree_of_w
     out["plan"] = s.plan;
     out["trees"] = s.trees;
     out["tree_of_worker"] = tree_of_worker;
-    razor::for_each_counter(s.counters,
-                            [&](const char* name, std::int64_t value) { out["counters"][name] = value; });
+    out["counters"] = s.counters;
+    out["counters_by_kind"] = s.by_kind;
     out["built"] = {{"inner_nodes", s.inner_nodes},
                     {"leaves", s.leaves},
                     {"grid_bytes", s.grid_bytes},
@@ -72,16 +72,17 @@ std::string frame_text(const razor::Settings& s, int workers, int screen_tiles,
     const char* few =
         screen_tiles < 4 * workers ? ": few, so workers will be idle; a larger picture says more" : "";
     const std::string& share = r.config.kdtree.share;
-    auto rays = static_cast<double>(f.counters.camera_rays + f.counters.shadow_rays);
+    auto rays = [&](razor::RayKind kind) { return f.by_kind.kind[kind].rays; };
     return fmt::format(
         "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
         "screen tiles           {}, {:.1f} a worker{}\n"
-        "rays                   {} camera, {} shadow; {:.3f} million a second of simulated time\n"
+        "rays                   {} camera, {} light, {} sky; {:.3f} million a second of simulated time\n"
         "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
         "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
         s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", "kdtree.share = " + share,
-        screen_tiles, static_cast<double>(screen_tiles) / workers, few, f.counters.camera_rays,
-        f.counters.shadow_rays, rays / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
+        screen_tiles, static_cast<double>(screen_tiles) / workers, few, rays(razor::kind_camera),
+        rays(razor::kind_light), rays(razor::kind_sky),
+        static_cast<double>(f.counters.rays) / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
         f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
         f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
 }

@@ -66,7 +66,7 @@ TEST(Laziness, ShadingNormalsAreMadeWhereCamerasLook) {
     Counters c = frame.statistics().counters;
     EXPECT_GT(c.normal_blocks, 0);
     EXPECT_LT(c.normal_blocks, c.blocks_made);
-    EXPECT_EQ(c.camera_rays, 32 * 32);
+    EXPECT_EQ(frame.statistics().by_kind.kind[kind_camera].rays, 32 * 32);
 }
 
 /// A square of n x n tori 4 apart, all one mesh.

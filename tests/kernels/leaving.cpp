@@ -67,7 +67,7 @@ Counted count(const Scene& scene) {
     for (std::size_t i = 0; i < red.values.size(); ++i)
         if (std::isfinite(depth.values[i]))
             c.arrived += double{red.values[i]} * scene.settings.sky_samples;
-    c.shot = r.statistics.frame.counters.shadow_rays;
+    c.shot = r.statistics.frame.by_kind.kind[kind_sky].rays;
     return c;
 }
 
