@@ -104,13 +104,17 @@ void add_quad(const BlockView& b, int i, int j, std::vector<Triangle>& out) {
 
 } // namespace
 
+void add_triangles(const BlockView& block, std::vector<Triangle>& out) {
+    for (int j = 0; j < block.header->quads_v; ++j)
+        for (int i = 0; i < block.header->quads_u; ++i)
+            add_quad(block, i, j, out);
+}
+
 std::vector<Triangle> triangles_of(Frame& frame, int tree) {
     std::vector<Triangle> triangles;
     for (int patch = 0; patch < frame.header().patch_count; ++patch)
         for (const BlockView& b : blocks_of(frame, patch, tree))
-            for (int j = 0; j < b.header->quads_v; ++j)
-                for (int i = 0; i < b.header->quads_u; ++i)
-                    add_quad(b, i, j, triangles);
+            add_triangles(b, triangles);
     return triangles;
 }
 

@@ -46,6 +46,9 @@ BlockView block_at(Frame& frame, int line);
 /// The blocks of a patch at a level, row by row, as far as they are made.
 std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0, int level = 0);
 
+/// Appends a block's triangles.
+void add_triangles(const BlockView& block, std::vector<Triangle>& out);
+
 /// All triangles of all opened patches.
 std::vector<Triangle> triangles_of(Frame& frame, int tree = 0);
 

@@ -197,7 +197,7 @@ private:
     }
 
     bool compares() const {
-        return lod_ != Lod::discrete &&
+        return sees_one_surface(lod_) &&
                // Spread evenly over all rays.
                report_.compared * options_.rays < options_.compared * report_.rays;
     }

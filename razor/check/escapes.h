@@ -11,10 +11,15 @@
 
 namespace razor::check {
 
+/// Whether what all rays of one field see is one surface. Else it has no definition to compare with.
+constexpr bool sees_one_surface(Lod lod) {
+    return lod != Lod::discrete && lod != Lod::patch;
+}
+
 struct EscapeOptions {
     std::int64_t rays = 1'000'000;
     /// Hits of so many rays (at most all) are compared with those of the surface by definition. Only where
-    /// there is one: not with Lod::discrete.
+    /// there is one: see sees_one_surface().
     std::int64_t compared = 0;
     int rays_an_origin = 1000;
     /// What rays ask for; without them, random: growths of -1 to 10, bases from half a finest edge to the

@@ -488,6 +488,7 @@ void Frame::Impl::place_view(const Scene& scene) {
     h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera ? 1 : 0;
     h.one_field = s.lod == Lod::camera ? 1 : 0;
+    h.level_choice = s.lod == Lod::patch ? by_patch : by_leaf;
     const Camera& dicing = dicing_camera(scene);
     const CameraField asked = camera_field(dicing, s);
     put(h.field_origin, dicing.position - geometry.origin);

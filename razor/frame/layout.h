@@ -357,6 +357,10 @@ constexpr int blend_pass(int log2_u, int log2_v, int pass) {
 }
 inline constexpr int blend_table_words = blend_pass(block_log2 + 1, 0, 0);
 
+/// By what it is decided which level a ray sees of a block: its own box and those beside it in a leaf, or its
+/// patch's (razor/kernels/patch_levels.h).
+enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1 };
+
 struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t tiles_x, tiles;
@@ -402,9 +406,10 @@ struct FrameHeader {
     float focus;                // depth in focus; 0: a pinhole
     float light_spacing;        // see growth_to_area() and growth_to_sky(), times edge_pixels
     float sky_spacing;
-    std::int32_t morphs;    // 0: vertices stay at their anchors
-    std::int32_t one_field; // not 0: rays that leave surfaces ask for what camera rays do
-    float fixed_target;     // not 0: what all rays ask for, everywhere
+    std::int32_t morphs;       // 0: vertices stay at their anchors
+    std::int32_t one_field;    // not 0: rays that leave surfaces ask for what camera rays do
+    float fixed_target;        // not 0: what all rays ask for, everywhere
+    std::int32_t level_choice; // a LevelChoice
 };
 
 inline constexpr int tile_side = 16; // pixels

@@ -18,6 +18,8 @@ using namespace isa::ISA_TARGET;
 using shared_int = isa::shared<std::int32_t>;
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
+/// Distances beyond every scene, whose sums and products stay finite enough.
+inline constexpr float infinite = 3.0e38F;
 
 struct Context {
     pointer<FrameHeader> frame;

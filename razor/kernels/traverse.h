@@ -4,13 +4,10 @@
 // (patch, triangle).
 #pragma once
 
-#include "razor/kernels/intersect.h"
+#include "razor/kernels/patch_levels.h"
 
 namespace razor::ISA_TARGET {
 inline namespace traverse_kernel {
-
-inline constexpr float infinite =
-    3.0e38F; // distances beyond every scene, whose sums and products stay finite enough
 
 /// 1/d, with directions too small to invert replaced by a tiny one of the same sign.
 inline vfloat safe_inverse(const vfloat& d) {
@@ -168,7 +165,7 @@ inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, v
 }
 
 /// One group from the root. AnyHit: the first hit retires a lane; its hit distance becomes -infinite.
-template <Features F, bool AnyHit, bool Mixed>
+template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
 [[gnu::noinline]] inline void trace_group(const Context& c, const Rays& r, Group g, Hits& hits) {
     phase_scope phase(phase_traverse);
     tally(c.counters->groups, 1);
@@ -248,7 +245,7 @@ template <Features F, bool AnyHit, bool Mixed>
         pointer<ItemList> list = as<ItemList>(c.lists + link);
         sint finer = load(field(list, &ItemList::finer));
         vmask deeper = vmask(false);
-        if constexpr (F.hanging) {
+        if constexpr (F.hanging && By == by_leaf) {
             if (branch(finer >= 0)) {
                 sfloat coarse = load(field(list, &ItemList::coarse));
                 svec low = load_svec(field(list, &ItemList::low));
@@ -262,13 +259,21 @@ template <Features F, bool AnyHit, bool Mixed>
                 }
             }
         }
-        vmask here = g.alive & !deeper;
-        if (branch(any(here))) {
-            intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, {enter, leave}, hits);
-            deeper = deeper & g.alive;
+        if constexpr (By == by_patch) {
+            deeper = intersect_patches<F, AnyHit, Mixed>(c, g, list, {enter, leave}, hits);
             if constexpr (AnyHit) {
                 if (branch(none(g.alive)))
                     return;
+            }
+        } else {
+            vmask here = g.alive & !deeper;
+            if (branch(any(here))) {
+                intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, {enter, leave}, hits);
+                deeper = deeper & g.alive;
+                if constexpr (AnyHit) {
+                    if (branch(none(g.alive)))
+                        return;
+                }
             }
         }
         if constexpr (F.hanging) {
@@ -358,12 +363,24 @@ inline void store_fields(const Context& c, const Rays& r) {
     store_vector(as<std::int32_t>(c.packets + packet_number), r.number);
 }
 
+template <Features F, LevelChoice By, bool AnyHit>
+inline void trace_either(const Context& c, const Rays& r, const Group& g, Hits& hits) {
+    sbool mixed = g.mixed[0] | g.mixed[1];
+    mixed = mixed | g.mixed[2];
+    if (branch(mixed))
+        trace_group<F, By, AnyHit, true>(c, r, g, hits);
+    else
+        trace_group<F, By, AnyHit, false>(c, r, g, hits);
+}
+
 /// Traces a packet; the hits of lanes that hit something name a patch.
 template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Context& c, const Rays& r) {
     phase_scope phase(phase_traverse);
     ensure_root(c);
     FieldBounds fields;
+    sint choice = sint(by_leaf);
     if constexpr (F.hanging) {
+        choice = load(field(c.frame, &FrameHeader::level_choice));
         store_fields(c, r);
         fields = bound_fields(r, usable_rays(r));
     }
@@ -378,12 +395,13 @@ template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Con
         left = left & !same;
         Group g = make_group(c, r, same, largest, extract(signs, one));
         g.fields = fields;
-        sbool mixed = g.mixed[0] | g.mixed[1];
-        mixed = mixed | g.mixed[2];
-        if (branch(mixed))
-            trace_group<F, AnyHit, true>(c, r, g, hits);
-        else
-            trace_group<F, AnyHit, false>(c, r, g, hits);
+        if constexpr (F.hanging) {
+            if (branch(choice == sint(by_patch))) {
+                trace_either<F, by_patch, AnyHit>(c, r, g, hits);
+                continue;
+            }
+        }
+        trace_either<F, by_leaf, AnyHit>(c, r, g, hits);
     }
     return hits;
 }

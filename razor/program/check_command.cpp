@@ -108,10 +108,10 @@ int CheckCommand::run() const {
             return interrupted_exit;
         }
         if (escapes->origins == 0) {
-            throw UserError(
-                fmt::format("{}: no point inside was found that {} level of detail has inside; the "
-                            "bodies are too thin for rays from inside",
-                            printable(scene.name), closed.settings.lod == Lod::discrete ? "every" : "its"));
+            throw UserError(fmt::format(
+                "{}: no point inside was found that {} level of detail has inside; the "
+                "bodies are too thin for rays from inside",
+                printable(scene.name), check::sees_one_surface(closed.settings.lod.lod) ? "its" : "every"));
         }
     }
 

@@ -43,7 +43,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
         ->type_name("X");
     app.add_option("--lod", lod_,
                    "levels of detail: recursive (every ray its own), discrete (the same without blending), "
-                   "camera (all rays the camera's), fixed (the finest) or fixed:K (K levels coarser)")
+                   "patch (one level a patch and ray), camera (all rays the camera's), fixed (the finest) or "
+                   "fixed:K (K levels coarser)")
         ->type_name("NAME");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");

@@ -17,9 +17,10 @@ inline constexpr std::array<Word<Scheme>, 2> scheme_words{{
     {"bilinear", Scheme::bilinear},
 }};
 
-inline constexpr std::array<Word<LevelOfDetail>, 12> lod_words{{
+inline constexpr std::array<Word<LevelOfDetail>, 13> lod_words{{
     {"recursive", {Lod::recursive}},
     {"discrete", {Lod::discrete}},
+    {"patch", {Lod::patch}},
     {"camera", {Lod::camera}},
     {"fixed", {Lod::fixed}},
     {"fixed:1", {Lod::fixed, 1}},

@@ -44,6 +44,8 @@ std::vector<Scene> scenes() {
     for (const char* name : {"urchin_stretched", "torus_bilinear"})
         all.push_back(named_scene(name)->scene);
     all.push_back(scene_of(bilinear(cube_cage()), 10)); // flat patches only
+    all.push_back(named_scene("torus_stretched")->scene);
+    all.back().settings.lod = Lod::patch;
     return all;
 }
 

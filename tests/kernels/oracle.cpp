@@ -61,8 +61,10 @@ bool usable(const Ray& r) {
 
 } // namespace
 
-Oracle::Oracle(Frame& frame, bool fused)
-    : triangles_(triangles_of(frame)), origins_(instance_origins(frame)), fused_(fused) {}
+Oracle::Oracle(Frame& frame, bool fused) : Oracle(triangles_of(frame), instance_origins(frame), fused) {}
+
+Oracle::Oracle(std::vector<Triangle> triangles, std::vector<Point> origins, bool fused)
+    : triangles_(std::move(triangles)), origins_(std::move(origins)), fused_(fused) {}
 
 template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const {
     if (!usable(ray))

@@ -13,6 +13,8 @@ class Oracle {
 public:
     /// `fused`: whether the target's fused multiply-add rounds once (all but sse4).
     Oracle(Frame& frame, bool fused);
+    /// Of these triangles; origins of the frame's instances.
+    Oracle(std::vector<Triangle> triangles, std::vector<Point> origins, bool fused);
 
     Hit closest(const Ray& ray) const;
     /// Triangles met, each one counted.

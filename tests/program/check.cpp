@@ -102,10 +102,15 @@ TEST_F(Check, ShootsFromInside) {
     EXPECT_EQ(one["patches"], 6);
 }
 
-TEST_F(Check, DiscreteLevelsHaveHoles) {
-    const nlohmann::json r = json("torus.obj --size 256x256 --escape 60000 --lod discrete", 1)["escape"];
-    EXPECT_GT(r["escapes"], 0);
-    EXPECT_EQ(r["first_escapes"].size(), 3U);
+TEST_F(Check, LevelsThatJumpHaveHoles) {
+    for (const char* lod : {"discrete", "patch"}) {
+        const nlohmann::json r = json(
+            std::string("torus.obj --size 256x256 --escape 60000 --compare 10 --lod ") + lod, 1)["escape"];
+        EXPECT_EQ(r["lod"], lod);
+        EXPECT_GT(r["escapes"], 0);
+        EXPECT_EQ(r["compared"], 0);
+        EXPECT_EQ(r["first_escapes"].size(), 3U);
+    }
 }
 
 TEST_F(Check, RefusesWhatCannotBeShotFrom) {
