@@ -179,6 +179,10 @@ inline void tally(std::int64_t& counter, int n) { counter += n; }
 /// Likewise: something has happened, and when an event first did.
 inline void mark(isa::mark_set& set, sint i) { set.mark(i.v); }
 inline void note_time(isa::stopwatch& watch, int event) { watch.note(event); }
+/// Likewise: traffic to `count` records counts under `level` - `finer` from now on, or under the level of `other`'s
+/// record (simulated machine). Natively nothing.
+template <class T> inline void note_level(pointer<T>, sint /*count*/, sint /*level*/, int /*finer*/ = 0) {}
+template <class T, class U> inline void note_level_of(pointer<T>, sint /*count*/, pointer<U> /*other*/) {}
 /// Until its end, work and traffic count under this phase of the frame (simulated machine). Natively nothing.
 class phase_scope {
 public:
@@ -186,6 +190,14 @@ public:
     phase_scope(const phase_scope&) = delete;
     phase_scope& operator=(const phase_scope&) = delete;
     ~phase_scope() {} // not trivial: an unused scope warns on no target
+};
+/// Likewise: under this kind of work, whatever the phase.
+class kind_scope {
+public:
+    explicit kind_scope(int) {}
+    kind_scope(const kind_scope&) = delete;
+    kind_scope& operator=(const kind_scope&) = delete;
+    ~kind_scope() {}
 };
 
 } // namespace ISA_NATIVE

@@ -212,12 +212,33 @@ inline void tally(std::int64_t& counter, const sint& n) { counter += access::val
 inline void tally(std::int64_t& counter, int n) { counter += n; }
 inline void mark(isa::mark_set& set, const sint& i) { set.mark(access::value(i).v); }
 inline void note_time(isa::stopwatch&, int) {} // the host's time says nothing of the machine's
+namespace detail {
+template <class P> inline std::uint64_t bytes_of(const P& p, const sint& count) {
+    return static_cast<std::uint64_t>(access::value(count).v) * sizeof(*access::value(p).host());
+}
+} // namespace detail
+template <class T> inline void note_level(const pointer<T>& p, const sint& count, const sint& level, int finer = 0) {
+    timing::note_level(detail::host(p), detail::bytes_of(p, count), access::value(level).v - finer);
+}
+template <class T, class U> inline void note_level_of(const pointer<T>& p, const sint& count, const pointer<U>& other) {
+    timing::note_level_of(detail::host(p), detail::bytes_of(p, count), detail::host(other));
+}
 class phase_scope {
 public:
     explicit phase_scope(int phase) : before_(timing::set_phase(phase)) {}
     phase_scope(const phase_scope&) = delete;
     phase_scope& operator=(const phase_scope&) = delete;
     ~phase_scope() { timing::set_phase(before_); }
+
+private:
+    std::int32_t before_;
+};
+class kind_scope {
+public:
+    explicit kind_scope(int kind) : before_(timing::set_kind(kind)) {}
+    kind_scope(const kind_scope&) = delete;
+    kind_scope& operator=(const kind_scope&) = delete;
+    ~kind_scope() { timing::set_kind(before_); }
 
 private:
     std::int32_t before_;

@@ -98,5 +98,10 @@ stamp wait_while(site where, const std::int32_t* p, std::int32_t value, const st
 void request_page(void* service, std::int32_t space, std::int32_t kind, std::int32_t index);
 /// Sets the phase that work and traffic count under; returns the one before.
 std::int32_t set_phase(std::int32_t phase);
+/// Sets the kind of work likewise.
+std::int32_t set_kind(std::int32_t kind);
+/// Traffic to these bytes counts under this level from now on, or under that of what lies at `other`. Takes no time.
+void note_level(const void* p, std::uint64_t bytes, std::int32_t level);
+void note_level_of(const void* p, std::uint64_t bytes, const void* other);
 
 } // namespace isa::timing

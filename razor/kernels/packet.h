@@ -13,6 +13,7 @@ template <Features F, RayKind Kind> inline Hits trace_packet(const Context& c, c
     own.counters = c.counters + Kind;
     tally(own.counters->packets, 1);
     tally(own.counters->rays, count(r.active));
+    kind_scope kind(Kind);
     return trace<F, Kind != kind_camera>(own, r);
 }
 

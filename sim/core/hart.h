@@ -14,10 +14,10 @@ struct Core;
 struct Tile;
 
 struct Hart {
-    Hart(std::uint32_t number, Tile& tile, Core& core, const Config& config, std::size_t phases)
+    Hart(std::uint32_t number, Tile& tile, Core& core, const Config& config, std::size_t columns)
         : number(number), tile(&tile), core(&core), window(static_cast<std::size_t>(config.core.window)),
-          registers(static_cast<std::size_t>(config.core.vector_registers)), stacks(phases, Stack{}),
-          phase_vops(phases, 0), phase_instructions(phases, 0) {}
+          registers(static_cast<std::size_t>(config.core.vector_registers)), stacks(columns, Stack{}),
+          vops(columns, 0), instructions(columns, 0) {}
 
     std::uint32_t number;
     Tile* tile;
@@ -42,10 +42,10 @@ struct Hart {
     std::uint32_t history = 0;  // of branches
     std::uint32_t overhead = 0; // 1/1024 instructions not yet charged
 
-    std::size_t phase = 0;
+    std::size_t column = 0; // of its kind of work and phase
     std::vector<Stack> stacks;
-    Stack* stack = &stacks[0]; // of the phase
-    std::vector<std::uint64_t> phase_vops, phase_instructions;
+    Stack* stack = &stacks[0]; // of the column, and so are ...
+    std::vector<std::uint64_t> vops, instructions;
     CoreCounters counters;
 
     // --- operands of the operation at hand whose times are open
@@ -64,9 +64,9 @@ struct Hart {
     std::vector<Calendar::Slot> looks; // ... these, of the window at hand
 
     void account(cycle from, cycle to, Cause why) { (*stack)[static_cast<std::size_t>(why)] += to - from; }
-    /// Work and time count under this phase from now on.
+    /// Work and time count under this column from now on.
     void enter(std::size_t next) {
-        phase = next;
+        column = next;
         stack = &stacks[next];
     }
 };

@@ -290,7 +290,7 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
     Issued at = issue(h, 0, 1, ready);
     cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
     ++h.core->l1.counters().busy_cycles;
-    h.core->l1.prefetch(address(p) >> line_shift_, t, h.phase);
+    h.core->l1.prefetch(address(p) >> line_shift_, t, h.column);
     finish_issue(h, at, 0);
     count(h, 1, false);
 }

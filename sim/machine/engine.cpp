@@ -24,17 +24,19 @@ unsigned log2(integer x) {
     return static_cast<unsigned>(std::countr_zero(wide(x)));
 }
 
-std::vector<std::string> with_frame_end(std::vector<std::string> phases) {
-    if (phases.empty())
-        phases.emplace_back("all");
-    phases.emplace_back("frame end");
-    return phases;
+Labels with_frame_end(Labels labels) {
+    if (labels.phases.empty())
+        labels.phases.emplace_back("all");
+    labels.phases.emplace_back("frame end");
+    if (labels.kinds.empty())
+        labels.kinds.emplace_back("all");
+    return labels;
 }
 
 } // namespace
 
-Engine::Engine(const Config& config, const isa::address_space& space, int workers,
-               const std::vector<std::string>& phases, const std::function<void(int)>& worker)
+Engine::Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
+               const std::function<void(int)>& worker)
     : config_(config), pieces_(std::max(1U, width / narrow(config.core.lanes))),
       piece_lanes_(width / pieces_),
       span_((pieces_ + narrow(config.core.issue_width) - 1) / narrow(config.core.issue_width)),
@@ -51,7 +53,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                                                        : Prediction::counters),
       base_(space.base()), window_cycles_(window_cycles(config)),
       shortest_read_(Memory::shortest_read(config)), reach_(reach_cycles(config)), space_(space),
-      phases_(with_frame_end(phases)), attribution_(space, phases_.size()), homes_(space, config.chip.tiles),
+      labels_(with_frame_end(labels)), attribution_(space, labels_.columns(), line_shift_),
+      homes_(space, config.chip.tiles),
       beyond_(config, [this](std::uint32_t tile, cycle ticket,
                              cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
       workers_(workers) {
@@ -67,7 +70,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             Core& core = tile.cores.emplace_back(config, tile.earliest, tile.l2, tile.tickets, attribution_);
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
-                Hart& h = harts_.emplace_back(number, tile, core, config, phases_.size());
+                Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
                 h.spill_base = attribution_.spill_begin() + number * spill_bytes;
                 tile.harts.push_back(&h);
             }
@@ -247,7 +250,7 @@ void Engine::finish_frame() {
         const isa::region* r = space_.find(address);
         return r != nullptr && !r->transient;
     };
-    std::size_t frame_end = phases_.size() - 1;
+    std::size_t frame_end = labels_.phases.size() - 1; // of the first kind
     for (Tile& tile : tiles_)
         for (Core& core : tile.cores)
             core.l1.finish(cycles_, frame_end, lasting);
@@ -278,16 +281,16 @@ std::string Engine::describe_deadlock() const {
 Report Engine::report() const {
     Report r;
     r.config = config_;
-    r.phases = phases_;
+    r.labels = labels_;
     r.structures = attribution_.structures();
     r.workers = workers_;
     r.cycles = cycles_;
     r.window = window_cycles_;
-    r.traffic = attribution_.cells();
+    r.traffic = attribution_.traffic();
+    r.touched = attribution_.touched();
     r.memory = beyond_.memory().counters();
     r.memory_by_rank = beyond_.memory().rank_counters();
-    r.phase_vops.resize(phases_.size());
-    r.phase_instructions.resize(phases_.size());
+    r.work.resize(labels_.columns());
     for (const Tile& tile : tiles_) {
         r.l2.push_back(tile.l2.counters());
         for (const Core& core : tile.cores)
@@ -297,9 +300,9 @@ Report Engine::report() const {
     for (const Hart& h : harts_) {
         for (const auto& row : core_counters)
             r.core.*row.count += h.counters.*row.count;
-        for (std::size_t i = 0; i < phases_.size(); ++i) {
-            r.phase_vops[i] += h.phase_vops[i];
-            r.phase_instructions[i] += h.phase_instructions[i];
+        for (std::size_t i = 0; i < labels_.columns(); ++i) {
+            r.work[i].vops += h.vops[i];
+            r.work[i].instructions += h.instructions[i];
         }
         int number = static_cast<int>(h.number);
         ThreadReport t;
@@ -310,7 +313,7 @@ Report Engine::report() const {
         t.finish = h.accounted;
         t.instructions = h.counters.instructions;
         t.stacks = h.stacks;
-        t.stacks[h.phase][static_cast<std::size_t>(Cause::idle)] += r.cycles - h.accounted;
+        t.stacks[h.column][static_cast<std::size_t>(Cause::idle)] += r.cycles - h.accounted;
         r.threads.push_back(std::move(t));
     }
     r.drained = std::max(r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)));

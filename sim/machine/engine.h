@@ -31,8 +31,8 @@ struct Issued {
 
 class Engine {
 public:
-    Engine(const Config& config, const isa::address_space& space, int workers,
-           const std::vector<std::string>& phases, const std::function<void(int)>& worker);
+    Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
+           const std::function<void(int)>& worker);
     Report run();
 
     // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
@@ -52,6 +52,9 @@ public:
     void request_page(Hart& h, isa::page_service& service, std::int32_t space, std::int32_t kind,
                       std::int32_t index);
     std::size_t set_phase(Hart& h, std::size_t phase);
+    std::size_t set_kind(Hart& h, std::size_t kind);
+    void note_level(const void* p, std::uint64_t bytes, int level);
+    void note_level_of(const void* p, std::uint64_t bytes, const void* other);
     /// Returns when the ticket is answered.
     Answered await(Hart& h, cycle ticket);
 
@@ -146,6 +149,7 @@ private:
         return a;
     }
     [[noreturn]] static void outside(const void* p);
+    static void check_label(const char* what, std::size_t number, std::size_t count);
 
     // --- windows
     bool run_window();
@@ -181,7 +185,7 @@ private:
     std::uint64_t shortest_read_;
     std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
     const isa::address_space& space_;
-    std::vector<std::string> phases_; // the caller's, and the end of the frame
+    Labels labels_; // the caller's, and the end of the frame
     Attribution attribution_;
     Homes homes_;
     Published published_; // words that several tiles reach

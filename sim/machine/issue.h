@@ -48,7 +48,7 @@ inline Issued Engine::issue(Hart& h, int kind, std::uint32_t instructions, Due r
     if (hold_policy_)
         core.busy_until = std::max(core.busy_until, at.last + 1);
     h.counters.instructions += instructions;
-    h.phase_instructions[h.phase] += instructions;
+    h.instructions[h.column] += instructions;
     if (at.first > h.accounted) {
         cycle stalled = std::min(std::max(ready.at(), h.accounted), at.first);
         h.account(h.accounted, stalled, ready.why());
@@ -80,7 +80,7 @@ inline void Engine::finish_issue(Hart& h, Issued at, cycle granted) {
 
 inline void Engine::count(Hart& h, std::uint32_t instructions, bool vector) {
     ++h.counters.vops;
-    ++h.phase_vops[h.phase];
+    ++h.vops[h.column];
     if (vector) {
         ++h.counters.vector_vops;
         h.counters.lane_slots += static_cast<std::uint64_t>(instructions) * piece_lanes_;
@@ -107,12 +107,12 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
     cycle at = s.first >> port_shift_;
     if (at > from + port_backlog) [[unlikely]]
         data.granted = std::max(data.granted, at - port_backlog);
-    Answer a = core.l1.access(line, write, accesses, at, h.phase);
+    Answer a = core.l1.access(line, write, accesses, at, h.column);
     while (a.retry != 0)
         [[unlikely]] {
             from = at = await_room(h, at, a.retry);
             data.granted = std::max(data.granted, at);
-            a = core.l1.access(line, write, accesses, at, h.phase);
+            a = core.l1.access(line, write, accesses, at, h.column);
         }
     cycle last = (s.last >> port_shift_) + l1_latency_; // through the ports
     if (is_ticket(a.ready)) {

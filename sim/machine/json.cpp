@@ -33,13 +33,33 @@ json stack(const Stack& s) {
     return out;
 }
 
+/// Over the columns that are wanted.
+template <class Wanted> Stack sum_of(const ThreadReport& t, Wanted wanted) {
+    Stack sum{};
+    for (std::size_t c = 0; c < t.stacks.size(); ++c)
+        if (wanted(c))
+            for (std::size_t i = 0; i < cause_count; ++i)
+                sum[i] += t.stacks[c][i];
+    return sum;
+}
+template <class Wanted> Work sum_of(const std::vector<Work>& work, Wanted wanted) {
+    Work sum;
+    for (std::size_t c = 0; c < work.size(); ++c)
+        if (wanted(c)) {
+            sum.vops += work[c].vops;
+            sum.instructions += work[c].instructions;
+        }
+    return sum;
+}
+
 json threads(const Report& r) {
     json out = json::array();
     for (const ThreadReport& t : r.threads) {
         json row = {{"tile", t.tile},     {"core", t.core},     {"thread", t.thread},
                     {"worker", t.worker}, {"finish", t.finish}, {"instructions", t.instructions}};
-        for (std::size_t p = 0; p < r.phases.size(); ++p)
-            row["stack"][r.phases[p]] = stack(t.stacks[p]);
+        for (std::size_t p = 0; p < r.labels.phases.size(); ++p)
+            row["stack"][r.labels.phases[p]] =
+                stack(sum_of(t, [&](std::size_t c) { return r.labels.phase(c) == p; }));
         out.push_back(std::move(row));
     }
     return out;
@@ -47,20 +67,55 @@ json threads(const Report& r) {
 
 json traffic(const Report& r) {
     json out = json::array();
-    for (std::size_t s = 0; s < r.structures.size(); ++s)
-        for (std::size_t p = 0; p < r.phases.size(); ++p) {
-            json row = {{"structure", r.structures[s]}, {"phase", r.phases[p]}};
-            row.update(counters(r.traffic[s * r.phases.size() + p], traffic_columns));
-            out.push_back(std::move(row));
-        }
+    for (const TrafficRow& t : r.traffic) {
+        json row = {{"structure", r.structures[t.structure]},
+                    {"level", t.level ? json(*t.level) : json()},
+                    {"kind", r.labels.kinds[r.labels.kind(t.column)]},
+                    {"phase", r.labels.phases[r.labels.phase(t.column)]}};
+        row.update(counters(t.traffic, traffic_columns));
+        out.push_back(std::move(row));
+    }
+    return out;
+}
+
+/// How many lines of a structure were accessed by these kinds and phases and by no other.
+json touched(const Report& r) {
+    json out = json::array();
+    for (const TouchedLines& t : r.touched) {
+        json row = {{"structure", r.structures[t.structure]}, {"lines", t.lines}};
+        for (std::size_t c = 0; c < r.labels.columns(); ++c)
+            if ((t.columns >> c & 1U) != 0)
+                row["by"][r.labels.kinds[r.labels.kind(c)]].push_back(r.labels.phases[r.labels.phase(c)]);
+        out.push_back(std::move(row));
+    }
     return out;
 }
 
 json phases(const Report& r) {
     json out = json::array();
-    for (std::size_t p = 0; p < r.phases.size(); ++p)
-        out.push_back(
-            {{"phase", r.phases[p]}, {"vops", r.phase_vops[p]}, {"instructions", r.phase_instructions[p]}});
+    for (std::size_t p = 0; p < r.labels.phases.size(); ++p) {
+        Work w = sum_of(r.work, [&](std::size_t c) { return r.labels.phase(c) == p; });
+        out.push_back({{"phase", r.labels.phases[p]}, {"vops", w.vops}, {"instructions", w.instructions}});
+    }
+    return out;
+}
+
+json kinds(const Report& r) {
+    json out = json::array();
+    for (std::size_t k = 0; k < r.labels.kinds.size(); ++k) {
+        auto wanted = [&](std::size_t c) { return r.labels.kind(c) == k; };
+        Work w = sum_of(r.work, wanted);
+        Stack all{};
+        for (const ThreadReport& t : r.threads) {
+            Stack s = sum_of(t, wanted);
+            for (std::size_t i = 0; i < cause_count; ++i)
+                all[i] += s[i];
+        }
+        out.push_back({{"kind", r.labels.kinds[k]},
+                       {"vops", w.vops},
+                       {"instructions", w.instructions},
+                       {"stack", stack(all)}});
+    }
     return out;
 }
 
@@ -78,6 +133,7 @@ std::string print_json(const Report& r, bool with_host) {
     out["core"] = counters(r.core, core_counters);
     out["stack"] = stack(r.stack());
     out["phases"] = phases(r);
+    out["kinds"] = kinds(r);
     out["l1"] = counters(r.l1_total(), cache_counters);
     for (const CacheCounters& c : r.l1)
         out["l1_by_core"].push_back(counters(c, cache_counters));
@@ -98,6 +154,7 @@ std::string print_json(const Report& r, bool with_host) {
     out["binding"] = binding(all).resource;
     out["limiter"] = limiter(r);
     out["traffic"] = traffic(r);
+    out["touched_lines"] = touched(r);
     out["threads"] = threads(r);
     if (with_host)
         out["host"] = {

@@ -24,24 +24,50 @@ void at_most(const char* law, std::uint64_t left, std::uint64_t right) {
 }
 
 std::uint64_t total(const Report& r, std::uint64_t Traffic::*count) {
-    return std::accumulate(r.traffic.begin(), r.traffic.end(), std::uint64_t{0},
-                           [count](std::uint64_t sum, const Traffic& t) { return sum + t.*count; });
+    return std::accumulate(
+        r.traffic.begin(), r.traffic.end(), std::uint64_t{0},
+        [count](std::uint64_t sum, const TrafficRow& row) { return sum + row.traffic.*count; });
 }
 
 void check_traffic(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
-    equal("L1 reads = sum over structures and phases", l1.reads, total(r, &Traffic::l1_reads));
-    equal("L1 writes = sum over structures and phases", l1.writes, total(r, &Traffic::l1_writes));
-    equal("L1 misses = sum over structures and phases", l1.misses, total(r, &Traffic::l1_misses));
-    equal("L1 write-backs = sum over structures and phases", l1.write_backs,
+    equal("L1 reads = sum over structures, kinds and phases", l1.reads, total(r, &Traffic::l1_reads));
+    equal("L1 writes = sum over structures, kinds and phases", l1.writes, total(r, &Traffic::l1_writes));
+    equal("L1 misses = sum over structures, kinds and phases", l1.misses, total(r, &Traffic::l1_misses));
+    equal("L1 write-backs = sum over structures, kinds and phases", l1.write_backs,
           total(r, &Traffic::l1_write_backs));
-    equal("L2 reads = sum over structures and phases", l2.reads, total(r, &Traffic::l2_reads));
-    equal("L2 writes = sum over structures and phases", l2.writes, total(r, &Traffic::l2_writes));
-    equal("L2 misses = sum over structures and phases", l2.misses, total(r, &Traffic::l2_misses));
-    equal("L2 write-backs = sum over structures and phases", l2.write_backs,
+    equal("L2 reads = sum over structures, kinds and phases", l2.reads, total(r, &Traffic::l2_reads));
+    equal("L2 writes = sum over structures, kinds and phases", l2.writes, total(r, &Traffic::l2_writes));
+    equal("L2 misses = sum over structures, kinds and phases", l2.misses, total(r, &Traffic::l2_misses));
+    equal("L2 write-backs = sum over structures, kinds and phases", l2.write_backs,
           total(r, &Traffic::l2_write_backs));
-    equal("memory reads = sum over structures and phases", r.memory.reads, total(r, &Traffic::memory_reads));
-    equal("memory writes = sum over structures and phases", r.memory.writes,
+    equal("memory reads = sum over structures, kinds and phases", r.memory.reads,
+          total(r, &Traffic::memory_reads));
+    equal("memory writes = sum over structures, kinds and phases", r.memory.writes,
           total(r, &Traffic::memory_writes));
+}
+
+/// Lines were touched where there were accesses, one each at the least, and each came from the L2.
+void check_touched(const Report& r) {
+    for (std::size_t s = 0; s + 1 < r.structures.size(); ++s) {
+        std::vector<std::uint64_t> accesses(r.labels.columns()), lines(r.labels.columns());
+        std::uint64_t fetched = 0, all = 0;
+        for (const TrafficRow& row : r.traffic)
+            if (row.structure == s) {
+                accesses[row.column] += row.traffic.l1_reads + row.traffic.l1_writes;
+                fetched += row.traffic.l2_reads;
+            }
+        for (const TouchedLines& t : r.touched)
+            if (t.structure == s) {
+                all += t.lines;
+                for (std::size_t c = 0; c < lines.size(); ++c)
+                    lines[c] += (t.columns >> c & 1U) != 0 ? t.lines : 0;
+            }
+        at_most("lines touched <= lines asked of the L2", all, fetched);
+        for (std::size_t c = 0; c < lines.size(); ++c) {
+            at_most("lines touched by a kind and phase <= its accesses", lines[c], accesses[c]);
+            equal("lines are touched by who accesses any", lines[c] != 0 ? 1 : 0, accesses[c] != 0 ? 1 : 0);
+        }
+    }
 }
 
 /// What one rank, or all, did on commands and data.
@@ -129,11 +155,13 @@ void check_stacks(const Report& r) {
             sum = std::accumulate(s.begin(), s.end(), sum);
         equal("a thread's CPI stack = cycles", sum, r.cycles);
     }
-    auto sum_of = [](const std::vector<std::uint64_t>& v) {
-        return std::accumulate(v.begin(), v.end(), std::uint64_t{0});
-    };
-    equal("operations = sum over phases", r.core.vops, sum_of(r.phase_vops));
-    equal("instructions = sum over phases", r.core.instructions, sum_of(r.phase_instructions));
+    Work sum;
+    for (const Work& w : r.work) {
+        sum.vops += w.vops;
+        sum.instructions += w.instructions;
+    }
+    equal("operations = sum over kinds and phases", r.core.vops, sum.vops);
+    equal("instructions = sum over kinds and phases", r.core.instructions, sum.instructions);
 }
 
 /// Whether all threads are ordered operation by operation: tiles are not, and neither are those that come
@@ -151,6 +179,7 @@ void check_laws(const Report& r) {
     CacheCounters l2 = r.l2_total();
     check_levels(r, l1, l2);
     check_traffic(r, l1, l2);
+    check_touched(r);
     check_use(r, l1);
     check_stacks(r);
     if (exact(r.config))

@@ -26,14 +26,14 @@ public:
 
 } // namespace
 
-Report Machine::run(const isa::address_space& space, int workers, const std::vector<std::string>& phases,
+Report Machine::run(const isa::address_space& space, int workers, const Labels& labels,
                     const std::function<void(int worker)>& worker) const {
     if (workers < 1 || workers > threads())
         throw std::invalid_argument("as many workers as the machine has hardware threads, at most");
     check_consistency(config_, "machine");
     auto begin = std::chrono::steady_clock::now();
     std::clock_t worked = std::clock();
-    auto engine = std::make_unique<Engine>(config_, space, workers, phases, worker);
+    auto engine = std::make_unique<Engine>(config_, space, workers, labels, worker);
     Running running(*engine);
     Report report = engine->run();
     report.processor_seconds = static_cast<double>(std::clock() - worked) / CLOCKS_PER_SEC;

@@ -28,9 +28,9 @@ public:
     /// Calls worker(0 .. workers-1), each on a hardware thread of its own (chip.placement), with caches cold
     /// and time at 0. The workers' code is compiled for the target `simulated` and touches memory of `space`
     /// alone. Rethrows what a worker or a page service throws, after all other workers have been unwound;
-    /// throws Deadlock. Checks all laws. One run at a time in a process. `phases` are the names of what
-    /// set_phase is given; a worker begins in phase 0.
-    Report run(const isa::address_space& space, int workers, const std::vector<std::string>& phases,
+    /// throws Deadlock. Checks all laws. One run at a time in a process. A worker begins in phase 0 and kind
+    /// 0.
+    Report run(const isa::address_space& space, int workers, const Labels& labels,
                const std::function<void(int worker)>& worker) const;
 
 private:

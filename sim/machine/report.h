@@ -48,36 +48,52 @@ inline constexpr std::array<CounterRow<CoreCounters>, 21> core_counters = {{
 
 using Stack = std::array<std::uint64_t, cause_count>;
 
+/// Names of what set_phase and set_kind are given. Work, time and traffic count under a column: a kind and a
+/// phase.
+struct Labels {
+    std::vector<std::string> phases = {}, kinds = {};
+
+    std::size_t columns() const { return phases.size() * kinds.size(); }
+    std::size_t kind(std::size_t column) const { return column / phases.size(); }
+    std::size_t phase(std::size_t column) const { return column % phases.size(); }
+};
+
+struct Work {
+    std::uint64_t vops = 0, instructions = 0;
+};
+
 struct ThreadReport {
     int worker = -1;                    // -1: none ran here
     int tile = 0, core = 0, thread = 0; // cores are numbered through all tiles
     cycle finish = 0;
     std::uint64_t instructions = 0;
-    std::vector<Stack> stacks; // by phase; sums to the run's cycles
+    std::vector<Stack> stacks; // by column; sums to the run's cycles
 };
 
 struct Report {
     Config config;
-    std::vector<std::string> phases, structures;
+    Labels labels;
+    std::vector<std::string> structures;
     int workers = 0;
     cycle cycles = 0;  // until the last worker has returned and its last result is there
     cycle drained = 0; // until memory is quiet as well
     cycle window = 0;  // in which tiles ran by themselves
     CoreCounters core;
-    std::vector<std::uint64_t> phase_vops, phase_instructions;
+    std::vector<Work> work; // by column
     std::vector<ThreadReport> threads;
     std::vector<CacheCounters> l1; // by core
     std::vector<CacheCounters> l2; // by tile
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
-    std::vector<Traffic> traffic;               // [structure * phases + phase]
+    std::vector<TrafficRow> traffic;            // where there was any
+    std::vector<TouchedLines> touched;          // of the structures but `spill`
     double host_seconds = 0;                    // apart from everything else in JSON
     double processor_seconds = 0;               // of these, what the host's processor worked
 
     double seconds() const;
     CacheCounters l1_total() const;
     CacheCounters l2_total() const;
-    Stack stack() const; // of all threads and phases
+    Stack stack() const; // of all threads and columns
 };
 
 /// Throws std::logic_error naming the first law that the numbers break.

@@ -41,7 +41,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
-        Answer line = h.tile->l2.modify(a, at.last + l1_latency_, h.phase);
+        Answer line = h.tile->l2.modify(a, at.last + l1_latency_, h.column);
         auto [ready_at, behind] =
             h.tile->queues.enter(a, line.ready, wide(config_.coherence.atomic_cycles), h.tile->tickets);
         Answered there{ready_at, ready_at, line.from};
@@ -80,14 +80,14 @@ void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool 
     std::uint64_t line = address >> line_shift_;
     if (!chip) {
         for (Core& core : h.tile->cores)
-            core.l1.invalidate(line, t, h.phase);
+            core.l1.invalidate(line, t, h.column);
         return;
     }
     for (Tile& tile : tiles_) {
         for (Core& core : tile.cores)
-            core.l1.invalidate(line, t, h.phase);
+            core.l1.invalidate(line, t, h.column);
         if (&tile != h.tile)
-            tile.l2.invalidate(address, t, h.phase);
+            tile.l2.invalidate(address, t, h.column);
     }
 }
 
@@ -135,7 +135,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         invalidate_elsewhere(h, a, t, chip);
         if (kind == isa::timing::atomic::store_release) {
             ++h.counters.releases;
-            h.tile->l2.write(a, t + l1_latency_, h.phase, false);
+            h.tile->l2.write(a, t + l1_latency_, h.column, false);
             ready = Due(t, Cause::synchronise);
         } else {
             ready = h.acting;
@@ -205,7 +205,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
             std::uint64_t looks = (woken - since) / wide(config_.core.spin_period);
             h.counters.spins += looks;
             h.counters.instructions += 2 * looks;
-            h.phase_instructions[h.phase] += 2 * looks;
+            h.instructions[h.column] += 2 * looks;
             h.account(h.accounted, woken, Cause::synchronise);
             h.accounted = woken;
         }
@@ -230,14 +230,37 @@ void Engine::request_page(Hart& h, isa::page_service& service, std::int32_t spac
     }
 }
 
+void Engine::check_label(const char* what, std::size_t number, std::size_t count) {
+    if (number < count)
+        return;
+    fmt::print(stderr, "razor-sim: broken invariant: {} {} of {}\n", what, number, count);
+    std::abort();
+}
+
 std::size_t Engine::set_phase(Hart& h, std::size_t phase) {
-    if (phase >= phases_.size()) {
-        fmt::print(stderr, "razor-sim: broken invariant: phase {} of {}\n", phase, phases_.size());
-        std::abort();
-    }
-    std::size_t before = h.phase;
-    h.enter(phase);
+    std::size_t phases = labels_.phases.size();
+    check_label("phase", phase, phases);
+    std::size_t before = h.column % phases;
+    h.enter(h.column - before + phase);
     return before;
+}
+
+std::size_t Engine::set_kind(Hart& h, std::size_t kind) {
+    std::size_t phases = labels_.phases.size();
+    check_label("kind", kind, labels_.kinds.size());
+    std::size_t before = h.column / phases;
+    h.enter(kind * phases + h.column % phases);
+    return before;
+}
+
+void Engine::note_level(const void* p, std::uint64_t bytes, int level) {
+    if (bytes != 0)
+        attribution_.note_level(address(p), bytes, level);
+}
+
+void Engine::note_level_of(const void* p, std::uint64_t bytes, const void* other) {
+    if (bytes != 0)
+        attribution_.note_level_of(address(p), bytes, address(other));
 }
 
 } // namespace sim
@@ -272,6 +295,16 @@ void request_page(void* service, std::int32_t space, std::int32_t kind, std::int
 std::int32_t set_phase(std::int32_t phase) {
     return static_cast<std::int32_t>(
         sim::running_engine->set_phase(*sim::running_hart, static_cast<std::size_t>(phase)));
+}
+std::int32_t set_kind(std::int32_t kind) {
+    return static_cast<std::int32_t>(
+        sim::running_engine->set_kind(*sim::running_hart, static_cast<std::size_t>(kind)));
+}
+void note_level(const void* p, std::uint64_t bytes, std::int32_t level) {
+    sim::running_engine->note_level(p, bytes, level);
+}
+void note_level_of(const void* p, std::uint64_t bytes, const void* other) {
+    sim::running_engine->note_level_of(p, bytes, other);
 }
 
 } // namespace isa::timing

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 namespace sim {
 namespace {
@@ -99,33 +101,85 @@ void add(Traffic& sum, const Traffic& t) {
         sum.*column.count += t.*column.count;
 }
 
-void traffic(std::string& out, const Report& r) {
-    std::size_t phases = r.phases.size();
-    table(out, r, "by structure", r.structures.size(), [&](std::size_t s) {
-        Traffic sum;
-        for (std::size_t p = 0; p < phases; ++p)
-            add(sum, r.traffic[s * phases + p]);
-        return std::pair(r.structures[s], sum);
-    });
-    table(out, r, "by phase", phases, [&](std::size_t p) {
-        Traffic sum;
-        for (std::size_t s = 0; s < r.structures.size(); ++s)
-            add(sum, r.traffic[s * phases + p]);
-        return std::pair(r.phases[p], sum);
-    });
-    out += "\nKiB to and from memory, structure by phase\n                ";
-    for (const std::string& name : r.phases)
+template <class Wanted> Traffic sum_where(const Report& r, Wanted wanted) {
+    Traffic sum;
+    for (const TrafficRow& row : r.traffic)
+        if (wanted(row))
+            add(sum, row.traffic);
+    return sum;
+}
+
+/// One number for each of the first structures and each of `names`.
+template <class Number>
+void grid(std::string& out, const Report& r, const char* title, const std::vector<std::string>& names,
+          std::size_t structures, Number number) {
+    out += fmt::format("\n{}\n                ", title);
+    for (const std::string& name : names)
         out += fmt::format(" {:>10}", name);
     out += '\n';
-    for (std::size_t s = 0; s < r.structures.size(); ++s) {
+    for (std::size_t s = 0; s < structures; ++s) {
         out += fmt::format("{:<16}", r.structures[s]);
-        for (std::size_t p = 0; p < phases; ++p) {
-            const Traffic& t = r.traffic[s * phases + p];
-            out += fmt::format(" {:>10}", (t.memory_reads + t.memory_writes) *
-                                              static_cast<std::uint64_t>(r.config.l2.line_bytes) / 1024);
-        }
+        for (std::size_t i = 0; i < names.size(); ++i)
+            out += fmt::format(" {:>10}", number(s, i));
         out += '\n';
     }
+}
+
+void traffic(std::string& out, const Report& r) {
+    const Labels& labels = r.labels;
+    const std::size_t all = r.structures.size(); // the last is `spill`
+    table(out, r, "by structure", r.structures.size(), [&](std::size_t s) {
+        return std::pair(r.structures[s],
+                         sum_where(r, [&](const TrafficRow& t) { return t.structure == s; }));
+    });
+    table(out, r, "by phase", labels.phases.size(), [&](std::size_t p) {
+        return std::pair(labels.phases[p],
+                         sum_where(r, [&](const TrafficRow& t) { return labels.phase(t.column) == p; }));
+    });
+    if (labels.kinds.size() > 1)
+        table(out, r, "by kind", labels.kinds.size(), [&](std::size_t k) {
+            return std::pair(labels.kinds[k],
+                             sum_where(r, [&](const TrafficRow& t) { return labels.kind(t.column) == k; }));
+        });
+    std::set<std::pair<std::size_t, std::optional<int>>> levels;
+    for (const TrafficRow& t : r.traffic)
+        if (t.level)
+            levels.insert({{t.structure, std::nullopt}, {t.structure, t.level}});
+    const std::vector<std::pair<std::size_t, std::optional<int>>> rows(levels.begin(), levels.end());
+    if (!rows.empty())
+        table(out, r, "by level", rows.size(), [&](std::size_t i) {
+            const auto& [s, level] = rows[i];
+            return std::pair(r.structures[s] + (level ? fmt::format(" {}", *level) : " -"),
+                             sum_where(r, [&](const TrafficRow& t) {
+                                 return t.structure == rows[i].first && t.level == rows[i].second;
+                             }));
+        });
+    auto kib = [&](const Traffic& t) {
+        return (t.memory_reads + t.memory_writes) * static_cast<std::uint64_t>(r.config.l2.line_bytes) / 1024;
+    };
+    grid(out, r, "KiB to and from memory, structure by phase", labels.phases, all,
+         [&](std::size_t s, std::size_t p) {
+             return kib(sum_where(
+                 r, [&](const TrafficRow& t) { return t.structure == s && labels.phase(t.column) == p; }));
+         });
+    if (labels.kinds.size() == 1)
+        return;
+    grid(out, r, "KiB to and from memory, structure by kind", labels.kinds, all,
+         [&](std::size_t s, std::size_t k) {
+             return kib(sum_where(
+                 r, [&](const TrafficRow& t) { return t.structure == s && labels.kind(t.column) == k; }));
+         });
+    grid(out, r, "different lines accessed, structure by kind", labels.kinds, all - 1,
+         [&](std::size_t s, std::size_t k) {
+             std::uint64_t lines = 0;
+             for (const TouchedLines& t : r.touched)
+                 for (std::size_t p = 0; p < labels.phases.size(); ++p)
+                     if (t.structure == s && (t.columns >> (k * labels.phases.size() + p) & 1U) != 0) {
+                         lines += t.lines;
+                         break;
+                     }
+             return lines;
+         });
 }
 
 } // namespace

@@ -24,16 +24,16 @@ Answer L1::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present
 }
 
 /// Sends a dirty line on its way. The buffer has room at `t`.
-void L1::write_back(CacheArray::Entry entry, cycle t, std::size_t phase) {
+void L1::write_back(CacheArray::Entry entry, cycle t, std::size_t column) {
     std::uint64_t line = array_.line(entry);
     std::uint64_t address = line << line_shift_;
     ++counters_.write_backs;
-    ++attribution_.cell(address, phase).l1_write_backs;
-    Answer accepted = l2_.write(address, t, phase, true);
+    ++attribution_.cell(address, column).l1_write_backs;
+    Answer accepted = l2_.write(address, t, column, true);
     write_backs_.hold({line, t, accepted.ready, Cause::mshrs});
 }
 
-Answer L1::fill(std::uint64_t line, bool write, cycle t, std::size_t phase) {
+Answer L1::fill(std::uint64_t line, bool write, cycle t, std::size_t column) {
     CacheArray::Entry entry = array_.oldest(line);
     cycle retry = 0;
     if (retry = mshrs_.take(t); retry != t)
@@ -41,10 +41,10 @@ Answer L1::fill(std::uint64_t line, bool write, cycle t, std::size_t phase) {
     if (array_.dirty(entry)) {
         if (retry = write_backs_.take(t); retry != t)
             return Answer::later(retry);
-        write_back(entry, t + latency_, phase);
+        write_back(entry, t + latency_, column);
     }
     ++counters_.fills;
-    Answer below = l2_.read(line << line_shift_, t + latency_, phase);
+    Answer below = l2_.read(line << line_shift_, t + latency_, column);
     mshrs_.hold({line, t, below.ready, below.from});
     array_.fill(entry, line);
     array_.set_dirty(entry, write);
@@ -52,22 +52,22 @@ Answer L1::fill(std::uint64_t line, bool write, cycle t, std::size_t phase) {
     return below;
 }
 
-void L1::prefetch(std::uint64_t line, cycle t, std::size_t phase) {
+void L1::prefetch(std::uint64_t line, cycle t, std::size_t column) {
     if (array_.find(line) != CacheArray::none)
         return;
-    if (fill(line, false, t, phase).retry != 0)
+    if (fill(line, false, t, column).retry != 0)
         ++counters_.prefetches_dropped;
     else
         ++counters_.prefetches;
 }
 
-void L1::invalidate(std::uint64_t line, cycle t, std::size_t phase) {
+void L1::invalidate(std::uint64_t line, cycle t, std::size_t column) {
     CacheArray::Entry entry = array_.find(line);
     if (entry == CacheArray::none)
         return;
     ++counters_.invalidations;
     if (array_.dirty(entry))
-        write_back(entry, t, phase);
+        write_back(entry, t, column);
     array_.drop(entry);
 }
 

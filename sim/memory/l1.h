@@ -26,7 +26,7 @@ public:
     unsigned line_shift() const { return line_shift_; }
 
     /// `accesses` accesses to the line (number) at cycle `t`.
-    Answer access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t, std::size_t phase) {
+    Answer access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t, std::size_t column) {
         CacheArray::Entry entry = array_.find(line);
         Answer answer{t + latency_, Cause::l1};
         if (entry != CacheArray::none) {
@@ -37,31 +37,31 @@ public:
             if (array_.in_flight(entry)) [[unlikely]]
                 answer = in_flight(entry, line, answer);
         } else {
-            answer = fill(line, write, t, phase);
+            answer = fill(line, write, t, column);
             if (answer.retry != 0)
                 return answer;
             counters_.hits += accesses - 1;
             ++counters_.misses;
-            ++attribution_.cell(line << line_shift_, phase).l1_misses;
+            ++attribution_.cell(line << line_shift_, column).l1_misses;
         }
-        Traffic& cell = attribution_.cell(line << line_shift_, phase);
+        Traffic& cell = attribution_.touch(line << line_shift_, column);
         (write ? counters_.writes : counters_.reads) += accesses;
         (write ? cell.l1_writes : cell.l1_reads) += accesses;
         return answer;
     }
     /// Begins a fill if the line is absent and an MSHR is free.
-    void prefetch(std::uint64_t line, cycle t, std::size_t phase);
+    void prefetch(std::uint64_t line, cycle t, std::size_t column);
     /// A shared word in the line was written: drops the line, writing it back if it is dirty.
-    void invalidate(std::uint64_t line, cycle t, std::size_t phase);
+    void invalidate(std::uint64_t line, cycle t, std::size_t column);
     /// The line's contents are dead: it need not be written back.
     void discard(std::uint64_t line);
     /// The frame is over: `keep(address)` says which dirty lines are written back; all others are dropped.
-    template <class Keep> void finish(cycle t, std::size_t phase, Keep keep) {
+    template <class Keep> void finish(cycle t, std::size_t column, Keep keep) {
         array_.for_each([&](CacheArray::Entry e) {
             if (!array_.dirty(e))
                 return;
             if (keep(array_.line(e) << line_shift_))
-                write_back(e, t, phase);
+                write_back(e, t, column);
             else
                 ++counters_.dropped;
             array_.set_dirty(e, false);
@@ -72,8 +72,8 @@ public:
 
 private:
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
-    Answer fill(std::uint64_t line, bool write, cycle t, std::size_t phase);
-    void write_back(CacheArray::Entry entry, cycle t, std::size_t phase);
+    Answer fill(std::uint64_t line, bool write, cycle t, std::size_t column);
+    void write_back(CacheArray::Entry entry, cycle t, std::size_t column);
 
     unsigned line_shift_;
     std::uint64_t latency_;

@@ -23,8 +23,8 @@ L2::L2(const Config& config, std::uint32_t tile, const cycle& earliest, Tickets&
       banks_(wide(config.l2.banks), Calendar("L2 bank", earliest)),
       flight_limit_(wide(config.l2.mshrs) * 4 + 64), tickets_(tickets), attribution_(attribution) {}
 
-void L2::note_write_back(std::uint64_t address, std::size_t phase) {
-    Traffic& owner = attribution_.cell(address, phase);
+void L2::note_write_back(std::uint64_t address, std::size_t column) {
+    Traffic& owner = attribution_.cell(address, column);
     ++counters_.write_backs;
     ++owner.l2_write_backs;
     ++owner.memory_writes;
@@ -55,9 +55,9 @@ Answer L2::in_flight(CacheArray::Entry entry, std::uint64_t line, cycle done) {
     return {done, Cause::l2};
 }
 
-Answer L2::access(std::uint64_t address, cycle t, std::size_t phase, bool write, bool needs_data) {
+Answer L2::access(std::uint64_t address, cycle t, std::size_t column, bool write, bool needs_data) {
     std::uint64_t line = address >> line_shift_;
-    Traffic& cell = attribution_.cell(address, phase);
+    Traffic& cell = attribution_.cell(address, column);
     ++(write ? counters_.writes : counters_.reads);
     ++(write ? cell.l2_writes : cell.l2_reads);
     counters_.busy_cycles += occupancy_;
@@ -80,7 +80,7 @@ Answer L2::access(std::uint64_t address, cycle t, std::size_t phase, bool write,
     Request request{done, tile_, 0};
     if (array_.dirty(entry)) {
         request.write = array_.line(entry) << line_shift_;
-        note_write_back(request.write, phase);
+        note_write_back(request.write, column);
     }
     array_.fill(entry, line);
     array_.set_dirty(entry, write);
@@ -112,14 +112,14 @@ void L2::discard(std::uint64_t address) {
     }
 }
 
-void L2::invalidate(std::uint64_t address, cycle t, std::size_t phase) {
+void L2::invalidate(std::uint64_t address, cycle t, std::size_t column) {
     CacheArray::Entry entry = array_.find(address >> line_shift_);
     if (entry == CacheArray::none)
         return;
     ++counters_.invalidations;
     if (array_.dirty(entry)) {
         std::uint64_t own = array_.line(entry) << line_shift_;
-        note_write_back(own, phase);
+        note_write_back(own, column);
         leave({t, tile_, 0, own});
     }
     array_.drop(entry);

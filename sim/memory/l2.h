@@ -46,32 +46,32 @@ public:
        Attribution& attribution);
 
     /// A line of the level above, at any byte address in it.
-    Answer read(std::uint64_t address, cycle t, std::size_t phase) {
-        return access(address, t, phase, false, true);
+    Answer read(std::uint64_t address, cycle t, std::size_t column) {
+        return access(address, t, column, false, true);
     }
     /// A line written back from above, or a released word; `whole` lines need no fill. Ready when it is
     /// accepted.
-    Answer write(std::uint64_t address, cycle t, std::size_t phase, bool whole) {
-        return access(address, t, phase, true, !whole);
+    Answer write(std::uint64_t address, cycle t, std::size_t column, bool whole) {
+        return access(address, t, column, true, !whole);
     }
     /// A read-modify-write of a shared word: a read that leaves the line dirty.
-    Answer modify(std::uint64_t address, cycle t, std::size_t phase) {
-        Answer a = access(address, t, phase, false, true);
+    Answer modify(std::uint64_t address, cycle t, std::size_t column) {
+        Answer a = access(address, t, column, false, true);
         array_.set_dirty(array_.find(address >> line_shift_), true);
         return a;
     }
     /// The line's contents are dead: it need not be written back.
     void discard(std::uint64_t address);
     /// A shared word in the line was written in another tile: drops the line, writing it back if it is dirty.
-    void invalidate(std::uint64_t address, cycle t, std::size_t phase);
+    void invalidate(std::uint64_t address, cycle t, std::size_t column);
     /// The frame is over: `keep(address)` says which dirty lines are written back; all others are dropped.
-    template <class Keep> void finish(cycle t, std::size_t phase, Keep keep) {
+    template <class Keep> void finish(cycle t, std::size_t column, Keep keep) {
         array_.for_each([&](CacheArray::Entry e) {
             if (!array_.dirty(e))
                 return;
             std::uint64_t address = array_.line(e) << line_shift_;
             if (keep(address)) {
-                note_write_back(address, phase);
+                note_write_back(address, column);
                 leave({t, tile_, 0, address});
             } else {
                 ++counters_.dropped;
@@ -90,10 +90,10 @@ private:
         std::uint64_t line;
         cycle until; // a cycle or a ticket
     };
-    Answer access(std::uint64_t address, cycle t, std::size_t phase, bool write, bool needs_data);
+    Answer access(std::uint64_t address, cycle t, std::size_t column, bool write, bool needs_data);
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, cycle done);
     cycle arrival(std::uint64_t line);
-    void note_write_back(std::uint64_t address, std::size_t phase);
+    void note_write_back(std::uint64_t address, std::size_t column);
     void leave(Request r) {
         r.sequence = ++sequence_;
         leaving_.push_back(r);

@@ -1,9 +1,12 @@
-// Traffic by data structure and phase: one cell of plain counters for each pair. A line written back counts
-// for the structure it belongs to and the phase that evicted it.
+// Traffic by data structure, level of its contents, kind of work and phase: a cell of plain counters for each
+// combination. A line written back counts for the structure and level it belongs to and for the kind and
+// phase that evicted it.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace sim {
 
@@ -32,5 +35,27 @@ inline constexpr std::array<TrafficColumn, 10> traffic_columns = {{
     {"memory_reads", &Traffic::memory_reads, "lines read from memory"},
     {"memory_writes", &Traffic::memory_writes, "lines written to memory"},
 }};
+
+inline bool is_empty(const Traffic& t) {
+    for (const TrafficColumn& c : traffic_columns)
+        if (t.*c.count != 0)
+            return false;
+    return true;
+}
+
+/// A column is a kind of work and a phase: kind x phases + phase.
+inline constexpr std::size_t max_columns = 64;
+struct TrafficRow {
+    std::size_t structure;
+    std::optional<int> level; // of what lies there, where that is known
+    std::size_t column;
+    Traffic traffic;
+};
+/// Lines that were accessed in L1s under these columns, a bit each, and under no other.
+struct TouchedLines {
+    std::size_t structure;
+    std::uint64_t columns;
+    std::uint64_t lines;
+};
 
 } // namespace sim

@@ -185,12 +185,13 @@ int RunCommand::run() const {
     const std::atomic<bool>& interrupted = razor::watch_interrupts();
     const razor::Scene built = razor::build_scene(description);
     razor::Frame frame(built, {.workers = workers, .tree_of_worker = trees});
-    const std::vector<std::string> phases(std::begin(razor::phase_names), std::end(razor::phase_names));
+    const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
+                        {std::begin(razor::kind_names), std::end(razor::kind_names)}};
     Report report;
     {
         razor::Progress progress(!quiet_);
         const Watch watch(frame, progress, interrupted);
-        report = machine.run(frame.memory(), workers, phases,
+        report = machine.run(frame.memory(), workers, labels,
                              [&](int worker) { frame.render(razor::simulated::kernels, worker); });
     }
     std::optional<NativeRun> native;

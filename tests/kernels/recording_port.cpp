@@ -5,6 +5,7 @@
 #include <array>
 #include <initializer_list>
 #include <thread>
+#include <utility>
 
 namespace razor::test {
 
@@ -175,5 +176,11 @@ std::int32_t set_phase(std::int32_t phase) {
     tell(Event::phase, nowhere, static_cast<std::uint32_t>(phase), {});
     return before;
 }
+std::int32_t set_kind(std::int32_t kind) {
+    static thread_local std::int32_t current = 0;
+    return std::exchange(current, kind);
+}
+void note_level(const void*, std::uint64_t, std::int32_t) {}
+void note_level_of(const void*, std::uint64_t, const void*) {}
 
 } // namespace isa::timing

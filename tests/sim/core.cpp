@@ -167,8 +167,10 @@ TEST(Core, RegistersSpillThroughTheL1) {
     std::size_t spill = r.structures.size() - 1;
     EXPECT_EQ(r.structures[spill], "spill");
     auto lines = u(std::max(1, ISA_WIDTH * 4 / 64));
-    EXPECT_EQ(r.traffic[spill * r.phases.size()].l1_reads, 3 * lines);
-    EXPECT_EQ(r.traffic[spill * r.phases.size()].l1_writes, 2 * lines);
+    ASSERT_EQ(r.traffic.size(), 1U);
+    EXPECT_EQ(r.traffic[0].structure, spill);
+    EXPECT_EQ(r.traffic[0].traffic.l1_reads, 3 * lines);
+    EXPECT_EQ(r.traffic[0].traffic.l1_writes, 2 * lines);
     EXPECT_EQ(r.core.vops, 7U);
     c.core.vector_registers = 3;
     Report enough = run(c, [](int) {

@@ -35,12 +35,12 @@ struct Memory {
 };
 inline Report run(const Config& c, const std::function<void(int)>& worker, int workers = 1) {
     Memory memory;
-    return Machine(c).run(memory.space, workers, {"work"}, worker);
+    return Machine(c).run(memory.space, workers, {{"work"}}, worker);
 }
 /// With memory: worker(base).
 inline Report run_on(const Config& c, const std::function<void(std::byte*, int)>& worker, int workers = 1) {
     Memory memory;
-    return Machine(c).run(memory.space, workers, {"work"}, [&](int w) { worker(memory.data, w); });
+    return Machine(c).run(memory.space, workers, {{"work"}}, [&](int w) { worker(memory.data, w); });
 }
 /// When a value is there; waits for the answer if that is not known yet.
 inline cycle when(const stamp& s) {

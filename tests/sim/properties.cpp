@@ -90,7 +90,7 @@ TEST(Properties, RandomMachinesKeepTheLaws) {
         auto* data = reinterpret_cast<std::int32_t*>(memory.more);
         Machine machine(c);
         Report r;
-        ASSERT_NO_THROW(r = machine.run(memory.space, workers, {"work"}, [&](int w) {
+        ASSERT_NO_THROW(r = machine.run(memory.space, workers, {{"work"}}, [&](int w) {
             if (w == 0)
                 release_after(begin, 3000);
             else if (w % 2 == 0)

@@ -19,7 +19,7 @@ struct Shared {
     }
     std::int32_t* plain() const { return reinterpret_cast<std::int32_t*>(memory.more); }
     Report run(const Config& c, int workers, const std::function<void(int)>& f) const {
-        return Machine(c).run(memory.space, workers, {"work"}, f);
+        return Machine(c).run(memory.space, workers, {{"work"}}, f);
     }
 };
 
@@ -236,15 +236,15 @@ TEST(Machine, AQuantumChangesLittle) {
 
 TEST(Machine, PhasesSumToTheWhole) {
     Memory memory;
-    Report r = Machine(several(1, 1)).run(memory.space, 1, {"one", "two"}, [](int) {
+    Report r = Machine(several(1, 1)).run(memory.space, 1, {{"one", "two"}}, [](int) {
         scalar_op(operation::add, stamp{});
         EXPECT_EQ(set_phase(1), 0);
         scalar_op(operation::add, stamp{});
         scalar_op(operation::add, stamp{});
         EXPECT_EQ(set_phase(0), 1);
     });
-    EXPECT_EQ(r.phase_vops[0], 1U);
-    EXPECT_EQ(r.phase_vops[1], 2U);
+    EXPECT_EQ(r.work[0].vops, 1U);
+    EXPECT_EQ(r.work[1].vops, 2U);
 }
 
 TEST(Machine, PlacementPutsWorkersWhereItSays) {

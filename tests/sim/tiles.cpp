@@ -16,7 +16,7 @@ struct Shared {
     }
     std::int32_t* plain() const { return reinterpret_cast<std::int32_t*>(memory.more); }
     Report run(const Config& c, int workers, const std::function<void(int)>& f) const {
-        return Machine(c).run(memory.space, workers, {"work"}, f);
+        return Machine(c).run(memory.space, workers, {{"work"}}, f);
     }
 };
 
@@ -166,14 +166,14 @@ TEST(Tiles, TheFramesEndDropsTransientLines) {
     for (bool transient : {false, true}) {
         isa::address_space space(std::uint64_t{1} << 24);
         std::byte* data = space.add("data", -1, std::uint64_t{1} << 20, transient);
-        Report r = Machine(c).run(space, 2, {"work"}, [&](int w) {
+        Report r = Machine(c).run(space, 2, {{"work"}}, [&](int w) {
             for (int i = 0; i < lines; ++i)
                 store(here, data + (w * lines + i) * c.l1.line_bytes, 4, stamp{}, stamp{});
         });
         EXPECT_EQ(r.memory.writes, transient ? 0U : u(2 * lines));
         EXPECT_EQ(r.l1_total().dropped, transient ? u(2 * in_l1) : 0U);
         EXPECT_EQ(r.l2_total().dropped, transient ? u(2 * (lines - in_l1)) : 0U);
-        EXPECT_EQ(r.phases.back(), "frame end");
+        EXPECT_EQ(r.labels.phases.back(), "frame end");
     }
 }
 
