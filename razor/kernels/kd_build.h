@@ -120,6 +120,8 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     List child[2];
     child[0] = make_list(c, plane.below, l.depth + 1, l.low, cut_high);
     child[1] = make_list(c, plane.above, l.depth + 1, cut_low, l.high);
+    for (const List& part : child)
+        note_list_level_of(part, l);
     sint at[2] = {0, 0};
     pointer<float> low = l.boxes + l.stride * plane.axis;
     pointer<float> high = low + l.stride * 3;
@@ -134,6 +136,7 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     }
     for (int k = 0; k < 2; ++k) {
         pointer<KdNode> node = c.nodes + (children + k);
+        note_level_of(node, 1, l.header);
         close_list(child[k]);
         store(field(node, &KdNode::link), child[k].line);
         store(field(node, &KdNode::axis), 0);
@@ -160,11 +163,13 @@ inline void make_leaf(const Context& c, const List& l) {
     store(high + 2, leaf.high.z);
 }
 
-/// A node for those rays for which the leaf is too coarse.
-inline void make_finer(const Context& c, const List& l) {
+/// A node for those rays for which the leaf, of that level, is too coarse.
+inline void make_finer(const Context& c, const List& l, sint level) {
     sint finer = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
     store(field(l.header, &ItemList::finer), finer);
     pointer<KdNode> node = c.nodes + finer;
+    note_list_level(l, level, 0);
+    note_level(node, 1, level, 1);
     store(field(node, &KdNode::link), l.line);
     store(field(node, &KdNode::axis), 1);
     store_release(field(node, &KdNode::state), node_unsplit);
@@ -256,7 +261,7 @@ inline sint count_closed(const List& l) {
         wanted = wanted | (target >= power_of_two(level));
         if (branch(wanted | (level == least_level))) {
             if (branch(level != least_level))
-                make_finer(c, l);
+                make_finer(c, l, level);
             store(field(node, &KdNode::link), l.line);
             give_back_own(l);
             return node_leaf;

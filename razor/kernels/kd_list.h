@@ -68,6 +68,20 @@ inline List make_list(const Context& c, sint count, sint depth, const svec& low,
     return l;
 }
 
+/// Traffic to the list counts under level - finer; or under the level of `other`.
+struct ItemAndBox {
+    std::int32_t item;
+    float box[6];
+};
+inline void note_list_level(const List& l, sint level, int finer) {
+    note_level(l.header, 1, level, finer);
+    note_level(as<ItemAndBox>(l.items), l.stride, level, finer);
+}
+inline void note_list_level_of(const List& l, const List& other) {
+    note_level_of(l.header, 1, other.header);
+    note_level_of(as<ItemAndBox>(l.items), l.stride, other.header);
+}
+
 inline void close_list(const List& l) {
     store(field(l.header, &ItemList::count), l.count);
     store(field(l.header, &ItemList::stride), l.stride);
@@ -261,6 +275,7 @@ inline List refine_items(const Context& c, const List& old) {
     sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
     most = select(fixed > 0.0F, fixed, most);
     List l = make_list(c, total, old.depth + 1, old.low, old.high);
+    note_list_level(l, level, 1);
     sint at = 0;
     for (sint i = 0; branch(i < old.count); ++i) {
         sint line = sint(-1) - load(old.items + i);

@@ -207,6 +207,7 @@ template <class Wanted> inline List open_items(const Context& c, const List& old
         }
     }
     List l = make_list(c, total, old.depth, old.low, old.high);
+    note_list_level_of(l, old);
     sint at = 0;
     for (sint from = 0; branch(from < old.count); from += isa::width) {
         vmask valid = first_lanes(old.count - from);

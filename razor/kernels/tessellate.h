@@ -25,7 +25,9 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
     store(field(h, &BlockHeader::number), row * s.columns + column);
     store(field(h, &BlockHeader::instance), d.instance);
     store(field(h, &BlockHeader::level), d.level);
-    store(field(h, &BlockHeader::absolute), first_level + d.level);
+    sint absolute = first_level + d.level;
+    store(field(h, &BlockHeader::absolute), absolute);
+    note_level(as<Line>(h), s.lines, absolute);
     store(field(h, &BlockHeader::column), column);
     store(field(h, &BlockHeader::row), row);
     store(field(h, &BlockHeader::quads_u), s.quads_u);

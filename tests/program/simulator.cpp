@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <map>
 #include <optional>
 
 namespace razor {
@@ -74,6 +75,59 @@ TEST_F(Simulator, SharesTreesAsAsked) {
     }
     EXPECT_EQ(report("a.json").at("renderer").at("tree_of_worker"),
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
+}
+
+// Traffic by kind of ray and by level of what is read. At one fixed level rays meet blocks of no other.
+TEST_F(Simulator, AttributesTrafficToRaysAndLevels) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start =
+        "run --quiet --no-native --scene s.toml --size 33x33 --spp 1 --edge-pixels 2 --json "
+        "a.json --machine " +
+        tiny + " ";
+    const auto traffic = [&](const std::string& options) {
+        const Outcome result = simulator(start + options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        return report("a.json").at("traffic");
+    };
+    // Of reads, by `key`.
+    const auto reads = [](const nlohmann::json& rows, const char* key, const std::string& structure,
+                          const std::string& phase) {
+        std::map<nlohmann::json, std::int64_t> sum;
+        for (const nlohmann::json& row : rows)
+            if ((structure.empty() || row.at("structure") == structure) &&
+                (phase.empty() || row.at("phase") == phase) && row.at("l1_reads") > 0)
+                sum[row.at(key)] += row.at("l1_reads").get<std::int64_t>();
+        return sum;
+    };
+    const nlohmann::json all = traffic("--lod fixed --light-samples 1 --sky-samples 1");
+    const nlohmann::json sky = traffic("--lod fixed --light-samples 0 --sky-samples 1");
+    const nlohmann::json coarser = traffic("--lod fixed:1 --light-samples 0 --sky-samples 1");
+    const nlohmann::json own = traffic("--lod recursive --light-samples 0 --sky-samples 1");
+    const auto kinds = [&](const nlohmann::json& rows, const char* phase) {
+        std::vector<std::string> names;
+        for (const auto& [name, n] : reads(rows, "kind", "", phase))
+            names.push_back(name);
+        return names;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(kinds(all, "intersect"), (Names{"camera", "light", "sky"}));
+    EXPECT_EQ(kinds(sky, "intersect"), (Names{"camera", "sky"}));
+    EXPECT_EQ(kinds(sky, "animate"), Names{"none"});
+    EXPECT_EQ(kinds(sky, "tessellate"), (Names{"camera", "sky"}));
+
+    const auto finest = reads(sky, "level", "grids", "intersect");
+    const auto next = reads(coarser, "level", "grids", "intersect");
+    ASSERT_EQ(finest.size(), 1U);
+    ASSERT_EQ(next.size(), 1U);
+    EXPECT_EQ(next.begin()->first.get<int>(), finest.begin()->first.get<int>() + 1);
+    EXPECT_GT(reads(own, "level", "grids", "intersect").size(), 1U);
+    for (const char* structure : {"kd nodes", "item lists"}) { // the top of the tree has no level
+        const auto read = reads(own, "level", structure, "traverse");
+        EXPECT_EQ(read.count(nullptr), 1U) << structure;
+        EXPECT_GT(read.size(), 2U) << structure;
+        for (const auto& [level, n] : read)
+            EXPECT_TRUE(level.is_null() || level >= finest.begin()->first) << structure << ' ' << level;
+    }
 }
 
 // 512 threads on 16 tiles: the native picture, the same report twice, and what the report says of limits and
