@@ -99,8 +99,15 @@ inline void store(float* p, F a) { _mm256_storeu_ps(p, a); }
 inline void store(std::int32_t* p, I a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a); }
 inline void store(float* p, F a, M m) { _mm256_maskstore_ps(p, as_int(m), a); }
 inline void store(std::int32_t* p, I a, M m) { _mm256_maskstore_epi32(p, as_int(m), a); }
-inline F gather(const float* p, I index, M m) { return _mm256_mask_i32gather_ps(_mm256_setzero_ps(), p, index, m, 4); }
+// A gather takes as long without any lane: short lists leave most registers of a vector idle.
+inline F gather(const float* p, I index, M m) {
+    if (bits(m) == 0)
+        return _mm256_setzero_ps();
+    return _mm256_mask_i32gather_ps(_mm256_setzero_ps(), p, index, m, 4);
+}
 inline I gather(const std::int32_t* p, I index, M m) {
+    if (bits(m) == 0)
+        return _mm256_setzero_si256();
     return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), p, index, as_int(m), 4);
 }
 template <class T, class R> inline void scatter_lanes(T* p, I index, R a, M m) {

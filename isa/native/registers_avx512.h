@@ -133,14 +133,23 @@ inline void store(float* p, F a) { ISA_MM(storeu_ps)(p, a); }
 inline void store(std::int32_t* p, I a) { ISA_MM(storeu_epi32)(p, a); }
 inline void store(float* p, F a, M m) { ISA_MM(mask_storeu_ps)(p, m, a); }
 inline void store(std::int32_t* p, I a, M m) { ISA_MM(mask_storeu_epi32)(p, m, a); }
+// A gather takes as long without any lane: short lists leave most registers of a vector idle.
 #if ISA_WIDTH == 8
-inline F gather(const float* p, I index, M m) { return _mm256_mmask_i32gather_ps(broadcast(0.0F), m, index, p, 4); }
+inline F gather(const float* p, I index, M m) {
+    return m == 0 ? broadcast(0.0F) : _mm256_mmask_i32gather_ps(broadcast(0.0F), m, index, p, 4);
+}
 inline I gather(const std::int32_t* p, I index, M m) {
+    if (m == 0)
+        return broadcast(0);
     return _mm256_mmask_i32gather_epi32(broadcast(0), m, index, p, 4);
 }
 #else
-inline F gather(const float* p, I index, M m) { return _mm512_mask_i32gather_ps(broadcast(0.0F), m, index, p, 4); }
+inline F gather(const float* p, I index, M m) {
+    return m == 0 ? broadcast(0.0F) : _mm512_mask_i32gather_ps(broadcast(0.0F), m, index, p, 4);
+}
 inline I gather(const std::int32_t* p, I index, M m) {
+    if (m == 0)
+        return broadcast(0);
     return _mm512_mask_i32gather_epi32(broadcast(0), m, index, p, 4);
 }
 #endif

@@ -355,7 +355,14 @@ inline constexpr int pass_words = line_bytes / 4 + 4 * pass_vertices;
 constexpr int blend_pass(int log2_u, int log2_v, int pass) {
     return ((log2_u * (block_log2 + 1) + log2_v) * blend_passes + pass) * pass_words;
 }
-inline constexpr int blend_table_words = blend_pass(block_log2 + 1, 0, 0);
+// Most are in the last pass: for that, all vertices of the block as they lie in it, with what their parents
+// are (BlendParents) and their sides.
+enum BlendParents : std::int32_t { blend_none = 0, blend_along_u = 1, blend_along_v = 2, blend_diagonal = 3 };
+inline constexpr int row_vertices = 96; // a block's at most, in whole lines
+constexpr int blend_rows(int log2_u, int log2_v) {
+    return blend_pass(block_log2 + 1, 0, 0) + (log2_u * (block_log2 + 1) + log2_v) * 2 * row_vertices;
+}
+inline constexpr int blend_table_words = blend_rows(block_log2 + 1, 0);
 
 /// By what it is decided which level a ray sees of a block: its own box and those beside it in a leaf, or its
 /// patch's (razor/kernels/patch_levels.h).

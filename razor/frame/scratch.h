@@ -16,18 +16,18 @@ inline constexpr int scratch_curve_size = 3 * curve_row;
 inline constexpr int scratch_mailbox = scratch_curve + 2 * scratch_curve_size;
 /// A block as one field sees it, laid out as a block, each part at its largest. On the stack, one from which
 /// another hangs.
-inline constexpr int blend_cells = block_header_words + 3 * 96;
+inline constexpr int blend_cells = block_header_words + 3 * row_vertices;
 inline constexpr int blend_ancestors = blend_cells + 6 * cell_boxes;
 inline constexpr int blend_weights = blend_ancestors + 24;
-inline constexpr int blend_normals_at = blend_weights + 96;
-inline constexpr int blend_floats = blend_normals_at + 3 * 96;
+inline constexpr int blend_normals_at = blend_weights + row_vertices;
+inline constexpr int blend_floats = blend_normals_at + 3 * row_vertices;
 inline constexpr int scratch_blend = (scratch_mailbox + mailbox_slots + 15) / 16 * 16;
-/// Blocks on the way to the one whose corners do not move, and corners: [corner][xyz], twice.
+/// Blocks on the way to the one whose corners do not move, and corners: [corner][box], twice.
 inline constexpr int scratch_climb = scratch_blend + blend_floats;
 inline constexpr int scratch_corners = scratch_climb + 16;
 /// First line of the worker's unused item lists of each size, -1: none. Their first words are the lines of
 /// the next ones.
-inline constexpr int scratch_free_lists = scratch_corners + 32;
+inline constexpr int scratch_free_lists = scratch_corners + 48;
 inline constexpr int list_sizes = 48;
 inline constexpr int stack_floats = scratch_free_lists + list_sizes;
 

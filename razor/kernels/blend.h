@@ -55,129 +55,123 @@ inline svec blend_vertex(const Field& f, sint birth, const svec& anchor, const s
     return blend_vertex(weight, anchor, one, other);
 }
 
-/// Corners of a sub-face that are middles of edges move towards the mean of the edge's ends.
-inline void move_middles(const Field& f, pointer<BlockHeader> block, pointer<BlockHeader> root,
-                         pointer<float> corners) {
-    sint middles = load(field(root, &BlockHeader::middles));
-    if (branch(middles == 0))
-        return;
-    sint column = load(field(block, &BlockHeader::column));
-    sint row = load(field(block, &BlockHeader::row));
-    sint log2_u = load(field(block, &BlockHeader::exponent));
-    sint log2_v = load(field(block, &BlockHeader::exponent) + 1);
-    sint last_column = (sint(1) << max(log2_u - block_log2, 0)) - 1;
-    sint last_row = (sint(1) << max(log2_v - block_log2, 0)) - 1;
-    sbool there[2] = {column == last_column, column == 0};
-    there[0] = there[0] & (row == 0);
-    there[1] = there[1] & (row == last_row);
-    for (int k = 0; k < 2; ++k) {
-        if (branch(there[k])) {
-            int corner = k == 0 ? 1 : 3;
-            svec mean = load_svec(as<float>(root) + middles + (ends_mean + 3 * k));
-            svec anchor = corner_anchor(block, corner);
-            svec p = blend_vertex(f, birth_of_middle(root, k), anchor, mean, mean);
-            store_svec(corners + corner * 3, p);
-        }
-    }
-}
+/// Corners of blocks as a field sees them.
+struct SeenCorners {
+    static constexpr int words = 3;
+    const Field& f;
 
-/// Number of the corner at (i, j), each 0 or 1.
-inline sint corner_number(sint i, sint j) {
-    sint odd = i ^ j;
-    return odd + j * 2;
-}
-
-/// The corners of a block's child from its own.
-inline void move_corners(const Field& f, pointer<BlockHeader> block, pointer<BlockHeader> child,
-                         pointer<float> from, pointer<float> to) {
-    sint absolute = load(field(block, &BlockHeader::absolute));
-    sint column = load(field(child, &BlockHeader::column));
-    sint row = load(field(child, &BlockHeader::row));
-    sint log2_u = load(field(child, &BlockHeader::exponent));
-    sint log2_v = load(field(child, &BlockHeader::exponent) + 1);
-    sbool split_u = log2_u > block_log2;
-    sbool split_v = log2_v > block_log2;
-    sint early[4];
-    for (int s = 0; s < 4; ++s)
-        early[s] = early_on_side(block, s);
-    for (int k = 0; k < 4; ++k) {
-        int right = k == 1 || k == 2 ? 1 : 0;
-        int up = k >= 2 ? 1 : 0;
-        // In halves of the block.
-        sint i = select(split_u, (column & 1) + right, sint(2 * right));
-        sint j = select(split_v, (row & 1) + up, sint(2 * up));
-        sint odd_i = i & 1;
-        sint odd_j = j & 1;
-        sint low_i = (i - odd_i) >> 1;
-        sint low_j = (j - odd_j) >> 1;
-        pointer<float> one_at = from + corner_number(low_i, low_j) * 3;
-        svec p = load_svec(one_at);
-        if (branch((odd_i | odd_j) != 0)) {
-            sint other_i = low_i + odd_i;
-            pointer<float> other_at = from + corner_number(other_i, low_j + odd_j) * 3;
-            svec other = load_svec(other_at);
-            sint along_u = select(j == 0, early[0], early[2]);
-            sint along_v = select(i == 0, early[3], early[1]);
-            sint sooner = select(odd_j != 0, along_v, along_u);
-            sooner = select((odd_i & odd_j) != 0, sint(0), sooner);
-            svec anchor = corner_anchor(child, k);
-            p = blend_vertex(f, absolute + (block_log2 - 1) + sooner, anchor, p, other);
-        }
-        store_svec(to + 3 * k, p);
-    }
-}
-
-/// Where the field finds the corners of a block: [corner][xyz], in scratch.
-inline pointer<float> find_corners(const Context& c, const Field& f, sint line) {
-    pointer<std::int32_t> climb = as<std::int32_t>(c.stack + scratch_climb);
-    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-    sint patch = load(field(block, &BlockHeader::patch));
-    sint root_line = load(field(c.open + patch, &OpenPatch::root));
-    pointer<BlockHeader> root = as<BlockHeader>(c.grids + root_line);
-    sint depth = 0;
-    sint at = line;
-    for (;;) {
-        sint parent = load(field(block, &BlockHeader::parent));
-        if (branch(parent < 0))
-            break;
-        sint absolute = load(field(block, &BlockHeader::absolute));
-        sint birth = absolute + earliest_birth(block) + block_log2;
+    /// Whether corners born at this level or above are at their anchors.
+    sbool at_rest(pointer<BlockHeader> block, sint birth) const {
         sfloat most = largest_target(f, block);
-        if (branch(most <= moving_from(birth)))
-            break;
-        store(climb + depth, at);
-        ++depth;
-        at = parent;
-        block = as<BlockHeader>(c.grids + at);
+        return most <= moving_from(birth);
     }
-    pointer<float> corners = c.stack + scratch_corners;
-    pointer<float> spare = corners + 12;
-    for (int k = 0; k < 4; ++k)
-        store_svec(corners + 3 * k, corner_anchor(block, k));
-    move_middles(f, block, root, corners);
-    while (branch(depth > 0)) {
-        --depth;
-        sint child_line = load(climb + depth);
-        pointer<BlockHeader> child = as<BlockHeader>(c.grids + child_line);
-        move_corners(f, block, child, corners, spare);
-        move_middles(f, child, root, spare);
-        pointer<float> swap = corners;
-        corners = spare;
-        spare = swap;
-        block = child;
+    void climb(pointer<BlockHeader>) {}
+    svec place(const svec& anchor) const { return anchor; }
+    svec load_place(pointer<float> at) const { return load_svec(at); }
+    void store_place(pointer<float> at, const svec& p) const { store_svec(at, p); }
+    svec moved(sint birth, const svec& anchor, const svec& one, const svec& other) const {
+        return blend_vertex(f, birth, anchor, one, other);
     }
-    return corners;
+};
+
+/// At which levels vertices of a block are born: of the finest inside it, and how much earlier on each side.
+struct Births {
+    sint inside, earliest;
+    vint early[4];
+
+    /// Of vertices on these sides, one a lane, that would be born at `birth` inside.
+    vint on_sides(sint birth, const vint& side) const {
+        vint sooner = vint(0);
+        for (int s = 0; s < 4; ++s)
+            sooner = select(side == vint(s), early[s], sooner);
+        return vint(birth) + sooner;
+    }
+};
+inline Births births_in(pointer<BlockHeader> block) {
+    Births b;
+    b.inside = load(field(block, &BlockHeader::absolute));
+    b.earliest = 0;
+    for (int s = 0; s < 4; ++s) {
+        sint sooner = early_on_side(block, s);
+        b.earliest = min(sooner, b.earliest);
+        b.early[s] = vint(sooner);
+    }
+    return b;
+}
+
+/// The vertices of one pass, one a lane.
+inline void blend_pass_of(const Field& f, const Births& births, sint birth, pointer<std::int32_t> pass,
+                          pointer<float> anchors, pointer<float> out, sint stride) {
+    pointer<float> x = out + block_header_words;
+    sint n = load(pass);
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vmask m = first_lanes(n - from);
+        BlendStep v = load_step(pass, from, m);
+        vvec anchor = gather_vertex(anchors, stride, v.vertex, m);
+        vvec a = gather_vertex(x, stride, v.one, m);
+        vvec b = gather_vertex(x, stride, v.other, m);
+        vint born = births.on_sides(birth, v.side);
+        vfloat weight = weight_of(target_at(f, anchor), born);
+        vvec q = blend_vertex(weight, anchor, a, b);
+        scatter_vec(x, stride, v.vertex, q, m);
+        scatter(out + blend_weights, v.vertex, weight, m);
+    }
+}
+
+/// Both parents of vertices as they lie, along u, v, or the diagonal; beyond them whatever is in the slot.
+inline vvec load_parents(pointer<float> x, sint stride, sint width, int way, const vmask& along_u,
+                         const vmask& along_v) {
+    vvec p;
+    for (int k = 0; k < 3; ++k) {
+        vfloat q = load_vector(x + (width + 1) * way);
+        vfloat v = load_vector(x + width * way);
+        q = select(along_v, v, q);
+        vfloat u = load_vector(x + way);
+        (k == 0 ? p.x : k == 1 ? p.y : p.z) = select(along_u, u, q);
+        x = x + stride;
+    }
+    return p;
+}
+
+/// The same for the last pass, which has most vertices: all of the block as they lie, so that nothing is
+/// gathered.
+inline void blend_rows_of(const Field& f, const Births& births, pointer<std::int32_t> rows, sint quads_u,
+                          pointer<float> anchors, pointer<float> out, sint stride) {
+    sint width = quads_u + 1;
+    for (sint from = 0; branch(from < stride); from += isa::width) {
+        vmask m = first_lanes(stride - from);
+        vint parents = load_vector(rows + from, m);
+        vint side = load_vector(rows + (from + row_vertices), m);
+        m = m & (parents != vint(blend_none));
+        vmask along_u = parents == vint(blend_along_u);
+        vmask along_v = parents == vint(blend_along_v);
+        vvec anchor;
+        pointer<float> at = anchors + from;
+        anchor.x = load_vector(at, m);
+        anchor.y = load_vector(at + stride, m);
+        anchor.z = load_vector(at + stride * 2, m);
+        pointer<float> x = out + block_header_words + from;
+        vvec a = load_parents(x, stride, width, -1, along_u, along_v);
+        vvec b = load_parents(x, stride, width, 1, along_u, along_v);
+        vint born = births.on_sides(births.inside, side);
+        vfloat weight = weight_of(target_at(f, anchor), born);
+        vvec q = blend_vertex(weight, anchor, a, b);
+        store_vector(x, q.x, m);
+        store_vector(x + stride, q.y, m);
+        store_vector(x + stride * 2, q.z, m);
+        store_vector(out + blend_weights + from, weight, m);
+    }
 }
 
 /// The vertices, x[stride], y, z, behind a header that only holds a box, and the weights that made them.
 /// `out` is one of the two blend areas.
 inline void blend_vertices(const Context& c, const Field& f, sint line, pointer<float> out) {
-    pointer<float> corners = find_corners(c, f, line);
+    SeenCorners seen{f};
+    pointer<float> corners = find_corners(c, seen, line);
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     sint quads_u = load(field(block, &BlockHeader::quads_u));
     sint quads_v = load(field(block, &BlockHeader::quads_v));
     sint stride = load(field(block, &BlockHeader::stride));
-    sint absolute = load(field(block, &BlockHeader::absolute));
     pointer<float> anchors = as<float>(block) + block_header_words;
     pointer<float> x = out + block_header_words;
     pointer<float> weights = out + blend_weights;
@@ -196,41 +190,18 @@ inline void blend_vertices(const Context& c, const Field& f, sint line, pointer<
         store(x + stride + vertex, p.y);
         store(x + stride * 2 + vertex, p.z);
     }
-    vint early[4];
-    sint earliest = 0;
-    for (int s = 0; s < 4; ++s) {
-        sint sooner = early_on_side(block, s);
-        earliest = min(sooner, earliest);
-        early[s] = vint(sooner);
-    }
+    Births births = births_in(block);
     sfloat most = largest_target(f, block);
     pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
-    for (int p = 0; p < blend_passes; ++p) {
-        sint step = block_log2 - 1 - p;
-        sfloat begin = moving_from(absolute + step + earliest);
-        sint n = 0; // where nothing moves, anchors it is
-        if (branch(most > begin))
-            n = load(pass);
-        for (sint from = 0; branch(from < n); from += isa::width) {
-            vmask m = first_lanes(n - from);
-            BlendStep v = load_step(pass, from, m);
-            vvec anchor = gather_vertex(anchors, stride, v.vertex, m);
-            vvec a = gather_vertex(x, stride, v.one, m);
-            vvec b = gather_vertex(x, stride, v.other, m);
-            vint birth = vint(absolute + step);
-            vint sooner = vint(0);
-            for (int s = 0; s < 4; ++s) {
-                vmask on = v.side == vint(s);
-                sooner = select(on, early[s], sooner);
-            }
-            birth = birth + sooner;
-            vfloat weight = weight_of(target_at(f, anchor), birth);
-            vvec q = blend_vertex(weight, anchor, a, b);
-            scatter_vec(x, stride, v.vertex, q, m);
-            scatter(weights, v.vertex, weight, m);
-        }
+    // Where nothing moves, anchors it is.
+    for (int p = 0; p < blend_passes - 1; ++p) {
+        sint birth = births.inside + (block_log2 - 1 - p);
+        if (branch(most > moving_from(birth + births.earliest)))
+            blend_pass_of(f, births, birth, pass, anchors, out, stride);
         pass = pass + pass_words;
     }
+    if (branch(most > moving_from(births.inside + births.earliest)))
+        blend_rows_of(f, births, last_pass_rows(c, quads_u, quads_v), quads_u, anchors, out, stride);
 }
 
 /// The ends of the flat edge, longer than the block, that side s of block `line` hangs from: found in the

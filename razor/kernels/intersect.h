@@ -242,6 +242,8 @@ inline Along along(const vmask& steep, const Edge& e) {
     return {select(steep, e.p.y, e.p.x), select(steep, e.q.y, e.q.x)};
 }
 
+inline constexpr float gap_slacks = 4.0F; // how wide gaps are at most, in slacks of positions: with room
+
 /// A side with hanging vertices leaves its flat ancestor edge, which is all that the neighbour knows of, by
 /// their rounding. What lies between the ancestor and sub-edge i, over the sub-edge's length, belongs to this
 /// block, and is hit as a point of the sub-edge. Lengths of sub-edges add up to the ancestor's exactly, so
@@ -287,6 +289,21 @@ inline void fill_gap(const Group& g, const View& v, int s, sint hang, sint i, si
     record(v, hit, t, u, w, number, hits);
 }
 
+/// Rays that may meet a gap along side s of a quad, whose edge function there is given: hanging vertices are
+/// off their ancestor by the rounding of means, less than positions may be.
+inline vmask near_gap(const Group& g, const View& v, const Border& border, int s, const vfloat& side,
+                      const Projected& p, const Projected& q) {
+    if (branch(!(border.side[s] & (v.longest[s] > 0))))
+        return vmask(false);
+    vfloat dx = abs(q.x - p.x);
+    vfloat dy = abs(q.y - p.y);
+    vfloat length = dx + dy;
+    sfloat room = g.slack * gap_slacks;
+    vfloat most = length * vfloat(room);
+    return g.alive & (abs(side) <= most);
+}
+
+/// For these, out of line: seldom called.
 [[gnu::noinline]] inline void fill_gaps(const Group& g, const View& v, sint i, sint j, Hits& hits) {
     Border border = border_of(v, i, j);
     sint quad = ((j << block_log2) + i) * 2;
@@ -365,8 +382,15 @@ inline void intersect_cell(const Context& c, const Group& g, const View& v, sint
             if (branch(any(inside0 | inside1)))
                 hit_quad(g, v, i, j, low, high, inside0, inside1, hits);
             if constexpr (F.hanging) {
-                if (branch(v.hangs != 0))
-                    fill_gaps(g, v, i, j, hits);
+                if (branch(v.hangs != 0)) {
+                    Border border = border_of(v, i, j);
+                    vmask near = near_gap(g, v, border, 0, bottom, p00, p10);
+                    near = near | near_gap(g, v, border, 1, right, p10, p11);
+                    near = near | near_gap(g, v, border, 2, top, p01, p11);
+                    near = near | near_gap(g, v, border, 3, left, p00, p01);
+                    if (branch(any(near)))
+                        fill_gaps(g, v, i, j, hits);
+                }
             }
             p00 = p10;
             p01 = p11;

@@ -1,16 +1,23 @@
 // Where the vertices of a block can be found by any ray that asks for it: the box with which it is listed.
 #pragma once
 
-#include "razor/kernels/morph.h"
-#include "razor/kernels/tessellate.h"
+#include "razor/kernels/corners.h"
 
 namespace razor::ISA_TARGET {
 inline namespace build_kernel {
 
-/// A box in scene coordinates.
+/// A box.
 struct Reach {
     svec low, high;
 };
+
+/// That of two boxes.
+inline Reach hold(const Reach& a, const Reach& b) {
+    Reach r;
+    r.low = {min(a.low.x, b.low.x), min(a.low.y, b.low.y), min(a.low.z, b.low.z)};
+    r.high = {max(a.high.x, b.high.x), max(a.high.y, b.high.y), max(a.high.z, b.high.z)};
+    return r;
+}
 
 /// How far a corner of the block that is the middle of an edge moves where target edge lengths are `target`.
 inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat target) {
@@ -48,6 +55,40 @@ inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat 
     return sum;
 }
 
+/// Where corners of blocks can be where target edge lengths are at most `target`, in boxes: at their anchors,
+/// if they move at the means of where others can be, or between.
+struct CornerReach {
+    static constexpr int words = 6;
+    sfloat target;
+
+    sbool at_rest(pointer<BlockHeader>, sint birth) const { return target < moving_from(birth); }
+    /// Corners of coarser blocks lie further off.
+    void climb(pointer<BlockHeader> block) {
+        svec low = load_svec(field(block, &BlockHeader::box_low));
+        svec high = load_svec(field(block, &BlockHeader::box_high));
+        target = min(coarsest_target(target, high - low), 3.0e38F);
+    }
+    Reach place(const svec& anchor) const { return {anchor, anchor}; }
+    Reach load_place(pointer<float> at) const {
+        Reach box;
+        box.low = load_svec(at);
+        box.high = load_svec(at + 3);
+        return box;
+    }
+    void store_place(pointer<float> at, const Reach& box) const {
+        store_svec(at, box.low);
+        store_svec(at + 3, box.high);
+    }
+    Reach moved(sint birth, const svec& anchor, const Reach& one, const Reach& other) const {
+        Reach box = place(anchor);
+        if (branch(target < moving_from(birth)))
+            return box;
+        svec low = middle(one.low, other.low);
+        svec high = middle(one.high, other.high);
+        return hold(box, {low, high});
+    }
+};
+
 /// The box of a block's surface and of everything that its vertices can be moved to where target edge lengths
 /// are at most `target`. Inside a block vertices move towards others of it; so all depends on its corners.
 inline Reach reach_of(const Context& c, sint line, sfloat target) {
@@ -57,11 +98,12 @@ inline Reach reach_of(const Context& c, sint line, sfloat target) {
     box.high = load_svec(field(block, &BlockHeader::box_high));
     sint instance = load(field(block, &BlockHeader::instance));
     sint movable = load(field(block, &BlockHeader::movable));
-    if (branch(movable != 0)) {
-        sfloat more = corners_move(c, block, target);
-        svec wide{more, more, more};
-        box.low = box.low - wide;
-        box.high = box.high + wide;
+    sbool morphs = load(field(c.frame, &FrameHeader::morphs)) != 0;
+    if (branch(morphs & (movable != 0))) {
+        CornerReach seen{target};
+        pointer<float> corners = find_corners(c, seen, line);
+        for (int k = 0; k < 4; ++k)
+            box = hold(box, seen.load_place(corners + CornerReach::words * k));
     }
     svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
     box.low = box.low + origin;
