@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 
-SCHEMES = ["recursive", "discrete", "patch", "camera", "fixed", "fixed:1", "fixed:2", "fixed:3"]
+SCHEMES = ["recursive", "discrete", "patch", "paper", "camera", "fixed", "fixed:1", "fixed:2", "fixed:3"]
 
 
 def run(command):

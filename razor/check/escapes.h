@@ -13,7 +13,7 @@ namespace razor::check {
 
 /// Whether what all rays of one field see is one surface. Else it has no definition to compare with.
 constexpr bool sees_one_surface(Lod lod) {
-    return lod != Lod::discrete && lod != Lod::patch;
+    return lod != Lod::discrete && lod != Lod::patch && lod != Lod::paper;
 }
 
 struct EscapeOptions {

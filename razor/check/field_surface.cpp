@@ -116,6 +116,11 @@ glm::dvec3 FieldSurface::origin_of(const Grid& grid) const {
     return vec(origins_[static_cast<std::size_t>(grid.instance)]);
 }
 
+FieldSurface::Shape FieldSurface::shape(int patch) const {
+    const Grid& g = grids_[static_cast<std::size_t>(patch)];
+    return {g.nu, g.nv, g.first_level, g.triangles, origin_of(g)};
+}
+
 /// Halves the patches at the median along the box's longest side.
 int FieldSurface::build(std::vector<int>& order, std::size_t begin, std::size_t end) {
     const auto number = static_cast<int>(nodes_.size());

@@ -38,6 +38,12 @@ public:
 
     std::size_t vertices() const;
     std::size_t patches() const { return grids_.size(); }
+    /// The finest grid of a patch, 2^nu x 2^nv quads, from its instance's origin.
+    struct Shape {
+        int nu = 0, nv = 0, first_level = 0, triangles = 2;
+        glm::dvec3 origin{0};
+    };
+    Shape shape(int patch) const;
     /// Of everything, scene coordinates.
     const Extent& extent() const { return extent_; }
     /// Absolute levels of detail that some patch has: the finest, and one that is coarser than all.
@@ -90,6 +96,8 @@ public:
     std::vector<Crossing> crossings(const Ray& ray, double roundings);
     /// The same without looking at any box.
     std::vector<Crossing> crossings_of_all(const Ray& ray, double roundings);
+    /// The vertices of a patch's finest grid, row by row, from its instance's origin.
+    const std::vector<glm::dvec3>& points(int patch) { return blended(patch).points; }
     /// Whether a point is inside: an odd number of crossings along each of three directions.
     bool inside(const Point& p);
     /// Vertices that are neither at their anchor nor at their parents' mean.

@@ -69,7 +69,7 @@ public:
         const FrameHeader& h = frame.header();
         const dvec3 origin = vec(record.origin);
         field_ = {vec(h.field_origin) - origin, vec(h.camera_slope), h.camera_base, h.camera_growth};
-        morphs_ = h.morphs != 0;
+        morphs_ = h.morphs != 0 && h.level_choice == by_leaf;
         // Of what a mirror turned over, counter-clockwise is clockwise.
         const float* m = record.linear;
         mirrored_ =

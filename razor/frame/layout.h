@@ -364,9 +364,9 @@ constexpr int blend_rows(int log2_u, int log2_v) {
 }
 inline constexpr int blend_table_words = blend_rows(block_log2 + 1, 0);
 
-/// By what it is decided which level a ray sees of a block: its own box and those beside it in a leaf, or its
-/// patch's (razor/kernels/patch_levels.h).
-enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1 };
+/// By what it is decided which level a ray sees of a block: its own box and those beside it in a leaf, its
+/// patch's (razor/kernels/patch_levels.h), or how far along the ray it is (razor/kernels/paper_levels.h).
+enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 
 struct FrameHeader {
     std::int32_t width, height, samples;

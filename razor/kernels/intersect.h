@@ -47,8 +47,8 @@ inline vmask cells_met(const Group& g, const View& v, const svec& origin, sfloat
 }
 
 /// The up to 2 x 2 quads of a cell, row by row; neighbours in a row share two vertices and an edge.
-template <Features F>
-inline void intersect_cell(const Context& c, const Group& g, const View& v, sint column, sint row,
+template <Features F, class Seen>
+inline void intersect_cell(const Context& c, const Group& g, const Seen& v, sint column, sint row,
                            Hits& hits) {
     sint end_u = min(column + 2, v.quads_u);
     sint end_v = min(row + 2, v.quads_v);

@@ -137,8 +137,43 @@ struct Corners {
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
     vfloat sway;                   // of the block's finest vertices
 };
+/// A block between two levels of the paper's scheme, `number` that of the finer one's field: arrays of both
+/// levels' vertices, and of their normals.
+struct BlockPair {
+    pointer<float> fine, coarse, fine_normals, coarse_normals;
+};
+inline BlockPair block_pair(const Context& c, sint line, sint number, sint normals_at) {
+    sint level = level_of_number(number);
+    pointer<float> fine = level_slot(c, level, line);
+    pointer<float> coarse = level_slot(c, level + 1, line);
+    BlockPair p;
+    p.fine = fine + (slot_block + block_header_words);
+    p.coarse = coarse + (slot_block + block_header_words);
+    if (branch(normals_at != 0)) {
+        pointer<float> normals = as<float>(c.grids + line) + normals_at;
+        p.fine_normals = blended_normals(c, line, normals, fine);
+        p.coarse_normals = blended_normals(c, line, normals, coarse);
+    }
+    return p;
+}
+
+/// The vertex and its normal where each ray sees them.
+inline void find_between(const BlockPair& p, const Scale& s, const vvec& from, sint number, const vint& at,
+                         const vint& stride, sint normals_at, const vmask& m, vvec& vertex, vvec& normal) {
+    vvec fine = gather_vec(p.fine, at, stride, m);
+    vvec coarse = gather_vec(p.coarse, at, stride, m);
+    sint level = level_of_number(number);
+    vfloat weight = pair_weight(s, dot(fine - from, s.direction), level);
+    vertex = select(m, blend_pair(weight, fine, coarse), vertex);
+    if (branch(normals_at != 0)) {
+        fine = gather_vec(p.fine_normals, at, stride, m);
+        coarse = gather_vec(p.coarse_normals, at, stride, m);
+        normal = select(m, blend_pair(weight, fine, coarse), normal);
+    }
+}
+
 /// Block after block.
-inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit) {
+inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, const vmask& hit) {
     TriangleWords t = locate(c, h, hit);
     vfloat zero(0.0F);
     vvec none_yet{zero, zero, zero};
@@ -161,6 +196,18 @@ inline Corners find_triangles(const Context& c, const Hits& h, const vmask& hit)
             k.sway = select(here, sway, k.sway);
         }
         sint normals_at = ensure_normals(c, block);
+        if (branch(lane < -1)) {
+            BlockPair p = block_pair(c, block, lane, normals_at);
+            Scale scale = scale_of(c, r);
+            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
+            svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
+            vvec from = r.origin - broadcast(origin);
+            find_between(p, scale, from, lane, at_a, t.stride, normals_at, here, k.a, k.at_a);
+            find_between(p, scale, from, lane, at_b, t.stride, normals_at, here, k.b, k.at_b);
+            find_between(p, scale, from, lane, at_c, t.stride, normals_at, here, k.c, k.at_c);
+            k.normal = select(here, blend(k.at_a, k.at_b, k.at_c, h), k.normal);
+            continue;
+        }
         pointer<float> vertices = words + block_header_words;
         pointer<float> normals = words + normals_at;
         if (branch(lane >= 0)) {
@@ -228,7 +275,7 @@ inline vvec lift_of(const Corners& k, const Hits& h, const vvec& p, const vfloat
     phase_scope phase(phase_shade);
     Surface s;
     s.hit = h.patch >= vint(0);
-    Corners k = find_triangles(c, h, s.hit);
+    Corners k = find_triangles(c, r, h, s.hit);
     vvec toward = r.direction * vfloat(-1.0F);
     vvec edge1 = k.b - k.a;
     vvec edge2 = k.c - k.a;

@@ -4,6 +4,7 @@
 // (patch, triangle).
 #pragma once
 
+#include "razor/kernels/paper_levels.h"
 #include "razor/kernels/patch_levels.h"
 
 namespace razor::ISA_TARGET {
@@ -176,6 +177,9 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
     pointer<std::int32_t> mailbox = as<std::int32_t>(c.stack + scratch_mailbox);
     for (int i = 0; i < mailbox_slots; i += isa::width)
         store_vector(mailbox + i, vint(-1), first_lanes(mailbox_slots - i));
+    Scale scale;
+    if constexpr (By == by_stretch)
+        scale = scale_of_group(c, g, r);
     sint number = load(field(c.tree, &TreeRecord::root));
     pointer<float> top = c.stack; // of the stack: the next free entry
     sint depth = 0;
@@ -259,8 +263,11 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
                 }
             }
         }
-        if constexpr (By == by_patch) {
-            deeper = intersect_patches<F, AnyHit, Mixed>(c, g, list, {enter, leave}, hits);
+        if constexpr (By != by_leaf) {
+            if constexpr (By == by_patch)
+                deeper = intersect_patches<F, AnyHit, Mixed>(c, g, list, {enter, leave}, hits);
+            else
+                deeper = intersect_stretches<F, AnyHit, Mixed>(c, g, scale, list, {enter, leave}, hits);
             if constexpr (AnyHit) {
                 if (branch(none(g.alive)))
                     return;
@@ -398,6 +405,10 @@ template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Con
         if constexpr (F.hanging) {
             if (branch(choice == sint(by_patch))) {
                 trace_either<F, by_patch, AnyHit>(c, r, g, hits);
+                continue;
+            }
+            if (branch(choice == sint(by_stretch))) {
+                trace_either<F, by_stretch, AnyHit>(c, r, g, hits);
                 continue;
             }
         }

@@ -124,8 +124,14 @@ inline Projected project(const Group& g, const View& v, const vfloat& x, const v
     hits.field = select(hit, vint(v.field), hits.field);
 }
 
+/// Of the lanes that hit, those whose hits count there: all.
+inline vmask counted(const View&, const vmask& hit, const vfloat&) {
+    return hit;
+}
+
 /// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
-[[gnu::always_inline]] inline void accept(const Group& g, const View& v, vmask inside, vfloat U, vfloat V,
+template <class Seen>
+[[gnu::always_inline]] inline void accept(const Group& g, const Seen& v, vmask inside, vfloat U, vfloat V,
                                           vfloat W, const Projected& a, const Projected& b,
                                           const Projected& c, sint triangle, Hits& hits) {
     vfloat sum = U + V;
@@ -136,6 +142,7 @@ inline Projected project(const Group& g, const View& v, const vfloat& x, const v
     vfloat t = depth * g.scale_z * inverse;
     vint number = vint(triangle);
     vmask hit = nearer(g, v, inside, t, number, hits);
+    hit = counted(v, hit, t);
     if (branch(any(hit))) {
         vfloat u = V * inverse;
         vfloat w = W * inverse;
@@ -155,7 +162,8 @@ inline vmask agree(const vfloat& u, const vfloat& v, const vfloat& w) {
 /// For lanes that may hit the quad's triangles, (00, 10, 11) and (00, 11, 01): decides exactly, and takes the
 /// hits. Seldom called and out of line, so that the inner loop keeps nothing for it: it projects the vertices
 /// again.
-[[gnu::noinline]] inline void hit_quad(const Group& g, const View& v, sint i, sint j, sint low, sint high,
+template <class Seen>
+[[gnu::noinline]] inline void hit_quad(const Group& g, const Seen& v, sint i, sint j, sint low, sint high,
                                        vmask inside0, vmask inside1, Hits& hits) {
     Projected p00 = project_vertex(g, v, low);
     Projected p10 = project_vertex(g, v, low + 1);

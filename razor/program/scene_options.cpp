@@ -41,10 +41,11 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
     app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
         ->type_name("X");
-    app.add_option("--lod", lod_,
-                   "levels of detail: recursive (every ray its own), discrete (the same without blending), "
-                   "patch (one level a patch and ray), camera (all rays the camera's), fixed (the finest) or "
-                   "fixed:K (K levels coarser)")
+    app.add_option(
+           "--lod", lod_,
+           "levels of detail: recursive (every ray its own), discrete (the same without blending), "
+           "patch (one level a patch and ray), paper (pairs of levels along each ray), camera (all rays the "
+           "camera's), fixed (the finest) or fixed:K (K levels coarser)")
         ->type_name("NAME");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");

@@ -98,6 +98,7 @@ enum class Lod : std::uint8_t {
     recursive, // every ray its own, continuously (razor/kernels/morph.h)
     discrete,  // the same levels, from one to the next at once: with holes and pops, to compare with
     patch,     // every ray each patch at one level: with cracks between patches, to compare with
+    paper,     // "Razor" (Djeu et al., TOG 2011): with holes, to compare with
     camera,    // all rays what the camera's rays see
     fixed,     // all rays the same level of each mesh
 };

@@ -17,10 +17,11 @@ inline constexpr std::array<Word<Scheme>, 2> scheme_words{{
     {"bilinear", Scheme::bilinear},
 }};
 
-inline constexpr std::array<Word<LevelOfDetail>, 13> lod_words{{
+inline constexpr std::array<Word<LevelOfDetail>, 14> lod_words{{
     {"recursive", {Lod::recursive}},
     {"discrete", {Lod::discrete}},
     {"patch", {Lod::patch}},
+    {"paper", {Lod::paper}},
     {"camera", {Lod::camera}},
     {"fixed", {Lod::fixed}},
     {"fixed:1", {Lod::fixed, 1}},

@@ -46,6 +46,8 @@ std::vector<Scene> scenes() {
     all.push_back(scene_of(bilinear(cube_cage()), 10)); // flat patches only
     all.push_back(named_scene("torus_stretched")->scene);
     all.back().settings.lod = Lod::patch;
+    all.push_back(named_scene("urchin_stretched")->scene);
+    all.back().settings.lod = Lod::paper;
     return all;
 }
 

@@ -103,7 +103,7 @@ TEST_F(Check, ShootsFromInside) {
 }
 
 TEST_F(Check, LevelsThatJumpHaveHoles) {
-    for (const char* lod : {"discrete", "patch"}) {
+    for (const char* lod : {"discrete", "patch", "paper"}) {
         const nlohmann::json r = json(
             std::string("torus.obj --size 256x256 --escape 60000 --compare 10 --lod ") + lod, 1)["escape"];
         EXPECT_EQ(r["lod"], lod);

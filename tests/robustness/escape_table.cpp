@@ -143,7 +143,7 @@ int main_(int argc, char** argv) {
     app.add_option("--compare", options.compared, "hits a case, with the surface by definition");
     app.add_option("--rays-an-origin", options.rays_an_origin)->check(CLI::Range(1, 8192));
     app.add_option("--case", wanted, "only these numbers");
-    app.add_option("--lod", lod_word, "recursive, discrete, patch, fixed, ...");
+    app.add_option("--lod", lod_word, "recursive, discrete, patch, paper, fixed, ...");
     app.add_option("--json", json_file, "write the table for programs");
     app.add_flag("--small", small, "only models that are made here, at no more than 60 edges across");
     CLI11_PARSE(app, argc, argv);
