@@ -112,6 +112,30 @@ Mesh tapered_cage() {
     return m;
 }
 
+Mesh bevelled_slab() {
+    constexpr double half_height = 0.1, bevel = 0.02;
+    constexpr double rings[][2] = {{-half_height, bevel},
+                                   {-half_height + bevel, 0},
+                                   {half_height - bevel, 0},
+                                   {half_height, bevel}}; // height, inset
+    Mesh m;
+    m.name = "bevelled slab";
+    for (const auto& [height, inset] : rings)
+        for (const auto& [x, z] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+            m.points.emplace_back((0.5 - inset) * x, height, (0.5 - inset) * z);
+    add_face(m, {0, 1, 2});
+    add_face(m, {0, 2, 3});
+    for (int ring = 0; ring < 12; ring += 4)
+        for (int k = 0; k < 4; ++k) {
+            const int next = (k + 1) % 4;
+            add_face(m, {ring + k, ring + 4 + k, ring + 4 + next});
+            add_face(m, {ring + k, ring + 4 + next, ring + next});
+        }
+    add_face(m, {12, 14, 13});
+    add_face(m, {12, 15, 14});
+    return m;
+}
+
 Mesh bilinear(Mesh mesh) {
     mesh.scheme = Scheme::bilinear;
     mesh.name += " bilinear";
@@ -211,6 +235,7 @@ std::vector<std::string> scene_names() {
             "urchin_stretched",
             "torus_bilinear",
             "default",
+            "bevelled_slab",
             "cube_bilinear_stretched",
             "urchin_bilinear",
             "catmark_car",
@@ -248,6 +273,8 @@ std::optional<NamedScene> named_scene(const std::string& name) {
         return of(stretched(urchin_cage()), 90);
     if (name == "torus_bilinear")
         return of(bilinear(stretched(torus_cage(9, 6))), 60);
+    if (name == "bevelled_slab")
+        return of(bevelled_slab(), 90);
     if (name == "cube_bilinear_stretched")
         return of(bilinear(stretched(cube_cage())), 40);
     if (name == "urchin_bilinear")

@@ -16,8 +16,11 @@ Mesh urchin_cage();
 /// Squeezed along the axes and jittered, so that neighbouring edges differ in length by powers of two. Stays
 /// closed.
 Mesh stretched(Mesh mesh);
-/// A cube whose top is 1/32 of its bottom: a side of many blocks has an exponent of its own that is five less.
+/// A cube whose top is 1/32 of its bottom: a side of many blocks has an exponent of its own that is five
+/// less.
 Mesh tapered_cage();
+/// A closed box of triangles with narrow bevels, as architecture is modelled: large faces beside slivers.
+Mesh bevelled_slab();
 /// As bilinear patches, most of them not planar once jittered.
 Mesh bilinear(Mesh mesh);
 /// Nothing where the shared scenes are not there.

@@ -162,6 +162,24 @@ TEST(Laziness, ResetClosesEverything) {
     EXPECT_EQ(again.counters.patches_opened, before.counters.patches_opened);
 }
 
+/// Blocks are listed where rays can see their vertices and not much further: bounds that added up how far the
+/// corners of all coarser blocks can move had rays meet eight times as many blocks here as at a fixed level.
+TEST(Laziness, RaysMeetNoMoreBlocksBlendedThanNot) {
+    const auto tests = [](Lod lod) {
+        Scene scene = scene_of(bevelled_slab(), 300);
+        scene.settings.width = scene.settings.height = 64;
+        scene.settings.lod = lod;
+        Frame frame(scene, {});
+        frame.render(*native_targets().back(), 0);
+        return frame.statistics().counters;
+    };
+    const Counters fixed = tests(Lod::fixed), recursive = tests(Lod::recursive);
+    EXPECT_GT(fixed.block_tests, 1000);
+    EXPECT_GT(recursive.blended_tests, recursive.block_tests / 10);
+    EXPECT_LT(recursive.block_tests, fixed.block_tests * 3 / 2);
+    EXPECT_LT(recursive.box_tests, fixed.box_tests * 3 / 2);
+}
+
 TEST(Laziness, FirstPacketIsTimedFromTheFramesBegin) {
     Frame frame(square_of_tori(3), {});
     EXPECT_EQ(frame.statistics().first_packet_seconds, 0);
