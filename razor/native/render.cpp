@@ -2,9 +2,11 @@
 
 #include "razor/frame/tree_groups.h"
 #include "razor/native/targets.h"
+#include "razor/scene/error.h"
 
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -77,9 +79,18 @@ RenderResult render_native(const Scene& scene, const RenderOptions& options) {
     Frame frame(scene, {.workers = r.statistics.threads,
                         .tree_of_worker = tree_groups(r.statistics.threads, options.share)});
     r.statistics.load_seconds = seconds_since(begin);
+    if (options.eager && frame.statistics().trees > 1)
+        throw UserError("--eager builds one kd-tree; leave --share out");
     begin = Clock::now();
+    const std::clock_t processor_begin = std::clock();
+    if (options.eager) {
+        frame.build_all(kernels);
+        r.statistics.eager_seconds = seconds_since(begin);
+    }
     run_workers(frame, kernels, options.progress, options.cancel);
     r.statistics.render_seconds = seconds_since(begin);
+    r.statistics.render_processor_seconds =
+        static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
     r.statistics.frame = frame.statistics();
     r.film = frame.film();
     return r;

@@ -17,6 +17,9 @@ struct RenderOptions {
     int threads = 0;          // 0: one a core
     std::string isa = "auto"; // plain, sse4, avx2, avx512 or auto: the best this processor has
     int share = 0;            // workers that share one kd-tree; 0: all
+    /// To compare with: one thread splits the whole kd-tree, down to the finest blocks that any ray could ask
+    /// for, before the first ray. Shading normals stay lazy. There must be one tree.
+    bool eager = false;
     /// Called now and then with the fraction of tiles begun, from the calling thread.
     std::function<void(double fraction)> progress;
     /// Set to true from anywhere to stop early; render_native then throws Cancelled.
@@ -27,8 +30,10 @@ struct RenderStatistics {
     FrameStatistics frame;
     std::string isa;
     int width_lanes = 0, threads = 0;
-    double load_seconds = 0;   // topology and frame memory
-    double render_seconds = 0; // refit, builds and rays
+    double load_seconds = 0;             // topology and frame memory
+    double render_seconds = 0;           // refit, builds and rays
+    double render_processor_seconds = 0; // the same: processor time of all threads
+    double eager_seconds = 0;            // of that: what was built before the first ray
 };
 
 /// Counters by name; those of a kind of ray under its name.

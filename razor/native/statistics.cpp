@@ -63,6 +63,8 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                         {"undrawn_faces", f.undrawn_faces}};
     json["host"] = {{"load_seconds", s.load_seconds},
                     {"render_seconds", s.render_seconds},
+                    {"render_processor_seconds", s.render_processor_seconds},
+                    {"eager_seconds", s.eager_seconds},
                     {"refit_seconds", f.refit_seconds},
                     {"first_packet_seconds", f.first_packet_seconds},
                     {"topology_page_seconds", f.page_seconds}};

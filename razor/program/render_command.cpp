@@ -39,6 +39,8 @@ void RenderCommand::add_to(CLI::App& app) {
         .add_option("--share", share_,
                     "who shares a kd-tree: chip (all, the default), worker (nobody), or N workers a tree")
         ->type_name("WHO");
+    render.add_flag("--eager", eager_,
+                    "build all that rays could ask for, but normals, before the first one; to compare with");
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
     render.add_flag("--print-config", print_config_, "print the complete scene file and render nothing");
@@ -51,6 +53,7 @@ int RenderCommand::run() const {
                                        : parse_whole("--threads", threads_, threads_range);
     options.isa = isa_words[parse_choice("--isa", isa_, isa_words)];
     options.share = parse_share(share_);
+    options.eager = eager_;
     if (!print_config_ && outputs_.empty() && statistics_.empty()) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
     }
@@ -93,7 +96,8 @@ int RenderCommand::run() const {
                                             {"options",
                                              {{"threads", result.statistics.threads},
                                               {"isa", result.statistics.isa},
-                                              {"workers_a_tree", options.share}}},
+                                              {"workers_a_tree", options.share},
+                                              {"eager", options.eager}}},
                                             {"scene", config},
                                             {"seconds", seconds},
                                             {"statistics", nlohmann::ordered_json(result.statistics)}};

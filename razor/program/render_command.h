@@ -22,7 +22,7 @@ private:
     SceneOptions scene_;
     std::vector<std::string> outputs_;
     std::string threads_, isa_ = "auto", share_ = "chip", statistics_;
-    bool print_config_ = false, quiet_ = false;
+    bool print_config_ = false, quiet_ = false, eager_ = false;
 };
 
 } // namespace razor

@@ -179,6 +179,29 @@ TEST_F(Razor, LoadsOrRefusesEveryOddFile) {
     EXPECT_GE(files, 13U);
 }
 
+TEST_F(Razor, EagerFramesAreTheSamePicture) {
+    const auto built = [&](const std::string& name) {
+        std::ifstream file(folder_ / (name + ".json"));
+        return nlohmann::json::parse(file).at("statistics");
+    };
+    const std::string rest = " --size 20x10 --spp 1 --threads 2 ";
+    ASSERT_EQ(razor("render" + rest + "-o lazy.exr --stats lazy.json").code, 0);
+    const Outcome eager = razor("render" + rest + "-o eager.exr --stats eager.json --eager");
+    ASSERT_EQ(eager.code, 0) << eager.err;
+    const Film expected = read_exr(folder_ / "lazy.exr"), film = read_exr(folder_ / "eager.exr");
+    for (const Plane& plane : expected.planes)
+        EXPECT_EQ(film.find(plane.name)->values, plane.values) << plane.name;
+    EXPECT_GT(built("lazy").at("left_out").at("nodes_never_split"), 0);
+    EXPECT_EQ(built("lazy").at("host").at("eager_seconds"), 0);
+    EXPECT_EQ(built("eager").at("left_out").at("nodes_never_split"), 0);
+    EXPECT_EQ(built("eager").at("left_out").at("patches_never_opened"), 0);
+    EXPECT_GT(built("eager").at("host").at("eager_seconds"), 0);
+    const Outcome apart = razor("render" + rest + "-o e.exr --eager --share worker");
+    EXPECT_EQ(apart.code, 2);
+    EXPECT_EQ(apart.err, "razor: --eager builds one kd-tree; leave --share out\n");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "e.exr"));
+}
+
 TEST_F(Razor, WritesPicturesAndStatistics) {
     const Outcome result =
         razor("render good.toml --size 20x10 --spp 1 -o a.exr -o b.png --stats s.json --threads 2 --share 2");
@@ -198,6 +221,7 @@ TEST_F(Razor, WritesPicturesAndStatistics) {
     const nlohmann::json statistics = nlohmann::json::parse(file);
     EXPECT_EQ(statistics.at("options").at("threads"), 2);
     EXPECT_EQ(statistics.at("options").at("workers_a_tree"), 2);
+    EXPECT_EQ(statistics.at("options").at("eager"), false);
     // The embedded scene is what --print-config prints, and renders again.
     const auto embedded = std::find_if(attributes.begin(), attributes.end(),
                                        [](const auto& a) { return a.first == "razor.scene"; });
