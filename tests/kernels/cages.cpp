@@ -274,7 +274,7 @@ std::optional<NamedScene> named_scene(const std::string& name) {
     if (name == "torus_bilinear")
         return of(bilinear(stretched(torus_cage(9, 6))), 60);
     if (name == "bevelled_slab")
-        return of(bevelled_slab(), 90);
+        return of(bevelled_slab(), 40);
     if (name == "cube_bilinear_stretched")
         return of(bilinear(stretched(cube_cage())), 40);
     if (name == "urchin_bilinear")
