@@ -147,4 +147,21 @@ std::string why_open(const std::vector<MeshReport>& meshes) {
                        m.hole_faces.count, m.hole_faces.first);
 }
 
+std::string text_of(const ConvergenceReport& report) {
+    if (!report.converges())
+        return "no curved surface was hit often enough to see hits converge\n";
+    std::string text = "edges asked for, median error of the distance of hits:\n";
+    for (const ConvergenceReport::Step& s : report.steps)
+        text += fmt::format("  {:<12.4g} {:<12.4g} of {} hits\n", s.edge, s.median_error, s.hits);
+    return text + fmt::format("hits come nearer to the limit surface as the edge to the power of {:.2f}\n",
+                              report.order);
+}
+
+nlohmann::ordered_json json_of(const ConvergenceReport& report) {
+    nlohmann::ordered_json json{{"order", report.order}, {"steps", nlohmann::ordered_json::array()}};
+    for (const ConvergenceReport::Step& s : report.steps)
+        json["steps"].push_back({{"edge", s.edge}, {"median_error", s.median_error}, {"hits", s.hits}});
+    return json;
+}
+
 } // namespace razor::check

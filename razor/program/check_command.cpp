@@ -23,6 +23,7 @@ namespace {
 
 constexpr Range rays_range{1, 2e9};
 constexpr Range per_origin_range{1, 8192};
+constexpr Range converge_range{100, 1e6};
 constexpr Range seed_range{0, 2147483647};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
 
@@ -48,6 +49,12 @@ void CheckCommand::add_to(CLI::App& app) {
                     "own; without --lod, recursive")
         ->type_name("N");
     check.add_option("--compare", compare_, "of these, compare N hits with the surface by its definition")
+        ->type_name("N");
+    check
+        .add_option(
+            "--converge", converge_,
+            "shoot N rays at its curved surfaces and show how fast hits come nearer to the limit surface "
+            "as edges get shorter")
         ->type_name("N");
     check.add_option("--rays-an-origin", per_origin_, "rays of each origin; without it, 1000")
         ->type_name("N");
@@ -77,12 +84,17 @@ int CheckCommand::run() const {
     if (!seed_.empty()) {
         options.seed = static_cast<unsigned>(parse_whole("--seed", seed_, seed_range));
     }
+    check::ConvergenceOptions convergence_options;
+    if (!converge_.empty()) {
+        convergence_options.rays = static_cast<int>(parse_whole("--converge", converge_, converge_range));
+    }
+    convergence_options.seed = options.seed;
     const KernelTable& kernels =
         native_target(std::string(isa_words[parse_choice("--isa", isa_, isa_words)]));
     if (!json_.empty()) {
         check_writable(json_);
     }
-    options.cancel = &watch_interrupts();
+    options.cancel = convergence_options.cancel = &watch_interrupts();
 
     SceneDescription description = scene_.describe();
     if (!scene_.lod_given()) {
@@ -114,6 +126,16 @@ int CheckCommand::run() const {
                 printable(scene.name), check::sees_one_surface(closed.settings.lod.lod) ? "its" : "every"));
         }
     }
+    std::optional<check::ConvergenceReport> convergence;
+    if (!converge_.empty()) {
+        Progress progress(!quiet_, "measuring");
+        convergence_options.progress = [&](double fraction) { progress.show(fraction); };
+        convergence = check::measure_convergence(scene, kernels, convergence_options);
+        if (convergence->cancelled) {
+            fmt::print(stderr, "{}razor: interrupted; nothing written\n", progress.shown() ? "\r\x1b[K" : "");
+            return interrupted_exit;
+        }
+    }
 
     const OutputGuard guard;
     if (!json_.empty()) {
@@ -128,10 +150,16 @@ int CheckCommand::run() const {
                                 {"seed", options.seed}};
             report["escape"].update(check::json_of(*escapes));
         }
+        if (convergence) {
+            report["convergence"] = check::json_of(*convergence);
+        }
         // Names need not be UTF-8.
         write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
     fmt::print("{}", check::text_of(meshes));
+    if (convergence) {
+        fmt::print("{}", check::text_of(*convergence));
+    }
     if (!escapes) {
         return 0;
     }

@@ -45,6 +45,7 @@ protected:
         folder_.file("open.obj", open_box);
         folder_.file("fan.obj", fan);
         folder_.file("torus.obj", bumpy_torus());
+        folder_.file("coarse.toml", "[settings]\nedge_pixels = 20\n[[mesh]]\nfile = \"torus.obj\"\n");
         folder_.file("both.toml", "[[mesh]]\nfile = \"open.obj\"\n[[mesh]]\nfile = \"cube.obj\"\n");
     }
     Outcome check(const std::string& arguments) const {
@@ -67,6 +68,17 @@ protected:
     }
     TemporaryFolder folder_;
 };
+
+TEST_F(Check, SaysHowFastHitsConverge) {
+    const nlohmann::json report = json("coarse.toml --converge 2000", 0)["convergence"];
+    EXPECT_EQ(report["steps"].size(), 5U);
+    EXPECT_GT(report["steps"][0]["median_error"], report["steps"][4]["median_error"]);
+    EXPECT_NEAR(report["order"].get<double>(), 2, 0.4);
+    const Outcome flat = check("cube.obj --no-floor --scheme bilinear --converge 1000");
+    EXPECT_EQ(flat.code, 0);
+    EXPECT_NE(flat.out.find("no curved surface"), std::string::npos) << flat.out;
+    expect_refused("cube.obj --converge 1", "--converge");
+}
 
 TEST_F(Check, FindsWhatIsWrong) {
     const nlohmann::json good = json("cube.obj --no-floor", 0);
