@@ -1,0 +1,65 @@
+"""What the programs of this folder share: scenes with every default filled in and seen from somewhere, and renders."""
+import json
+import os
+import re
+import subprocess
+import sys
+
+
+def add_options(parser, size, repeat):
+    parser.add_argument("--size", default=size)
+    parser.add_argument("--spp", type=int, default=1)
+    parser.add_argument("--repeat", type=int, default=repeat)
+    parser.add_argument("--from", dest="origin", metavar="X,Y,Z", help="where the camera stands")
+    parser.add_argument("--to", metavar="X,Y,Z", help="what it looks at")
+    parser.add_argument("--fov", type=float, metavar="DEGREES")
+    parser.add_argument("--array", metavar="NX,NY,NZ", help="copies of a table of instances")
+    parser.add_argument("--spacing", metavar="X,Y,Z", help="from one copy to the next")
+    parser.add_argument("--razor", help="the renderer; without it, that of the PATH or of build/release")
+    parser.add_argument("--json", metavar="FILE")
+
+
+def run(command):
+    """What a command prints, and the rusage of it."""
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    out = process.stdout.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        last = (out.strip().splitlines() or ["no message"])[-1]
+        sys.exit(f"{os.path.basename(sys.argv[0])}: {' '.join(command)}: {last}")
+    return out, usage
+
+
+def described(options):
+    """The scene with every default filled in, seen from where the options say."""
+    text, _ = run([options.razor, "render", *options.scene, "--size", options.size, "--spp", str(options.spp),
+                   "--print-config"])
+    for key, numbers in (("position", options.origin), ("target", options.to), ("array", options.array),
+                         ("spacing", options.spacing)):
+        if numbers:
+            kind = int if key == "array" else float
+            value = ", ".join(str(kind(x)) for x in numbers.split(","))
+            text, found = re.subn(rf"(?m)^{key} = \[.*\]$", f"{key} = [{value}]", text, count=1)
+            if not found:
+                sys.exit(f"{os.path.basename(sys.argv[0])}: the scene has no {key} to set; leave the option out")
+    if options.fov:
+        text = re.sub(r"(?m)^fov = .*$", f"fov = {options.fov}", text, count=1)
+    if options.origin or options.to:
+        text = re.sub(r"(?m)^focus_distance = .*\n", "", text, count=1)
+    return text
+
+
+def write_scene(options, folder):
+    scene = os.path.join(folder, "scene.toml")
+    with open(scene, "w") as file:
+        file.write(described(options))
+    return scene
+
+
+def render(options, scene, folder, name, *more):
+    """A picture made by one thread, its statistics, and the rusage."""
+    out, stats = os.path.join(folder, name + ".exr"), os.path.join(folder, name + ".json")
+    _, usage = run([options.razor, "render", scene, "--threads", "1", "--stats", stats, "-o", out, *more])
+    with open(stats) as file:
+        return out, json.load(file)["statistics"], usage
