@@ -1,0 +1,322 @@
+#include "razor/frame/frame_memory.h"
+
+#include "razor/frame/blend_table.h"
+#include "razor/frame/scratch.h"
+#include "razor/frame/view.h"
+#include "razor/scene/error.h"
+#include "razor/scene/graph/records.h"
+
+#include <fmt/core.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace razor {
+namespace {
+
+std::uint64_t share_of(std::uint64_t all, int workers) {
+    std::uint64_t granule = isa::address_space::granule;
+    return all / static_cast<std::uint64_t>(workers) / granule * granule;
+}
+
+void put(float (&to)[3], const glm::dvec3& v) {
+    for (int i = 0; i < 3; ++i)
+        to[i] = static_cast<float>(v[i]);
+}
+
+} // namespace
+
+void Frame::Impl::count_records(const Scene& scene) {
+    for (std::size_t m = 0; m < topologies.size(); ++m) {
+        const Topology& t = topologies[m];
+        first_cluster.push_back(total.clusters);
+        total.clusters += clusters_of(m);
+        total.faces += t.faces.size();
+        total.controls += t.controls.size();
+        total.face_curves += t.face_curves.size();
+        total.points += t.points.size();
+        total.curves += t.curves.size();
+    }
+    for (const Instance& i : geometry.instances) {
+        const Topology& t = topology_of(i);
+        patches += static_cast<std::int64_t>(t.patches.size());
+        clusters += static_cast<std::int64_t>(clusters_of(static_cast<std::size_t>(i.mesh)));
+        undrawn += t.undrawn_faces;
+    }
+    if (patches == 0)
+        throw UserError(fmt::format(
+            "{}: no face of the scene is drawn; remove hole tags or boundary interpolation `none`",
+            scene.name));
+    constexpr std::int64_t most_clusters = most_patches >> refit_log2;
+    if (clusters > most_clusters)
+        throw UserError(fmt::format("{}: {} patches of {} instances are too many; at most 2^30", scene.name,
+                                    patches, geometry.instances.size()));
+    // Gathers index coordinates and patch records by signed 32-bit words; all else is counted in records.
+    constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+    if (std::max({total.clusters * refit_patches * (sizeof(PatchRecord) / 4), total.faces * 5, total.controls,
+                  total.face_curves, total.points * 3, total.curves}) > most)
+        throw UserError(
+            fmt::format("{}: the meshes have more faces than can be numbered; leave some out", scene.name));
+}
+
+void Frame::Impl::place_scene(const Scene& scene) {
+    header = region<FrameHeader>("scene graph", -1, 1);
+    new (header) FrameHeader{};
+    auto* record = region<InstanceRecord>("scene graph", -1, geometry.instances.size());
+    auto* cluster_instance = region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters));
+    header->instances.set(record);
+    header->cluster_instance.set(cluster_instance);
+    std::int32_t first_patch = 0;
+    for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
+        const Instance& i = geometry.instances[n];
+        const Topology& t = topology_of(i);
+        const auto mesh = static_cast<std::size_t>(i.mesh);
+        InstanceRecord& r = *record++;
+        for (int k = 0; k < 3; ++k) {
+            r.origin[k] = i.origin[k];
+            r.offset[k] = i.offset[k];
+            for (int column = 0; column < 3; ++column)
+                r.linear[3 * k + column] = static_cast<float>(i.linear[column][k]);
+        }
+        r.moved = i.moved() ? 1 : 0;
+        r.edge_length = static_cast<float>(i.edge_length);
+        r.mesh_edge_length = static_cast<float>(i.mesh_edge_length);
+        r.first_level = static_cast<std::int32_t>(std::lround(std::log2(i.edge_length)));
+        r.max_exponent = t.max_exponent;
+        r.mesh = i.mesh;
+        r.first_patch = first_patch;
+        r.patch_count = static_cast<std::int32_t>(t.patches.size());
+        r.first_cluster = static_cast<std::int32_t>(first_cluster[mesh]);
+        r.first_record = r.first_cluster << refit_log2;
+        r.cluster_count = static_cast<std::int32_t>(clusters_of(mesh));
+        glm::vec3 albedo(0.7F);
+        auto material = static_cast<std::size_t>(i.material);
+        if (material < scene.materials.size())
+            albedo = scene.materials[material].albedo;
+        for (int k = 0; k < 3; ++k)
+            r.albedo[k] = albedo[k];
+        cluster_instance = std::fill_n(cluster_instance, r.cluster_count, static_cast<std::int32_t>(n));
+        header->patch_count = std::max(header->patch_count, first_patch + r.patch_count);
+        first_patch += r.cluster_count << refit_log2;
+        for (const PatchRecord& p : t.patches)
+            if (p.kind == PatchKind::catmull_clark || p.kind == PatchKind::bilinear)
+                plan = plan_hanging;
+    }
+}
+
+void Frame::Impl::place_graph() {
+    const std::vector<GraphNodeRecord> nodes = pack(geometry.graph, geometry.origin);
+    auto* graph = region<GraphNodeRecord>("scene graph", -1, nodes.size());
+    std::copy(nodes.begin(), nodes.end(), graph);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (graph[n].instance >= 0)
+            graph[n].child_count = header->instances.get()[graph[n].instance].cluster_count;
+    header->graph.set(graph);
+    header->graph_count = static_cast<std::int32_t>(nodes.size());
+    for (int t = 0; t < trees; ++t)
+        opened.push_back(std::make_unique<isa::mark_set>(static_cast<std::int64_t>(nodes.size()) + clusters));
+    // Boxes of clusters: a frame's refit writes them.
+    header->cluster_count = static_cast<std::int32_t>(total.clusters);
+    header->clusters_stride = (header->cluster_count + 15) & -16;
+    header->cluster_boxes.set(
+        region<float>("scene graph", -1, static_cast<std::size_t>(header->clusters_stride) * 6));
+    auto* counts = region<std::int32_t>("scene graph", -1, total.clusters);
+    header->cluster_patches.set(counts);
+    for (const Topology& t : topologies)
+        for (std::size_t left = t.patches.size(); left > 0;) {
+            const std::size_t here = std::min<std::size_t>(left, refit_patches);
+            *counts++ = static_cast<std::int32_t>(here);
+            left -= here;
+        }
+}
+
+void Frame::Impl::place_points() {
+    auto* xyz = region<float>("control points", -1, total.points * 3);
+    header->points.set(xyz);
+    for (std::size_t m = 0; m < meshes.size(); ++m)
+        for (const glm::dvec3& point : meshes[m].points) {
+            const glm::dvec3 p = point - geometry.mesh_origins[m];
+            for (int k = 0; k < 3; ++k)
+                *xyz++ = static_cast<float>(p[k]);
+        }
+}
+
+void Frame::Impl::place_topology() {
+    auto* patch = region<PatchRecord>("scene graph", -1, total.clusters * refit_patches);
+    auto* face = region<FaceRecord>("topology", -1, total.faces);
+    auto* control = region<std::int32_t>("topology", -1, total.controls);
+    auto* face_curve = region<std::int32_t>("topology", -1, total.face_curves);
+    auto* point = region<VertexRecord>("topology", -1, total.points);
+    auto* curve = region<CurveRecord>("topology", -1, total.curves);
+    auto* classes = region<ClassRecord>("topology", -1, pages->class_count());
+    header->patches.set(patch);
+    header->faces.set(face);
+    header->controls.set(control);
+    header->face_curves.set(face_curve);
+    header->vertices.set(point);
+    header->curves.set(curve);
+    header->classes.set(classes);
+    // Each mesh numbers from 0: move its numbers behind those of the meshes before.
+    int base_face = 0, base_control = 0, base_face_curve = 0, base_point = 0, base_curve = 0, base_class = 0;
+    for (std::size_t m = 0; m < topologies.size(); ++m) {
+        const Topology& t = topologies[m];
+        patch = header->patches.get() + (first_cluster[m] << refit_log2);
+        for (PatchRecord p : t.patches) {
+            p.mesh = static_cast<int>(m);
+            p.face += base_face;
+            bool part = (p.side_flags[0] & side_half) != 0;
+            for (int& c : p.side_curve)
+                c += c >= 0 ? base_curve : 0;
+            p.corner[0] += base_point;
+            p.corner[1] += part ? base_curve : base_point;
+            p.corner[2] += part ? base_face : base_point;
+            p.corner[3] += part ? base_curve : base_point;
+            *patch++ = p;
+        }
+        for (FaceRecord f : t.faces) {
+            f.face_class += f.face_class >= 0 ? base_class : 0;
+            f.control_first += base_control;
+            f.curve_first += base_face_curve;
+            *face++ = f;
+        }
+        for (int c : t.controls)
+            *control++ = c + base_point;
+        for (int c : t.face_curves)
+            *face_curve++ = c + base_curve;
+        for (VertexRecord v : t.points) {
+            v.owner_face += v.owner_face >= 0 ? base_face : 0;
+            *point++ = v;
+        }
+        for (CurveRecord c : t.curves) {
+            bool spoke = (c.flags & curve_spoke) != 0;
+            c.owner_face += c.owner_face >= 0 ? base_face : 0;
+            c.end0 += spoke ? base_curve : base_point;
+            c.end1 += spoke ? base_face : base_point;
+            *curve++ = c;
+        }
+        base_face += static_cast<int>(t.faces.size());
+        base_control += static_cast<int>(t.controls.size());
+        base_face_curve += static_cast<int>(t.face_curves.size());
+        base_point += static_cast<int>(t.points.size());
+        base_curve += static_cast<int>(t.curves.size());
+        base_class += static_cast<int>(t.classes.size());
+    }
+    pages->lay_out(region<Line>("topology pages", -1, pages->span_bytes() / line_bytes), classes);
+}
+
+void Frame::Impl::place_blend_table() {
+    auto* table = region<std::int32_t>("blend table", -1, blend_table_words);
+    header->blend_table.set(table);
+    fill_blend_table(table);
+}
+
+void Frame::Impl::place_workers() {
+    // All of it lives for one frame.
+    auto n = static_cast<std::size_t>(options.workers);
+    header->queues.set(region<QueueRecord>("queues", -1, 1, true));
+    header->trees.set(region<TreeRecord>("kd nodes", -1, static_cast<std::size_t>(trees), true));
+    header->workers.set(region<WorkerRecord>("stack", -1, n, true));
+    for (int t = 0; t < trees; ++t)
+        header->trees.get()[t].patches.set(
+            coloured<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count), colour_patches));
+    // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
+    auto size = [&](std::uint64_t wanted, std::uint64_t all) {
+        std::uint64_t granule = isa::address_space::granule;
+        std::uint64_t most = share_of(all, options.workers) - granule; // room for colours
+        return wanted == 0 ? most : std::min((wanted + granule - 1) / granule * granule, most);
+    };
+    std::uint64_t grid_bytes = size(options.grid_bytes, all_grids);
+    std::uint64_t node_bytes = size(options.node_bytes, all_nodes);
+    std::uint64_t list_bytes = size(options.list_bytes, all_lists);
+    grid_lines_each = static_cast<int>(grid_bytes / line_bytes);
+    nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
+    list_lines_each = static_cast<int>(list_bytes / line_bytes);
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p =
+            reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule, true));
+        if (w == 0)
+            header->grids.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<KdNode*>(
+            memory->add("kd nodes", w, node_bytes + isa::address_space::granule, true));
+        if (w == 0)
+            header->nodes.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<Line*>(
+            memory->add("item lists", w, list_bytes + isa::address_space::granule, true));
+        if (w == 0)
+            header->lists.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        WorkerRecord& r = header->workers.get()[w];
+        r.stack.set(coloured<float>("stack", w, stack_floats, colour_stack));
+        r.packets.set(coloured<float>("packets", w, packet_floats, colour_packets));
+        r.blends.set(coloured<float>("blended blocks", w, blends_floats, colour_blends));
+        r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
+    }
+}
+
+void Frame::Impl::place_view(const Scene& scene) {
+    const Settings& s = scene.settings;
+    FrameHeader& h = *header;
+    h.width = s.width;
+    h.height = s.height;
+    h.samples = s.samples;
+    h.tiles_x = (s.width + tile_side - 1) / tile_side;
+    h.tiles = h.tiles_x * ((s.height + tile_side - 1) / tile_side);
+    const View v = view_of(scene.camera);
+    const FilmExtent film = film_extent(scene.camera, s);
+    const double pixel = 2 * film.half_height / s.height;
+    put(h.camera, scene.camera.position - geometry.origin);
+    put(h.film_corner, v.forward - v.right * film.half_width + v.up * film.half_height);
+    put(h.film_x, v.right * pixel);
+    put(h.film_y, -v.up * pixel);
+    put(h.background, glm::dvec3(scene.sky));
+    // All samples that a pixel takes share the domain.
+    const auto spacing = [&](double domain, int samples) {
+        return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
+    };
+    if (!scene.lights.empty()) {
+        const RectangleLight& light = scene.lights.front();
+        glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
+        double area = glm::length(normal);
+        if (area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0) {
+            h.light_samples = s.light_samples;
+            put(h.light_corner, light.corner - geometry.origin);
+            put(h.light_u, light.edge_u);
+            put(h.light_v, light.edge_v);
+            h.light_spacing = spacing(area, s.light_samples);
+            put(h.light_normal, normal / area);
+            put(h.light_radiance, glm::dvec3(light.radiance) *
+                                      (area / (3.14159265358979323846 * std::max(s.light_samples, 1))));
+        }
+    }
+    if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0) {
+        h.sky_samples = s.sky_samples;
+        put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
+    }
+    h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
+    h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper ? 1 : 0;
+    h.one_field = s.lod == Lod::camera ? 1 : 0;
+    h.level_choice = s.lod == Lod::patch ? by_patch : s.lod == Lod::paper ? by_stretch : by_leaf;
+    const Camera& dicing = dicing_camera(scene);
+    const CameraField asked = camera_field(dicing, s);
+    put(h.field_origin, dicing.position - geometry.origin);
+    h.camera_base = static_cast<float>(asked.base);
+    h.camera_growth = static_cast<float>(asked.growth);
+    put(h.camera_slope, view_of(dicing).forward * asked.slope);
+    if (scene.camera.aperture_radius > 0) {
+        h.focus = static_cast<float>(focus_distance(scene.camera));
+        put(h.lens_x, v.right * scene.camera.aperture_radius);
+        put(h.lens_y, v.up * scene.camera.aperture_radius);
+    }
+    h.sky_spacing = spacing(3.14159265358979323846, s.sky_samples);
+    h.reach = static_cast<float>(geometry.reach);
+    auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
+    h.film.set(region<float>("frame buffer", -1, pixels * film_planes));
+}
+
+} // namespace razor

@@ -1,0 +1,107 @@
+// What a frame consists of, and where it lies in the frame's address space.
+#pragma once
+
+#include "razor/frame/frame.h"
+#include "razor/frame/page_store.h"
+#include "razor/frame/phases.h"
+#include "razor/frame/scene_geometry.h"
+#include "razor/surface/topology.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace razor {
+
+inline constexpr std::uint64_t gibibyte = std::uint64_t{1} << 30;
+// Gathers index grids by signed 32-bit words; nodes and lists are numbered by signed 32 bits.
+inline constexpr std::uint64_t all_grids = 8 * gibibyte;
+inline constexpr std::uint64_t all_nodes = 16 * gibibyte;
+inline constexpr std::uint64_t all_lists = 64 * gibibyte;
+
+/// Owners' regions begin at multiples of 64 KiB. If what they use did as well, the busiest lines of all
+/// workers would fall into the same few sets of a cache and into one bank of memory. So each owner begins
+/// some lines further on, each kind of region elsewhere: these many lines, fewer than fit into 64 KiB.
+inline constexpr int coloured_lines = static_cast<int>(isa::address_space::granule / line_bytes);
+inline constexpr int nodes_a_line = line_bytes / static_cast<int>(sizeof(KdNode));
+enum Coloured : int {
+    colour_stack,
+    colour_packets,
+    colour_blends,
+    colour_grids,
+    colour_nodes,
+    colour_lists,
+    colour_patches
+};
+inline int colour(int owner, Coloured kind) {
+    return (owner * 97 + kind * 411) % coloured_lines;
+}
+
+struct Frame::Impl {
+    Impl(const Scene& scene, const FrameOptions& options);
+
+    std::vector<Mesh> meshes;
+    std::vector<Topology> topologies;
+    FrameOptions options;
+    SceneGeometry geometry;
+    std::unique_ptr<PageStore> pages;
+    std::unique_ptr<isa::address_space> memory;
+    FrameHeader* header = nullptr;
+    std::vector<CountersByKind> counters; // one a worker
+    int trees = 1;
+    int nodes_each = 0, grid_lines_each = 0, list_lines_each = 0; // arena sizes of a worker
+    Plan plan = plan_flat;
+    std::int64_t undrawn = 0;
+    struct {
+        std::size_t clusters = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
+    } total;                                            // over the meshes
+    std::vector<std::size_t> first_cluster;             // of each mesh
+    std::int64_t patches = 0, clusters = 0;             // over the instances
+    std::vector<std::unique_ptr<isa::mark_set>> opened; // one a tree: graph nodes, then instances' clusters
+    isa::stopwatch watch{moment_count};
+
+    const Topology& topology_of(const Instance& instance) const {
+        return topologies[static_cast<std::size_t>(instance.mesh)];
+    }
+    std::size_t clusters_of(std::size_t mesh) const {
+        return (topologies[mesh].patches.size() + refit_patches - 1) >> refit_log2;
+    }
+
+    template <class T>
+    T* region(const char* structure, int owner, std::size_t count, bool transient = false) {
+        return reinterpret_cast<T*>(
+            memory->add(structure, owner, std::max<std::size_t>(count, 1) * sizeof(T), transient));
+    }
+    /// Begins at a line of the owner's colour.
+    template <class T> T* coloured(const char* structure, int owner, std::size_t count, Coloured kind) {
+        auto* bytes = reinterpret_cast<std::byte*>(
+            region<T>(structure, owner, count + isa::address_space::granule / sizeof(T), true));
+        return reinterpret_cast<T*>(bytes + colour(owner, kind) * line_bytes);
+    }
+    /// The first line or node of a worker's arena, counted from the base of its family.
+    int first_grid_line(int w) const {
+        return w * (grid_lines_each + coloured_lines) + colour(w, colour_grids);
+    }
+    int first_list_line(int w) const {
+        return w * (list_lines_each + coloured_lines) + colour(w, colour_lists);
+    }
+    int first_node(int w) const {
+        return w * (nodes_each + coloured_lines * nodes_a_line) + colour(w, colour_nodes) * nodes_a_line;
+    }
+    void count_records(const Scene& scene);
+    void place_scene(const Scene& scene);
+    void place_graph();
+    void place_points();
+    void place_topology();
+    void place_blend_table();
+    void place_workers();
+    void place_view(const Scene& scene);
+    void reset();
+    WorkerArguments arguments(int worker) {
+        const auto w = static_cast<std::size_t>(worker);
+        const auto tree = static_cast<std::size_t>(options.tree_of_worker[w]);
+        return {header, worker, pages.get(), counters[w].kind, opened[tree].get(), &watch};
+    }
+};
+
+} // namespace razor
