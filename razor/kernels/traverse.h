@@ -1,7 +1,8 @@
 // Packets through the kd-tree. A packet is traversed in groups of rays whose directions agree in
-// largest component, so that order and projection are uniform. A hit anywhere in a block counts, whatever
-// cell led to it; a cell's exit, rounded outward, only ends traversal; equal distances go to the lowest
-// (patch, triangle).
+// largest component, so that order and projection are uniform; splitting by their signs as well, or by the
+// octave of what the rays ask for, was measured to cost time (a tenth to a third; up to a tenth). A hit
+// anywhere in a block counts, whatever cell led to it; a cell's exit, rounded outward, only ends traversal;
+// equal distances go to the lowest (patch, triangle).
 #pragma once
 
 #include "razor/kernels/paper_levels.h"
