@@ -3,7 +3,7 @@
 razor=razor/program/razor # within a build folder
 simulator=sim/program/razor-sim
 # Not under sanitizers: tests that run none of our code, and the longest ones' variants of the same paths.
-not_sanitized='^isa_(refused|lint)|^tree$|(Watertight|BruteForce)\..*_(stretched|bilinear)'
+not_sanitized='^isa_(refused|lint)|^tree$|^Zoom|LevelsOfTorus|(Watertight|BruteForce|Fields|Continuity)\..*_(stretched|bilinear)'
 scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
