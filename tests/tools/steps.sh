@@ -157,12 +157,13 @@ render_shared_trees() {
     done
 }
 
-# No bit of a picture depends on the width.
+# No bit of a picture depends on the width, where all rays ask for one level: else packets, which share what they ask for,
+# are wider or narrower.
 render_width() {
     local folder=build/width-$1
     configure release "$folder" -DRAZOR_WIDTH="$1" -DRAZOR_TARGETS=avx2 -DRAZOR_TESTS=OFF
     compile "$folder" razor
-    "$folder/$razor" render $scene --size 256x192 --quiet -o "$folder/picture.exr"
-    "build/release/$razor" render $scene --size 256x192 --isa avx2 --quiet -o build/release/picture.exr
+    "$folder/$razor" render $scene --size 256x192 --lod fixed --quiet -o "$folder/picture.exr"
+    "build/release/$razor" render $scene --size 256x192 --lod fixed --isa avx2 --quiet -o build/release/picture.exr
     "build/release/$razor" compare --identical build/release/picture.exr "$folder/picture.exr"
 }
