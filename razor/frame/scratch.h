@@ -34,6 +34,7 @@ inline constexpr int stack_floats = scratch_free_lists + list_sizes;
 /// Blocks as fields lately saw them: `blend_slots` of a key and a blended block each. Few, so that they stay
 /// in the first cache: rays seldom come back to one (64 save a tenth of the blending, and cost no less time).
 inline constexpr int blend_slots = 8;
+static_assert(blend_slots >= 4); // two fields of neighbouring numbers need slots of their own (paper_scale.h)
 enum BlendSlot : int {
     slot_line = 0,    // of the block; -1: the slot is empty
     slot_field = 1,   // its number
