@@ -129,8 +129,11 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
     }
 }
 
-/// The blocks of a leaf that is fine enough for the rays `here`, wherever these are. AnyHit: a hit retires
-/// its lane from the group.
+/// The blocks of a leaf that is fine enough for the rays `here`, wherever these are: one that all have met is
+/// in the mailbox. So a ray may meet a coarse block where alone it would have met finer ones that lie on it
+/// but for rounding, or the reverse: last bits of a hit, and which block it names, depend on the packet.
+/// Rays that only took hits within their own cells would not: that was measured to cost a quarter or more
+/// of the time. AnyHit: a hit retires its lane from the group.
 template <Features F, bool AnyHit, bool Mixed>
 inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, vmask here,
                            const Interval& cell, Hits& hits) {
