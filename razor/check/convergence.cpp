@@ -15,6 +15,9 @@ namespace {
 constexpr double finer = 16;                          // than the scene asks for
 constexpr int coarsest_octave = 7, finest_octave = 3; // above the finest edges
 constexpr std::int64_t least_hits = 32;               // for a median
+// Rays traced between two looks at what cancels: whole packets of any width, so that no hit depends on it. At
+// the limit one ray may dice for some milliseconds.
+constexpr int slice = 64;
 
 bool curved(const PatchRecord& patch) {
     return patch.kind < PatchKind::flat_quad;
@@ -101,26 +104,36 @@ ConvergenceReport measure_convergence(Scene scene, const KernelTable& kernels,
     for (Mesh& mesh : scene.meshes)
         mesh.edge_length /= finer;
     Frame frame(scene, {});
-    Tracer tracer(frame, options.rays);
+    Tracer tracer(frame, slice);
     const Target target = curved_part(frame);
     ConvergenceReport report;
     if (target.edge == 0)
         return report;
     std::vector<Ray> rays = random_rays(target.box, options);
+    // As far as it comes before that is cancelled.
     const auto traced = [&](double base) {
         for (Ray& r : rays)
             r.base = static_cast<float>(base);
-        return tracer.closest(kernels, rays);
+        std::vector<Hit> hits;
+        for (auto at = rays.begin(); at != rays.end();) {
+            report.cancelled = options.cancel != nullptr && options.cancel->load();
+            if (report.cancelled)
+                break;
+            const auto end = at + std::min<std::ptrdiff_t>(slice, rays.end() - at);
+            const std::vector<Hit> some = tracer.closest(kernels, {at, end});
+            hits.insert(hits.end(), some.begin(), some.end());
+            at = end;
+        }
+        return hits;
     };
     const std::vector<Hit> limit = traced(least_target_edge);
     const auto known = [&](const Hit& h) { return h.patch >= 0 && curved(patch_record(frame, h.patch)); };
     for (int octave = coarsest_octave; octave >= finest_octave; --octave) {
-        report.cancelled = options.cancel != nullptr && options.cancel->load();
-        if (report.cancelled)
-            return report;
         ConvergenceReport::Step step;
         step.edge = std::ldexp(target.edge, octave);
         const std::vector<Hit> hits = traced(step.edge);
+        if (report.cancelled)
+            return report;
         std::vector<double> errors;
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (known(hits[i]) && known(limit[i]))

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cmath>
 
 namespace razor {
@@ -78,6 +79,21 @@ TEST_F(Check, SaysHowFastHitsConverge) {
     EXPECT_EQ(flat.code, 0);
     EXPECT_NE(flat.out.find("no curved surface"), std::string::npos) << flat.out;
     expect_refused("cube.obj --converge 1", "--converge");
+}
+
+/// Not only between edge lengths: of so many rays, those to the limit alone take minutes.
+TEST_F(Check, InterruptIsHeededWhileRaysConverge) {
+    const std::size_t before = folder_.count();
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome result =
+        run("timeout --foreground --preserve-status -s INT -k 40 2 " + quoted_argument(RAZOR_PROGRAM) +
+                " check coarse.toml --edge-pixels 1 --converge 1000000 --json report.json",
+            folder_.path());
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    EXPECT_EQ(result.code, 130) << result.err;
+    EXPECT_EQ(result.err, "razor: interrupted; nothing written\n");
+    EXPECT_LT(seconds, 20);
+    EXPECT_EQ(folder_.count(), before);
 }
 
 TEST_F(Check, FindsWhatIsWrong) {
