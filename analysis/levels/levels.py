@@ -4,13 +4,19 @@
     analysis/levels/levels.py model.obj
     analysis/levels/levels.py map.obj --scheme bilinear --up z --from 1300,150,-100 --to 1000,120,-700
 
-Every scheme renders the same samples; the error is the RMSE of the picture beside one of `--lod recursive` with edges
+Every scheme renders the same samples; the error is the RMSE of the picture beside one of --reference-lod with edges
 shorter by --reference. Times are processor seconds of one thread, everything built on the way: medians of --repeat runs,
 interleaved. Shadow rays: the time with them less that without. made/needed: triangles
 made over twice the pixels covered, over the square of the target edge in pixels.
+
+Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
+schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
+by a line through the logarithms of error and time of the two fixed levels beside it; "-" where none has as small, or
+as large, an error.
 """
 import argparse
 import json
+import math
 import os
 import re
 import shutil
@@ -27,6 +33,7 @@ def main():
                                      allow_abbrev=False)
     view.add_options(parser, "512x512", 3)
     parser.add_argument("--reference", type=float, default=8, help="how much shorter edges of the reference are")
+    parser.add_argument("--reference-lod", default="camera", help="the reference's scheme")
     parser.add_argument("--schemes", nargs="+", default=SCHEMES)
     options, options.scene = parser.parse_known_args()
     options.razor = options.razor or shutil.which("razor") or "build/release/razor/program/razor"
@@ -36,30 +43,31 @@ def main():
         with open(scene) as file:
             edge = float(re.search(r"(?m)^edge_pixels = (.*)$", file.read())[1])
         dark = ["--light-samples", "0", "--sky-samples", "0"]
-        reference = view.render(options, scene, folder, "reference", "--lod", "recursive", "--edge-pixels",
-                                str(edge / options.reference))[0]
+        references = [view.render(options, scene, folder, f"reference{seed}", "--lod", options.reference_lod, "--seed",
+                                  str(seed), "--edge-pixels", str(edge / options.reference))[0] for seed in (1, 2)]
         times = {}
         for _ in range(options.repeat):
             for scheme in options.schemes:
-                camera = view.render(options, scene, folder, "camera", "--lod", scheme, *dark)[1]
-                picture, whole, _ = view.render(options, scene, folder, "whole" + scheme.replace(":", "_"), "--lod", scheme)
+                lod = level_of_detail(scheme, edge)
+                camera = view.render(options, scene, folder, "camera", *lod, *dark)[1]
+                whole = view.render(options, scene, folder, "whole", *lod)[1]
                 times.setdefault(scheme, []).append(tuple(s["host"]["render_processor_seconds"] for s in (camera, whole))
-                                                    + (camera, whole, picture))
+                                                    + (camera, whole))
         for scheme in options.schemes:
             runs = times[scheme]
-            camera, whole, picture = runs[0][2:]
+            camera, whole = runs[0][2:]
             seconds, total = (statistics.median(r[i] for r in runs) for i in (0, 1))
-            figures = os.path.join(folder, "error.json")
-            view.run([options.razor, "compare", picture, reference, "--json", figures])
-            with open(figures) as file:
-                error = find(json.load(file), "rmse")
+            pictures = [view.render(options, scene, folder, f"seed{seed}", "--seed", str(seed),
+                                    *level_of_detail(scheme, edge))[0] for seed in (1, 2)]
+            error, noise = errors(options, folder, pictures, references)
             counters = whole["counters"]
             needed = 2 * counters["camera_hits"] / options.spp / edge**2  # pixels covered / half a square edge
-            rows.append({"scheme": scheme, "rmse": error, "camera_seconds": seconds, "shadow_seconds": total - seconds,
+            rows.append({"scheme": scheme, "rmse": error, "noise": noise, "camera_seconds": seconds, "shadow_seconds": total - seconds,
                          "triangles": camera["counters"]["triangles_made"],
                          "made_over_needed": camera["counters"]["triangles_made"] / needed,
                          "blended": counters["blended_tests"] / max(counters["block_tests"], 1),
                          "grid_bytes": whole["built"]["grid_bytes"]})
+    compare_with_fixed(rows)
     show(rows)
     if options.json:
         with open(options.json, "w") as file:
@@ -67,22 +75,52 @@ def main():
             file.write("\n")
 
 
-def find(tree, key):
-    for name, value in tree.items():
-        if name.lower() == key:
-            return value
-        if isinstance(value, dict):
-            inner = find(value, key)
-            if inner is not None:
-                return inner
-    return None
+def level_of_detail(scheme, edge):
+    """The renderer's options: fixed levels finer than the target edge are those of shorter edges."""
+    name, _, level = scheme.partition(":")
+    if level.startswith("-"):
+        return "--lod", name, "--edge-pixels", str(edge * 2.0 ** int(level))
+    return "--lod", scheme
+
+
+def compare_with_fixed(rows):
+    """Adds each scheme's times over those of a fixed level of equal error."""
+    fixed = sorted((r for r in rows if r["scheme"].startswith("fixed") and r["rmse"] > 0), key=lambda r: r["rmse"])
+    for r in rows:
+        for low, high in zip(fixed, fixed[1:]):
+            if low["rmse"] <= r["rmse"] <= high["rmse"] and low["rmse"] < high["rmse"]:
+                part = math.log(r["rmse"] / low["rmse"]) / math.log(high["rmse"] / low["rmse"])
+                for rays in ("camera", "shadow"):
+                    a, b = (max(f[rays + "_seconds"], 1e-9) for f in (low, high))
+                    r[rays + "_over_fixed"] = r[rays + "_seconds"] / (a * (b / a) ** part)
+                break
+
+
+def errors(options, folder, pictures, references):
+    """Of pictures of two seeds beside references of the same samples: the root mean square of what remains of their
+    difference as samples grow without bound, and of the difference itself. The mean product of two independent
+    differences is without noise: 2 x y = x^2 + y^2 - (x - y)^2."""
+    def rmse(a, b, *more):
+        figures = os.path.join(folder, "error.json")
+        view.run([options.razor, "compare", a, b, "--json", figures, *more])
+        with open(figures) as file:
+            return json.load(file)["rmse"]
+
+    differences = [os.path.join(folder, f"difference{i}.exr") for i in (1, 2)]
+    x, y = (rmse(p, r, "-o", d) for p, r, d in zip(pictures, references, differences))
+    product = (x * x + y * y - rmse(*differences)**2) / 2
+    return math.copysign(math.sqrt(abs(product)), product), math.sqrt((x * x + y * y) / 2)
 
 
 def show(rows):
-    print(f"{'scheme':10} {'RMSE':>9} {'camera s':>9} {'shadow s':>9} {'triangles':>10} {'made/needed':>11} "
-          f"{'blended':>8} {'grids MB':>9}")
+    def ratio(r, rays):
+        return f"{r[rays + '_over_fixed']:.2f}" if rays + "_over_fixed" in r else "-"
+
+    print(f"{'scheme':10} {'error':>9} {'noisy':>9} {'camera s':>9} {'/fixed':>6} {'shadow s':>9} {'/fixed':>6} {'triangles':>10} "
+          f"{'made/needed':>11} {'blended':>8} {'grids MB':>9}")
     for r in rows:
-        print(f"{r['scheme']:10} {r['rmse']:9.5f} {r['camera_seconds']:9.3f} {r['shadow_seconds']:9.3f} "
+        print(f"{r['scheme']:10} {r['rmse']:9.5f} {r['noise']:9.5f} {r['camera_seconds']:9.3f} {ratio(r, 'camera'):>6} "
+              f"{r['shadow_seconds']:9.3f} {ratio(r, 'shadow'):>6} "
               f"{r['triangles']:10d} {r['made_over_needed']:11.2f} {r['blended']:8.1%} {r['grid_bytes'] / 1e6:9.1f}")
 
 

@@ -20,6 +20,15 @@ std::uint64_t share_of(std::uint64_t all, int workers) {
     return all / static_cast<std::uint64_t>(workers) / granule * granule;
 }
 
+/// Numbers of pixels so far apart that pictures of different seeds share no samples (MurmurHash3's
+/// finalizer); 0 stays 0.
+std::int32_t hashed(int seed) {
+    auto h = static_cast<std::uint32_t>(seed);
+    h = (h ^ (h >> 16)) * 0x85ebca6bU;
+    h = (h ^ (h >> 13)) * 0xc2b2ae35U;
+    return static_cast<std::int32_t>(h ^ (h >> 16));
+}
+
 void put(float (&to)[3], const glm::dvec3& v) {
     for (int i = 0; i < 3; ++i)
         to[i] = static_cast<float>(v[i]);
@@ -298,6 +307,7 @@ void Frame::Impl::place_view(const Scene& scene) {
         h.sky_samples = s.sky_samples;
         put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
     }
+    h.sample_seed = hashed(s.seed);
     h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper ? 1 : 0;
     h.one_field = s.lod == Lod::camera ? 1 : 0;

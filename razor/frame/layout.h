@@ -417,6 +417,7 @@ struct FrameHeader {
     std::int32_t one_field;    // not 0: rays that leave surfaces ask for what camera rays do
     float fixed_target;        // not 0: what all rays ask for, everywhere
     std::int32_t level_choice; // a LevelChoice
+    std::int32_t sample_seed;  // added to the numbers of pixels: razor/kernels/sampling.h
 };
 
 inline constexpr int tile_side = 16; // pixels

@@ -145,6 +145,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     sint y0 = tile_row * tile_side;
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
+    sint seed = load(field(c.frame, &FrameHeader::sample_seed));
     vint lane_x = lane_index() & vint(packet_width - 1);
     vint lane_y = lane_index() >> (packet_width == 8 ? 3 : 2);
     for (sint y = y0; branch(y < y1); y += packet_height) {
@@ -155,11 +156,12 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
             inside = inside & (row < vint(y1));
             vint pixel = row * vint(width);
             pixel = pixel + column;
+            vint place = pixel + vint(seed);
             vfloat zero(0.0F);
             PixelSums sums{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero};
             for (sint s = 0; branch(s < samples); ++s) {
-                Rays r = camera_rays(c, camera, column, row, pixel, s, inside);
-                add_sample<F>(c, r, pixel, s, sums);
+                Rays r = camera_rays(c, camera, column, row, place, s, inside);
+                add_sample<F>(c, r, place, s, sums);
                 note_time(*c.watch, moment_first_packet);
             }
             resolve(c, sums, pixel, samples, inside);

@@ -1,6 +1,6 @@
 // Sample points as a deterministic function of (pixel, sample, dimension): the R2 sequence (Roberts 2018:
 // multiples of the plastic constant, modulo 1) moved by a hash of pixel and dimension, so no picture depends
-// on threads, tiles or sharing.
+// on threads, tiles or sharing. A seed moves the numbers of pixels (FrameHeader::sample_seed).
 #pragma once
 
 #include "isa/math.h"

@@ -24,7 +24,6 @@ namespace {
 constexpr Range rays_range{1, 2e9};
 constexpr Range per_origin_range{1, 8192};
 constexpr Range converge_range{100, 1e6};
-constexpr Range seed_range{0, 2147483647};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
 
 std::vector<check::MeshReport> examine(const Scene& scene) {
@@ -58,7 +57,6 @@ void CheckCommand::add_to(CLI::App& app) {
         ->type_name("N");
     check.add_option("--rays-an-origin", per_origin_, "rays of each origin; without it, 1000")
         ->type_name("N");
-    check.add_option("--seed", seed_, "of the random rays; without it, 1")->type_name("S");
     check.add_option("--isa", isa_, "instruction set: auto, plain, sse4, avx2 or avx512")->type_name("NAME");
     check.add_option("--json", json_, "write all findings for programs")->type_name("FILE.json");
     check.add_flag("--quiet", quiet_, "show no progress");
@@ -81,14 +79,10 @@ int CheckCommand::run() const {
     if (!per_origin_.empty()) {
         options.rays_an_origin = parse_whole("--rays-an-origin", per_origin_, per_origin_range);
     }
-    if (!seed_.empty()) {
-        options.seed = static_cast<unsigned>(parse_whole("--seed", seed_, seed_range));
-    }
     check::ConvergenceOptions convergence_options;
     if (!converge_.empty()) {
         convergence_options.rays = static_cast<int>(parse_whole("--converge", converge_, converge_range));
     }
-    convergence_options.seed = options.seed;
     const KernelTable& kernels =
         native_target(std::string(isa_words[parse_choice("--isa", isa_, isa_words)]));
     if (!json_.empty()) {
@@ -97,6 +91,7 @@ int CheckCommand::run() const {
     options.cancel = convergence_options.cancel = &watch_interrupts();
 
     SceneDescription description = scene_.describe();
+    options.seed = convergence_options.seed = static_cast<unsigned>(description.settings.seed);
     if (!scene_.lod_given()) {
         description.settings.lod = Lod::recursive;
     }

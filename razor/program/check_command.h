@@ -23,7 +23,7 @@ public:
 private:
     CLI::App* command_ = nullptr;
     SceneOptions scene_;
-    std::string escape_, compare_, per_origin_, converge_, seed_, isa_ = "auto", json_;
+    std::string escape_, compare_, per_origin_, converge_, isa_ = "auto", json_;
     bool quiet_ = false;
 };
 

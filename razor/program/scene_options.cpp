@@ -39,6 +39,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
     app.add_option("--light-samples", light_samples_, "shadow rays a hit to the light")->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
+    app.add_option("--seed", seed_, "of all samples and random rays: pictures of different seeds differ in noise alone")
+        ->type_name("N");
     app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
         ->type_name("X");
     app.add_option(
@@ -66,6 +68,9 @@ SceneDescription SceneOptions::describe() const {
         }
         if (!sky_samples_.empty()) {
             settings.sky_samples = parse_whole("--sky-samples", sky_samples_, shadow_samples_range);
+        }
+        if (!seed_.empty()) {
+            settings.seed = parse_whole("--seed", seed_, seed_range);
         }
         if (!edge_pixels_.empty()) {
             settings.edge_pixels = parse_number("--edge-pixels", edge_pixels_, edge_pixels_range);

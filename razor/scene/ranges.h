@@ -10,6 +10,7 @@ struct Range {
 inline constexpr Range size_range{1, 32768};          // pixels, width and height
 inline constexpr Range samples_range{1, 65536};       // a pixel
 inline constexpr Range shadow_samples_range{0, 4096}; // a hit, to the light or the sky
+inline constexpr Range seed_range{0, 2147483647};
 inline constexpr Range edge_pixels_range{0.01, 1e4};
 inline constexpr Range coordinate_range{-1e30, 1e30};
 inline constexpr Range aperture_range{0, 1e30};

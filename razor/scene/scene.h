@@ -119,6 +119,7 @@ struct Settings {
     int samples = 4;               // camera samples a pixel
     int light_samples = 4;         // shadow rays a hit to the rectangle light; 0: it is left out
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
+    int seed = 0;                  // another takes other samples of the same picture
     double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
 };
 

@@ -46,6 +46,7 @@ Settings read_settings(TomlTable table) {
     settings.samples = table.whole("samples", settings.samples, samples_range);
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
+    settings.seed = table.whole("seed", settings.seed, seed_range);
     settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
     settings.lod = read_word(table, "lod", settings.lod, lod_words);
     table.finish();

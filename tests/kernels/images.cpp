@@ -94,6 +94,34 @@ TEST(Images, DoNotDependOnTheFrameBefore) {
 }
 
 /// sse4 rounds twice where the others fuse: the same surfaces, but shadow rays at edges may go the other way.
+/// The correlation of what two pictures differ by from a third in their first plane.
+double correlation(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& of,
+                   std::size_t pixels) {
+    double ab = 0, aa = 0, bb = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const double x = double{a[i]} - of[i];
+        const double y = double{b[i]} - of[i];
+        ab += x * y;
+        aa += x * x;
+        bb += y * y;
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+TEST(Images, OfOtherSeedsHaveOtherNoise) {
+    const auto seeded = [](int seed, int samples) {
+        Scene scene = small_default_scene(32, 24);
+        scene.settings.samples = samples;
+        scene.settings.seed = seed;
+        return rendered(scene, *native_targets().back(), 1, 0);
+    };
+    const std::vector<float> converged = seeded(3, 64);
+    const std::vector<float> noisy = seeded(0, 1);
+    for (const int seed : {1, 2, 0x7fffffff})
+        EXPECT_LT(std::abs(correlation(noisy, seeded(seed, 1), converged, 32 * 24)), 0.1) << seed;
+    EXPECT_GT(correlation(noisy, seeded(0, 1), converged, 32 * 24), 0.99);
+}
+
 TEST(Images, OfUnfusedTargetsAreNear) {
     for (const KernelTable* target : targets_with(false)) {
         Scene scene = scenes().front();

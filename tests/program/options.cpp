@@ -51,12 +51,13 @@ TEST(SceneOptions, OverrideTheFile) {
     EXPECT_EQ(described({file}).settings.samples, 9);
     const SceneDescription scene =
         described({file, "--size", "64x32", "--spp", "2", "--light-samples", "3", "--sky-samples", "5",
-                   "--edge-pixels", "1.5", "--scheme", "bilinear"});
+                   "--seed", "7", "--edge-pixels", "1.5", "--scheme", "bilinear"});
     EXPECT_EQ(scene.settings.width, 64);
     EXPECT_EQ(scene.settings.height, 32);
     EXPECT_EQ(scene.settings.samples, 2);
     EXPECT_EQ(scene.settings.light_samples, 3);
     EXPECT_EQ(scene.settings.sky_samples, 5);
+    EXPECT_EQ(scene.settings.seed, 7);
     EXPECT_EQ(scene.settings.edge_pixels, 1.5);
     EXPECT_EQ(scene.meshes[0].scheme, Scheme::bilinear);
 }
