@@ -39,7 +39,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
     app.add_option("--light-samples", light_samples_, "shadow rays a hit to the light")->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
-    app.add_option("--seed", seed_, "of all samples and random rays: pictures of different seeds differ in noise alone")
+    app.add_option("--seed", seed_,
+                   "of all samples and random rays: pictures of different seeds differ in noise alone")
         ->type_name("N");
     app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
         ->type_name("X");

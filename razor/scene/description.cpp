@@ -288,10 +288,11 @@ std::string to_toml(const SceneDescription& description) {
     std::string text;
     const auto out = std::back_inserter(text);
     const Settings& settings = description.settings;
-    fmt::format_to(
-        out, "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples = {}\nseed = {}\n",
-        toml_text(description.name), settings.width, settings.height, settings.samples,
-        settings.light_samples, settings.sky_samples, settings.seed);
+    fmt::format_to(out,
+                   "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples "
+                   "= {}\nseed = {}\n",
+                   toml_text(description.name), settings.width, settings.height, settings.samples,
+                   settings.light_samples, settings.sky_samples, settings.seed);
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
     print_camera(text, description.camera, "camera");
