@@ -36,7 +36,7 @@ struct ConvergenceReport {
 
 /// Traces random rays at the curved meshes of a scene, whose own edges (the finest, taken for the limit) are
 /// made 16 times shorter than it says: at 2^7, 2^6 ... 2^3 of these. A coarse cage has its limits: a patch is
-/// not cut into more than 2^8 quads a side, so that edges shorter than that are the limit itself.
+/// not cut into more than 2^13 quads a side, so that edges shorter than that are the limit itself.
 ConvergenceReport measure_convergence(Scene scene, const KernelTable& kernels,
                                       const ConvergenceOptions& options);
 

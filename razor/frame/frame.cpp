@@ -46,7 +46,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         drawn.push_back(!t.patches.empty());
     geometry = locate_scene(scene, drawn);
     count_records(scene);
-    pages = std::make_unique<PageStore>(meshes, topologies);
+    pages = std::make_unique<PageStore>(meshes, topologies, options.page_bytes);
     counters.resize(static_cast<std::size_t>(options.workers));
     // OpenPatch entries, a table a tree, take memory only where a patch is opened.
     const std::uint64_t scene_bytes =
@@ -57,10 +57,10 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         geometry.instances.size() * sizeof(InstanceRecord) + geometry.graph.size() * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
-    memory = std::make_unique<isa::address_space>(pages->span_bytes() + all_grids + all_nodes + all_lists +
-                                                  2 * scene_bytes + pixels * 64 + 4 * gibibyte +
-                                                  static_cast<std::uint64_t>(options.workers + trees) * 64 *
-                                                      isa::address_space::granule);
+    memory = std::make_unique<isa::address_space>(
+        pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + all_grids + all_nodes +
+        all_lists + 2 * scene_bytes + pixels * 64 + 4 * gibibyte +
+        static_cast<std::uint64_t>(options.workers + trees) * 64 * isa::address_space::granule);
     place_scene(scene);
     place_graph();
     place_points();
@@ -115,6 +115,7 @@ namespace {
 [[noreturn]] void explain(const isa::trapped& trap) {
     const char* what = trap.code == trap_grids_full   ? "tessellated grids"
                        : trap.code == trap_nodes_full ? "kd-tree nodes"
+                       : trap.code == trap_pages_full ? "limit weights"
                                                       : "kd-tree item lists";
     throw UserError(fmt::format(
         "frame memory for {} is full; use a larger target edge (--edge-pixels), or share kd-trees "

@@ -22,6 +22,8 @@ struct FrameOptions {
     std::vector<int> tree_of_worker = {};
     /// Each worker's arenas; 0: as large as 32-bit references allow.
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
+    /// Room for topology pages; 0: 64 GiB of addresses, which take memory as pages are made.
+    std::uint64_t page_bytes = 0;
 };
 
 /// What was built, and what laziness left unbuilt.

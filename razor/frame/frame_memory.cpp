@@ -211,7 +211,8 @@ void Frame::Impl::place_topology() {
         base_curve += static_cast<int>(t.curves.size());
         base_class += static_cast<int>(t.classes.size());
     }
-    pages->lay_out(region<Line>("topology pages", -1, pages->span_bytes() / line_bytes), classes);
+    auto* entries = region<PageEntry>("topology pages", -1, pages->entry_count());
+    pages->lay_out(entries, region<Line>("topology pages", -1, pages->line_count()), classes);
 }
 
 void Frame::Impl::place_blend_table() {

@@ -86,8 +86,8 @@ inline constexpr int block_quads = 1 << block_log2;
 inline constexpr int block_side = block_quads + 1;
 inline constexpr int block_vertices = block_side * block_side;
 inline constexpr int blend_passes = block_log2; // steps of 4, 2 and 1 quads: see blend_pass
-inline constexpr int max_exponent_limit =
-    8; // of a curve; a mesh may have to use less (InstanceRecord::max_exponent)
+/// Of a curve: fourteen levels. A mesh may have to use less (InstanceRecord::max_exponent).
+inline constexpr int max_exponent_limit = 13;
 
 // Strips number the block columns (or rows, or curve chunks) of all exponents in one sequence:
 // exponent N has max(1, 2^(N-3)) of them, the first at strip_first(N).
@@ -100,12 +100,17 @@ constexpr int strip_first(int exponent) {
 constexpr int strip_count(int exponent) {
     return exponent < 3 ? 1 : 1 << (exponent - 3);
 }
+// Pairs of strips are numbered by the larger one first: coarse grids have the low numbers, whatever exponent
+// a mesh ends at.
+constexpr int strip_pair(int u, int v) {
+    return u < v ? v * v + v + 1 + u : u * u + v;
+}
 
 // --- topology pages
-// --------------------------------------------------------------------------------------------------- Weights
-// over a face's control points, made by the host on request and immutable from then on. Each has an address
-// fixed by its key: lines are 64 bytes; page = class base + section first + index * section stride. Line 0 of
-// a page holds the word PageHeader::present; the rows of weights follow from line 1.
+// ---------------------------------------------------------------------------------------------------
+// Weights over a face's control points, made by the host on request and immutable from then on, in whole
+// lines of 64 bytes. The number of lines that a class could need is beyond any memory, so each page has an
+// entry that says where it lies: entries[first of its kind + index].
 inline constexpr int line_bytes = 64;
 struct alignas(line_bytes) Line {
     std::int32_t word[line_bytes / 4];
@@ -114,30 +119,34 @@ struct alignas(line_bytes) Line {
 enum class PageKind : std::int32_t {
     vertex = 0, // index = corner (or corner_count: the centre). One row of control_count weights, zero-padded
                 // to the width
-    curve = 1, // index = ((local * 2 + reversed) * strips + strip). control_count rows of 16: points (8*chunk
+    curve = 1, // index = strip * curve_ways + local * 2 + reversed. control_count rows of 16: points (8*chunk
                // + i)/2^N, i = 0..8
-    block = 2, // index = (sub * strips + u strip) * strips + v strip. control_count rows, one weight a vertex
-               // j*(nu+1)+i, padded to the width; positions
+    block = 2, // index = (strip_pair(u strip, v strip) * subs + sub) * block_kinds. control_count rows, one
+               // weight a vertex j*(nu+1)+i, padded to the width; positions
     derivative = 3, // as block; two rows a control point: d/du then d/dv (only their cross product's
                     // direction matters)
     deviation = 4,  // as block; one row of control_count bounds, zero-padded to the width: how far the weight
                     // of any finer vertex is from the mean of its parents' weights, summed over the levels
 };
 inline constexpr int page_kinds = 5;
-inline constexpr int curve_row = 16; // floats a row of a curve page
+inline constexpr int block_kinds = 3; // pages of one block: their entries lie side by side
+inline constexpr int curve_row = 16;  // floats a row of a curve page
+
+struct PageEntry {
+    isa::shared<std::int32_t> line; // of the page, from ClassRecord::lines; 0 until the weights are there
+};
 
 struct ClassRecord {
-    isa::ref<Line> pages; // the class's address range
+    isa::ref<PageEntry> entries; // the class's
+    isa::ref<Line> lines;        // of all classes' pages
     std::int32_t control_count;
     std::int32_t corner_count;
-    std::int32_t strips;             // strip_first(max_exponent + 1) of the mesh
-    std::int32_t first[page_kinds];  // lines from `pages`
-    std::int32_t stride[page_kinds]; // lines a page
+    std::int32_t subs;              // blocks of one pair of strips: 1, or the corners of an n-gon
+    std::int32_t curve_ways;        // 2 a curve
+    std::int32_t first[page_kinds]; // from `entries`
+    std::int32_t padding[3];
 };
-
-struct PageHeader {
-    isa::shared<std::int32_t> present; // 0 until the weights are there
-};
+static_assert(sizeof(ClassRecord) == line_bytes);
 
 // --- scene
 // ------------------------------------------------------------------------------------------------------------
@@ -428,6 +437,6 @@ inline constexpr int kd_depth_limit = 72;
 inline constexpr int mailbox_slots = 16;
 
 /// Why a kernel gave up (isa::trap).
-enum TrapCode : int { trap_grids_full = 1, trap_nodes_full = 2, trap_lists_full = 3 };
+enum TrapCode : int { trap_grids_full = 1, trap_nodes_full = 2, trap_lists_full = 3, trap_pages_full = 4 };
 
 } // namespace razor

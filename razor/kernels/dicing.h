@@ -171,13 +171,17 @@ inline sint strip_of(sint n, sint block) {
     return before + block;
 }
 
-/// Index of a block's page within its section.
+/// Index of a block's page, of any kind that blocks have.
 inline sint block_page_index(const Cage& g, sint face_class, sint sub, sint nu, sint nv, sint column,
                              sint row) {
-    sint strips = load(field(g.classes + face_class, &ClassRecord::strips));
+    sint subs = load(field(g.classes + face_class, &ClassRecord::subs));
     sint su = strip_of(nu, column);
     sint sv = strip_of(nv, row);
-    return (sub * strips + su) * strips + sv;
+    sbool along_v = su < sv; // strip_pair(su, sv)
+    sint larger = select(along_v, sv, su);
+    sint beyond = select(along_v, su + 1, sint(0));
+    sint pair = larger * larger + sv + beyond;
+    return (pair * subs + sub) * block_kinds;
 }
 
 /// Rows of a page hold this many floats.

@@ -274,7 +274,7 @@ inline List refine_items(const Context& c, const List& old) {
     sfloat most = coarsest_target(coarse, high - low);
     sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
     most = select(fixed > 0.0F, fixed, most);
-    List l = make_list(c, total, old.depth + 1, old.low, old.high);
+    List l = make_list(c, total, old.depth, old.low, old.high); // the same cell: no deeper in the tree
     note_list_level(l, level, 1);
     sint at = 0;
     for (sint i = 0; branch(i < old.count); ++i) {

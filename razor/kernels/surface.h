@@ -152,16 +152,17 @@ inline pointer<float> page_weights(const Context& c, const Cage& g, sint face_cl
                                    sint index) {
     int k = static_cast<int>(kind);
     pointer<ClassRecord> record = g.classes + face_class;
-    pointer<Line> pages = load(field(record, &ClassRecord::pages));
+    pointer<PageEntry> entries = load(field(record, &ClassRecord::entries));
+    pointer<Line> lines = load(field(record, &ClassRecord::lines));
     sint first = load(field(record, &ClassRecord::first) + k);
-    sint stride = load(field(record, &ClassRecord::stride) + k);
-    pointer<Line> page = pages + (first + index * stride);
-    sint present = load_acquire(field(as<PageHeader>(page), &PageHeader::present));
-    if (branch(present == 0)) {
+    pointer<shared_int> entry = field(entries + (first + index), &PageEntry::line);
+    sint line = load_acquire(entry);
+    if (branch(line == 0)) {
         tally(c.counters->pages_requested, 1);
         request_page(*c.pages, face_class, k, index);
+        line = load_acquire(entry);
     }
-    return as<float>(page + 1);
+    return as<float>(lines + line);
 }
 
 /// Limit position at a face's corner (or its centre: corner = corner_count). One lane a control point.
@@ -252,13 +253,14 @@ inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord>
     sint face_class = load(field(face, &FaceRecord::face_class));
     sint first = load(field(face, &FaceRecord::control_first));
     sint n = load(field(face, &FaceRecord::control_count));
-    sint strips = load(field(g.classes + face_class, &ClassRecord::strips));
+    sint ways = load(field(g.classes + face_class, &ClassRecord::curve_ways));
     sint chunks_before = exponent; // strip_first(exponent)
     if (branch(exponent > block_log2))
         chunks_before = strip_first_large(sint(1) << (exponent - block_log2));
     sint reversed = flags & curve_owner_reversed;
     sint strip = chunks_before + chunk;
-    sint index = (local * 2 + reversed) * strips + strip;
+    sint way = local * 2 + reversed;
+    sint index = strip * ways + way;
     pointer<float> weights = page_weights(c, g, face_class, PageKind::curve, index);
     for (int lanes = 0; lanes < curve_row; lanes += isa::width) {
         vmask m = first_lanes(curve_row - lanes);

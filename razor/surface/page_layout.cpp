@@ -5,15 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
+#include <cmath>
 #include <stdexcept>
 
 namespace razor {
 namespace {
 
 constexpr int largest_width = 64; // of any build
-constexpr std::size_t line_floats = line_bytes / sizeof(float);
 
 std::size_t rounded_up(std::size_t n, std::size_t step) {
     return (n + step - 1) / step * step;
@@ -39,24 +38,17 @@ std::size_t section_floats(PageKind kind, std::size_t controls, std::size_t vert
     throw std::logic_error("page kind out of range");
 }
 
-struct Section {
-    std::int64_t stride, pages; // lines, count
-};
+int sub_count(int corner_count) {
+    return corner_count == 4 ? 1 : corner_count;
+}
 
-std::array<Section, page_kinds> class_sections(const FaceClass& c, int max_exponent) {
-    const std::int64_t strips = strip_first(max_exponent + 1);
-    const bool quad = c.corner_count == 4;
-    const std::int64_t curves = quad ? 4 : 2 * c.corner_count;
-    const std::int64_t blocks = (quad ? 1 : c.corner_count) * strips * strips;
-    const std::array<std::int64_t, page_kinds> pages{c.corner_count + 1, curves * 2 * strips, blocks, blocks,
-                                                     blocks};
-    std::array<Section, page_kinds> sections{};
-    for (std::size_t k = 0; k < page_kinds; ++k) {
-        const std::size_t floats = largest_page_floats(static_cast<PageKind>(k), c.control_count);
-        sections[k] = {1 + static_cast<std::int64_t>(rounded_up(floats, line_floats) / line_floats),
-                       pages[k]};
-    }
-    return sections;
+int curve_ways(int corner_count) { // edges and spokes, either way
+    return 2 * (corner_count == 4 ? 4 : 2 * corner_count);
+}
+
+/// Exponents of an n-gon's sub-faces are less than their edges'.
+int block_exponent(const FaceClass& c, int max_exponent) {
+    return c.corner_count == 4 ? max_exponent : std::max(max_exponent - 1, 0);
 }
 
 struct Strip {
@@ -70,9 +62,18 @@ Strip strip_of(int number) { // inverse of strip_first
     return {log2 + 3, number - 2 - (1 << log2)};
 }
 
+struct Pair {
+    int u, v;
+};
+Pair strips_of(int pair) {                                                      // inverse of strip_pair
+    const auto larger = static_cast<int>(std::sqrt(static_cast<double>(pair))); // exact: below 2^52
+    const int rest = pair - larger * larger;
+    return rest > larger ? Pair{rest - larger - 1, larger} : Pair{larger, rest};
+}
+
 } // namespace
 
-PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int strips) {
+PageKey page_key(int face_class, PageKind kind, int index, int corner_count) {
     PageKey key;
     key.face_class = face_class;
     key.kind = kind;
@@ -84,22 +85,26 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int
         }
         break;
     case PageKind::curve: {
-        const Strip u = strip_of(index % strips);
+        const int ways = curve_ways(corner_count);
+        const Strip u = strip_of(index / ways);
         key.exponent_u = u.exponent;
         key.strip_u = u.strip;
-        key.reversed = index / strips % 2 != 0;
-        key.local = index / strips / 2;
+        key.reversed = index % 2 != 0;
+        key.local = index % ways / 2;
         break;
     }
     case PageKind::block:
     case PageKind::derivative:
     case PageKind::deviation: {
-        const Strip v = strip_of(index % strips), u = strip_of(index / strips % strips);
+        const int subs = sub_count(corner_count);
+        const int pair = index / block_kinds / subs;
+        const Pair strips = strips_of(pair);
+        const Strip u = strip_of(strips.u), v = strip_of(strips.v);
         key.exponent_u = u.exponent;
         key.strip_u = u.strip;
         key.exponent_v = v.exponent;
         key.strip_v = v.strip;
-        key.local = index / strips / strips;
+        key.local = index / block_kinds % subs;
         break;
     }
     }
@@ -114,31 +119,26 @@ std::size_t page_floats(const PageKey& key, int control_count) {
                           side(key.exponent_u) * side(key.exponent_v));
 }
 
-std::size_t largest_page_floats(PageKind kind, int control_count) {
-    return section_floats(kind, static_cast<std::size_t>(control_count), block_vertices);
-}
-
-ClassRecord class_record(const FaceClass& face_class, int max_exponent) {
+ClassRecord class_record(const FaceClass& c, int max_exponent) {
     ClassRecord record{};
-    record.control_count = face_class.control_count;
-    record.corner_count = face_class.corner_count;
-    record.strips = strip_first(max_exponent + 1);
-    std::int64_t next = 0;
-    const std::array<Section, page_kinds> sections = class_sections(face_class, max_exponent);
-    for (std::size_t k = 0; k < page_kinds; ++k) {
-        record.first[k] = static_cast<std::int32_t>(next);
-        record.stride[k] = static_cast<std::int32_t>(sections[k].stride);
-        next += sections[k].stride * sections[k].pages;
-    }
+    record.control_count = c.control_count;
+    record.corner_count = c.corner_count;
+    record.subs = sub_count(c.corner_count);
+    record.curve_ways = curve_ways(c.corner_count);
+    const int curves = c.corner_count + 1; // after the vertices
+    const int blocks = curves + record.curve_ways * strip_first(max_exponent + 1);
+    record.first[static_cast<int>(PageKind::vertex)] = 0;
+    record.first[static_cast<int>(PageKind::curve)] = curves;
+    record.first[static_cast<int>(PageKind::block)] = blocks;
+    record.first[static_cast<int>(PageKind::derivative)] = blocks + 1;
+    record.first[static_cast<int>(PageKind::deviation)] = blocks + 2;
     return record;
 }
 
-std::int64_t class_lines(const FaceClass& face_class, int max_exponent) {
-    std::int64_t lines = 0;
-    for (const Section& section : class_sections(face_class, max_exponent)) {
-        lines += section.stride * section.pages;
-    }
-    return lines;
+std::int64_t class_entries(const FaceClass& c, int max_exponent) {
+    const std::int64_t strips = strip_first(block_exponent(c, max_exponent) + 1);
+    const ClassRecord record = class_record(c, max_exponent);
+    return record.first[static_cast<int>(PageKind::block)] + strips * strips * record.subs * block_kinds;
 }
 
 int largest_exponent(const Mesh& mesh, const std::vector<FaceClass>& classes) {
@@ -146,16 +146,16 @@ int largest_exponent(const Mesh& mesh, const std::vector<FaceClass>& classes) {
         std::int64_t sum = 0;
         bool fits = true;
         for (const FaceClass& c : classes) {
-            const std::int64_t lines = class_lines(c, exponent);
-            sum += lines;
-            fits = fits && lines < class_page_lines && sum < mesh_page_lines;
+            const std::int64_t entries = class_entries(c, exponent);
+            sum += entries;
+            fits = fits && entries < most_class_entries && sum < most_mesh_entries;
         }
         if (fits) {
             return exponent;
         }
     }
     throw UserError(fmt::format(
-        "mesh '{}': its {} kinds of faces need more weights than can be addressed; split the mesh, or "
+        "mesh '{}': its {} kinds of faces need more weights than can be numbered; split the mesh, or "
         "its largest faces",
         mesh.name, classes.size()));
 }

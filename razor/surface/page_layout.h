@@ -1,4 +1,5 @@
-// Sizes of pages and of a class's address range (see "topology pages" in razor/frame/layout.h).
+// How pages are numbered, and up to which exponent they can be (see "topology pages" in
+// razor/frame/layout.h).
 #pragma once
 
 #include "razor/surface/pages.h"
@@ -8,12 +9,13 @@
 
 namespace razor {
 
-/// Lines a mesh's pages may span together, and those of one class (its sections are found by 32-bit line
-/// numbers).
-inline constexpr std::int64_t mesh_page_lines = std::int64_t{1} << 38;
-inline constexpr std::int64_t class_page_lines = std::int64_t{1} << 30;
+/// Entries that the pages of one class may have (they are found by 32-bit numbers), and those of a mesh: they
+/// take addresses, and memory only where pages are made.
+inline constexpr std::int64_t most_class_entries = std::int64_t{1} << 31;
+inline constexpr std::int64_t most_mesh_entries = std::int64_t{1} << 38;
 
-/// The largest exponent, at most max_exponent_limit, with which the pages fit. Throws UserError if none does.
+/// The largest exponent, at most max_exponent_limit, with which the pages can be numbered. Throws UserError
+/// if none is.
 int largest_exponent(const Mesh& mesh, const std::vector<FaceClass>& classes);
 
 } // namespace razor

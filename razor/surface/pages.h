@@ -20,11 +20,10 @@ struct PageKey {
     int exponent_v = 0, strip_v = 0;
 };
 
-/// Inverse of the index formulas of PageKind for a class of `corner_count` corners and `strips` strips.
-PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int strips);
+/// Inverse of the index formulas of PageKind for a class of `corner_count` corners.
+PageKey page_key(int face_class, PageKind kind, int index, int corner_count);
 
-/// Floats that follow a page's header line, and the largest such number over all keys of a kind (the
-/// section's stride).
+/// Floats of a page.
 ///   - vertex: one row of control_count weights, zero-padded to a multiple of 64 (any width can read it)
 ///   - curve: control_count rows of curve_row weights, the first 1 + min(8, 2^N) used, the rest zero
 ///   - block: control_count rows of (nu+1)(nv+1) weights, nu = min(8, 2^Nu), zero-padded to a multiple of
@@ -32,23 +31,24 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count, int
 ///   - derivative: as block, two rows a control point
 ///   - deviation: one row of control_count bounds, zero-padded to a multiple of 64
 std::size_t page_floats(const PageKey& key, int control_count);
-std::size_t largest_page_floats(PageKind kind, int control_count);
 
-/// The layout of a class's pages, with base_line 0. Sections follow each other in the order of PageKind.
+/// How a class's pages are numbered: vertices, then curves, then blocks. `entries` and `lines` are left to
+/// the caller.
 ClassRecord class_record(const FaceClass& face_class, int max_exponent);
 
-/// Lines that all pages of a class span: the next class may start there.
-std::int64_t class_lines(const FaceClass& face_class, int max_exponent);
+/// Entries of all pages of a class: those of the next class may follow.
+std::int64_t class_entries(const FaceClass& face_class, int max_exponent);
 
 class PageMaker {
 public:
     struct Options {
         /// Refinement levels to which extraordinary points and sharp features are isolated before
         /// OpenSubdiv approximates; 1 to 10 (its patches cannot go deeper: more would corrupt memory).
-        /// At 10 nothing that a frame evaluates is approximated: semi-sharp features (below 10) have become
-        /// smooth, and points at multiples of 2^-max_exponent_limit of a (sub-)face are corners of refined
-        /// patches, where limits are exact. At 4 the same points are off by up to 5e-4 of the cage's size
-        /// (cube), 1e-2 (valence 64), 4e-3 (sharpness 9).
+        /// At 10 semi-sharp features (below 10) have become smooth, and points at multiples of 2^-10 of a
+        /// quad (2^-9 of a sub-face) are corners of refined patches, where limits are exact. Finer grids have
+        /// points between those: in the last patches beside extraordinary points they are off by up to 2e-6
+        /// of the cage's size (cube), 3e-5 (valence 5), 1e-3 (valence 30). At 4 the corners are off by up to
+        /// 5e-4 (cube), 1e-2 (valence 64), 4e-3 (sharpness 9).
         int approximation_level = 10;
     };
     /// Keeps a reference to `topology` and copies what it needs of `mesh`.

@@ -47,6 +47,14 @@ TEST_P(Arenas, FullOfGrids) {
     }
 }
 
+TEST_P(Arenas, FullOfPages) {
+    for (int share : {0, 1}) {
+        FrameOptions o = options(share);
+        o.page_bytes = 1 << 16;
+        EXPECT_NE(failure(o).find("limit weights"), std::string::npos);
+    }
+}
+
 TEST_P(Arenas, FullOfItemLists) {
     for (int share : {0, 1}) {
         FrameOptions o = options(share);

@@ -146,7 +146,7 @@ TEST(Classes, CountsOnRealMeshes) {
         fmt::print("  {}: {} faces, {} classes, {} controls, largest exponent {}\n", path, t.faces.size(),
                    t.classes.size(), t.controls.size(), t.max_exponent);
         EXPECT_LT(t.classes.size(), t.faces.size());
-        EXPECT_GE(t.max_exponent, 6);
+        EXPECT_EQ(t.max_exponent, max_exponent_limit);
     }
 }
 

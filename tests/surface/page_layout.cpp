@@ -3,9 +3,12 @@
 
 #include "razor/surface/page_layout.h"
 #include "razor/surface/pages.h"
+#include "razor/surface/refiner.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,59 +20,89 @@ namespace razor::test {
 namespace {
 
 TEST(Pages, KeysInvertTheIndexFormulas) {
-    const int max_exponent = 8, strips = strip_first(max_exponent + 1);
-    for (int nu = 0; nu <= max_exponent; ++nu) {
-        for (int su = 0; su < strip_count(nu); ++su) {
-            const int u = strip_first(nu) + su;
-            for (int nv = 0; nv <= max_exponent; nv += 2) {
-                const int v = strip_first(nv) + strip_count(nv) - 1;
-                const PageKey key = page_key(3, PageKind::block, (2 * strips + u) * strips + v, 5, strips);
-                EXPECT_EQ(std::tuple(key.face_class, key.local, key.exponent_u, key.strip_u, key.exponent_v,
-                                     key.strip_v),
-                          std::tuple(3, 2, nu, su, nv, strip_count(nv) - 1));
-            }
-            for (const bool reversed : {false, true}) {
-                const PageKey key = page_key(0, PageKind::curve, (7 * 2 + reversed) * strips + u, 4, strips);
-                EXPECT_EQ(std::tuple(key.local, key.reversed, key.exponent_u, key.strip_u),
-                          std::tuple(7, reversed, nu, su));
+    for (const int corners : {4, 5}) {
+        const FaceClass c{0, 20, corners, false};
+        const ClassRecord r = class_record(c, max_exponent_limit);
+        const int sub = corners - 4;
+        for (int nu = 0; nu <= max_exponent_limit; ++nu) {
+            for (int su = 0; su < strip_count(nu); ++su) {
+                const int u = strip_first(nu) + su;
+                for (int nv = 0; nv <= max_exponent_limit; nv += 2) {
+                    const int sv = su % strip_count(nv), v = strip_first(nv) + sv;
+                    const int index = (strip_pair(u, v) * r.subs + sub) * block_kinds;
+                    const PageKey key = page_key(3, PageKind::derivative, index, corners);
+                    ASSERT_EQ(std::tuple(key.face_class, key.local, key.exponent_u, key.strip_u,
+                                         key.exponent_v, key.strip_v),
+                              std::tuple(3, sub, nu, su, nv, sv));
+                }
+                for (const bool reversed : {false, true}) {
+                    const int local = r.curve_ways / 2 - 1, index = u * r.curve_ways + local * 2 + reversed;
+                    const PageKey key = page_key(0, PageKind::curve, index, corners);
+                    ASSERT_EQ(std::tuple(key.local, key.reversed, key.exponent_u, key.strip_u),
+                              std::tuple(local, reversed, nu, su));
+                }
             }
         }
+        EXPECT_EQ(page_key(0, PageKind::vertex, corners, corners).local, corners);
     }
-    EXPECT_EQ(page_key(0, PageKind::vertex, 4, 4, strips).local, 4);
 }
 
-TEST(Pages, SectionsHoldTheirPagesAndDoNotOverlap) {
+TEST(Pages, PairsOfStripsAreNumberedWithoutGapsCoarseOnesFirst) {
+    const int strips = strip_first(7);
+    std::vector<int> seen(static_cast<std::size_t>(strips * strips), 0);
+    for (int u = 0; u < strips; ++u) {
+        for (int v = 0; v < strips; ++v) {
+            ++seen.at(static_cast<std::size_t>(strip_pair(u, v)));
+            EXPECT_LT(strip_pair(u, v), (std::max(u, v) + 1) * (std::max(u, v) + 1));
+        }
+    }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), strips * strips);
+}
+
+TEST(Pages, EntriesDoNotOverlap) {
     for (const int corners : {3, 4, 7}) {
         const FaceClass c{0, 37, corners, false};
-        const ClassRecord r = class_record(c, 5);
-        EXPECT_EQ(r.strips, strip_first(6));
-        for (int k = 0; k < page_kinds; ++k) {
-            const auto kind = static_cast<PageKind>(k);
-            const auto floats = static_cast<std::int64_t>(largest_page_floats(kind, 37));
-            EXPECT_EQ(r.stride[k], 1 + (floats + 15) / 16);
-        }
-        const int subs = corners == 4 ? 1 : corners, locals = corners == 4 ? 4 : 2 * corners;
+        constexpr int exponent = 5;
+        const ClassRecord r = class_record(c, exponent);
+        const int subs = corners == 4 ? 1 : corners, curves = corners == 4 ? 4 : 2 * corners;
+        // Sub-faces have one exponent less than the edges that they halve.
+        const int strips = strip_first(corners == 4 ? exponent + 1 : exponent);
+        EXPECT_EQ(r.subs, subs);
+        EXPECT_EQ(r.curve_ways, 2 * curves);
         EXPECT_EQ(r.first[0], 0);
-        EXPECT_EQ(r.first[1], (corners + 1) * r.stride[0]);
-        EXPECT_EQ(r.first[2], r.first[1] + locals * 2 * r.strips * r.stride[1]);
-        EXPECT_EQ(r.first[3], r.first[2] + subs * r.strips * r.strips * r.stride[2]);
-        EXPECT_EQ(r.first[4], r.first[3] + subs * r.strips * r.strips * r.stride[3]);
-        EXPECT_EQ(class_lines(c, 5), r.first[4] + std::int64_t{subs} * r.strips * r.strips * r.stride[4]);
+        EXPECT_EQ(r.first[1], corners + 1);
+        EXPECT_EQ(r.first[2], r.first[1] + 2 * curves * strip_first(exponent + 1));
+        EXPECT_EQ(r.first[3], r.first[2] + 1);
+        EXPECT_EQ(r.first[4], r.first[2] + 2);
+        EXPECT_EQ(class_entries(c, exponent), r.first[2] + block_kinds * subs * strips * strips);
     }
 }
 
-TEST(Pages, LargestExponentKeepsAddressesInRange) {
+TEST(Pages, AllCagesHaveFourteenLevels) {
     for (const int sides : {5, 64, 256}) {
         const Topology t = analyse_topology(prism(sides));
-        std::int64_t sum = 0;
+        EXPECT_EQ(t.max_exponent, max_exponent_limit);
         for (const FaceClass& c : t.classes) {
-            EXPECT_LT(class_lines(c, t.max_exponent), class_page_lines);
-            sum += class_lines(c, t.max_exponent);
+            EXPECT_LT(class_entries(c, t.max_exponent), most_class_entries);
         }
-        EXPECT_LT(sum, mesh_page_lines);
-        EXPECT_EQ(t.max_exponent < max_exponent_limit, sides == 256);
-        EXPECT_GE(t.max_exponent, 5);
     }
+}
+
+TEST(Pages, TheLargestExponentIsTheLastThatCanBeNumbered) {
+    const auto largest = [](std::size_t count, int corners) {
+        return largest_exponent(prism(5), std::vector<FaceClass>(count, FaceClass{0, 20, corners, false}));
+    };
+    EXPECT_EQ(largest(1, 256), 13);
+    EXPECT_EQ(largest(1, 1024), 12);
+    for (const std::size_t count : {20'000U, 30'000U, 100'000U, 1'000'000U}) {
+        const int exponent = largest(count, 4);
+        const FaceClass c{0, 20, 4, false};
+        const auto n = static_cast<std::int64_t>(count);
+        EXPECT_LT(n * class_entries(c, exponent), most_mesh_entries);
+        EXPECT_TRUE(exponent == 13 || n * class_entries(c, exponent + 1) >= most_mesh_entries);
+    }
+    EXPECT_EQ(largest(20'000, 4), 13);
+    EXPECT_EQ(largest(100'000, 4), 11);
 }
 
 std::vector<float> make(const PageMaker& maker, const Topology& t, const PageKey& key) {
@@ -204,9 +237,9 @@ TEST(Pages, SameFromManyThreadsInAnyOrder) {
     }
 }
 
-TEST(Pages, NothingThatAFrameEvaluatesIsApproximated) {
-    // The finest blocks at the four corners of each class, where one level less (and sharpness lower by one)
-    // must change nothing. OpenSubdiv cannot go deeper: its patches count in 2^10 steps.
+TEST(Pages, NothingIsApproximatedDownToTheLastRefinement) {
+    // The finest such blocks at the four corners of each class, where one level less (and sharpness lower by
+    // one) must change nothing. OpenSubdiv cannot go deeper: its patches count in 2^10 steps.
     Mesh sharp = quad_grid(6, 6);
     sharp.creases = {{16, 17, 8.5F}, {17, 18, 8.5F}, {18, 25, 4.5F}, {31, 32, 8.9F}};
     sharp.corners = {{37, 8.5F}};
@@ -220,9 +253,9 @@ TEST(Pages, NothingThatAFrameEvaluatesIsApproximated) {
         for (int c = 0; c < static_cast<int>(t.classes.size()); ++c) {
             PageKey key;
             key.face_class = c;
-            key.exponent_u = key.exponent_v = max_exponent_limit;
-            for (const int u : {0, strip_count(max_exponent_limit) - 1}) {
-                for (const int v : {0, strip_count(max_exponent_limit) - 1}) {
+            key.exponent_u = key.exponent_v = deepest - 2; // and a sub-face is half of a face
+            for (const int u : {0, strip_count(key.exponent_u) - 1}) {
+                for (const int v : {0, strip_count(key.exponent_v) - 1}) {
                     key.strip_u = u;
                     key.strip_v = v;
                     const std::vector<float> a = make(maker, t, key), b = make(deeper, t, key);
@@ -237,6 +270,119 @@ TEST(Pages, NothingThatAFrameEvaluatesIsApproximated) {
     for (const Mesh& mesh : {cube(), prism(5), quad_pole(12), triangle_pole(30), sharp}) {
         EXPECT_LT(difference(mesh, deepest - 1), 1e-6F);
         EXPECT_GT(difference(mesh, 4), 1e-4F);
+    }
+}
+
+/// A mesh of quads, and its faces' first children's first children ..., after `levels` refinements.
+struct Refined {
+    Mesh mesh;
+    std::vector<int> child;
+};
+Refined refined(const Mesh& mesh, int levels) {
+    Refined r{mesh, {}};
+    for (int f = 0; f < static_cast<int>(mesh.face_sizes.size()); ++f) {
+        r.child.push_back(f);
+    }
+    struct Point {
+        glm::dvec3 p{0};
+        void Clear() { p = glm::dvec3(0); }
+        void AddWithWeight(const Point& o, double w) { p += w * o.p; }
+    };
+    for (int level = 0; level < levels; ++level) {
+        const auto refiner = make_refiner(r.mesh);
+        refiner->RefineUniform(OpenSubdiv::Far::TopologyRefiner::UniformOptions(1));
+        std::vector<Point> from, to(static_cast<std::size_t>(refiner->GetLevel(1).GetNumVertices()));
+        for (const glm::dvec3& p : r.mesh.points) {
+            from.push_back({p});
+        }
+        OpenSubdiv::Far::PrimvarRefinerReal<double>(*refiner).Interpolate(1, from, to);
+        Mesh next;
+        for (const Point& p : to) {
+            next.points.push_back(p.p);
+        }
+        for (int f = 0; f < refiner->GetLevel(1).GetNumFaces(); ++f) {
+            next.face_sizes.push_back(4);
+            for (const int v : refiner->GetLevel(1).GetFaceVertices(f)) {
+                next.face_vertices.push_back(v);
+            }
+        }
+        for (int& f : r.child) {
+            f = refiner->GetLevel(0).GetFaceChildFaces(f)[0];
+        }
+        r.mesh = std::move(next);
+    }
+    return r;
+}
+
+TEST(Pages, BesideExtraordinaryPointsTheFinestAreNearTheLimit) {
+    // A cage refined four times has the same limit, and its blocks of exponent 9 are those of 13.
+    constexpr int refinements = 4, fine = max_exponent_limit - refinements;
+    for (const auto& [mesh, bound] :
+         {std::pair{cube(), 1e-5}, {quad_pole(5), 1e-4}, {quad_pole(12), 1e-3}, {quad_pole(30), 3e-3}}) {
+        const Refined other = refined(mesh, refinements);
+        const Topology t = analyse_topology(mesh), finer = analyse_topology(other.mesh);
+        const PageMaker maker(mesh, t), exact(other.mesh, finer);
+        const auto corner = [](const Mesh& m, const Topology& topology, const PageMaker& pages, int face,
+                               int exponent) {
+            const FaceRecord& record = topology.faces[static_cast<std::size_t>(face)];
+            PageKey key;
+            key.face_class = record.face_class;
+            key.exponent_u = key.exponent_v = exponent;
+            const std::vector<float> weights = make(pages, topology, key);
+            const auto controls = static_cast<std::size_t>(record.control_count);
+            std::vector<glm::dvec3> points(block_vertices, glm::dvec3(0));
+            for (std::size_t c = 0; c < controls; ++c) {
+                const int control = topology.controls[static_cast<std::size_t>(record.control_first) + c];
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    points[i] += double{weights[c * (weights.size() / controls) + i]} *
+                                 m.points[static_cast<std::size_t>(control)];
+                }
+            }
+            return points;
+        };
+        double worst = 0, worst_corner = 0;
+        for (std::size_t f = 0; f < mesh.face_sizes.size(); ++f) {
+            const auto a = corner(mesh, t, maker, static_cast<int>(f), max_exponent_limit);
+            const auto b = corner(other.mesh, finer, exact, other.child[f], fine);
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                const double off = glm::length(a[i] - b[i]) / extent(mesh);
+                worst = std::max(worst, off);
+                // Corners of the last patches: multiples of 2^-10.
+                if (i % block_side % 8 == 0 && i / block_side % 8 == 0) {
+                    worst_corner = std::max(worst_corner, off);
+                }
+            }
+        }
+        fmt::print("  {}: {:.1e} of the cage's size, at corners of patches {:.1e}\n", mesh.name, worst,
+                   worst_corner);
+        EXPECT_LT(worst, bound);
+        EXPECT_LT(worst_corner, 1e-6);
+    }
+}
+
+TEST(Pages, SharedEdgesHaveTheSameWeightsAtTheFinestExponentFromEitherEnd) {
+    for (const Mesh& mesh : {cube(), prism(5), quad_pole(12)}) {
+        const Topology t = analyse_topology(mesh);
+        const PageMaker maker(mesh, t);
+        for (int c = 0; c < static_cast<int>(t.classes.size()); ++c) {
+            PageKey forward;
+            forward.face_class = c;
+            forward.kind = PageKind::curve;
+            forward.exponent_u = max_exponent_limit;
+            PageKey backward = forward;
+            backward.reversed = true;
+            const int last = strip_count(max_exponent_limit) - 1;
+            for (const int strip : {0, 1, 700, last}) {
+                forward.strip_u = strip;
+                backward.strip_u = last - strip;
+                const std::vector<float> f = make(maker, t, forward), b = make(maker, t, backward);
+                for (std::size_t i = 0; i < f.size(); i += curve_row) {
+                    for (std::size_t k = 0; k <= 8; ++k) {
+                        ASSERT_EQ(f[i + k], b[i + 8 - k]);
+                    }
+                }
+            }
+        }
     }
 }
 
