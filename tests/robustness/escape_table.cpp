@@ -69,7 +69,7 @@ std::vector<Case> all_cases() {
                          n(companions), n(scales), n(targets)}))
         cases.push_back({models[c[0]], schemes[c[1]], growths[c[2]], bases[c[3]], edges_across[c[4]],
                          offsets[c[5]], companions[c[6]], scales[c[7]], targets[c[8]]});
-    // Faces of 2048 x 2048 quads, twelve levels. It takes 4 GiB.
+    // Faces of 2048 x 2048 quads, twelve levels. It takes 5 GiB.
     for (const Scheme scheme : schemes)
         cases.push_back({"coarse", scheme, 0.02, 1.9, 4000, 0, 0, 1, "avx2"});
     return cases;
