@@ -19,13 +19,15 @@ struct ChipConfig {
 
 struct CoreConfig {
     integer issue_width = 0, lanes = 0, window = 0;
+    std::string pairing, shared_classes;
+    integer shared_cores = 0;
     integer vector_registers = 0, spill_slots = 0;
     double scalar_overhead = 0;
     std::string predictor;
-    integer predictor_history = 0, mispredict_cycles = 0;
+    integer predictor_history = 0, predictor_entries = 0, mispredict_cycles = 0;
     std::string switch_policy;
     integer switch_cycles = 0;
-    std::string gather;
+    std::string gather, skip_idle;
     integer spin_period = 0;
 };
 

@@ -1,6 +1,7 @@
 // What parameters owe each other.
 #include "sim/config/config.h"
 #include "sim/config/error.h"
+#include "sim/core/pairing.h"
 #include "sim/memory/dram_mapping.h"
 #include "sim/memory/dram_timing.h"
 
@@ -42,6 +43,30 @@ void at_least(const std::string& what, const char* longer, integer a, const char
                                a, shorter, b));
 }
 
+void check_core(const std::string& what, const Config& config) {
+    const CoreConfig& c = config.core;
+    if (std::string mistake = Pairing::mistake(c.pairing); !mistake.empty())
+        fail(what, fmt::format("core.pairing \"{}\" {}", c.pairing, mistake));
+    if (std::string mistake = shared_classes_mistake(c.shared_classes); !mistake.empty())
+        fail(what, fmt::format("core.shared_classes \"{}\" {}", c.shared_classes, mistake));
+    if (c.predictor == "counters" && c.predictor_history > 10)
+        fail(what,
+             fmt::format(
+                 "core.predictor_history is {}; a table of unlimited size takes at most 10: lower it, or "
+                 "take predictor gshare",
+                 c.predictor_history));
+    if (c.predictor == "gshare" && integer{1} << c.predictor_history > c.predictor_entries)
+        fail(what, fmt::format(
+                       "core.predictor_history is {}, more bits than core.predictor_entries, {}, has places "
+                       "for; lower it, or make those {}",
+                       c.predictor_history, c.predictor_entries, integer{1} << c.predictor_history));
+    if (config.chip.cores % c.shared_cores != 0)
+        fail(what,
+             fmt::format("core.shared_cores is {}, which does not divide chip.cores, {}: units are shared "
+                         "within a tile; make it a divisor",
+                         c.shared_cores, config.chip.cores));
+}
+
 void check_memory(const std::string& what, const Config& config) {
     const MemoryConfig& c = config.memory;
     integer burst = c.bus_bytes * c.burst_length;
@@ -81,6 +106,7 @@ void check_consistency(const Config& c, const std::string& what) {
     if (c.l2.line_bytes < c.l1.line_bytes)
         fail(what, fmt::format("l2.line_bytes is {}, less than l1.line_bytes, {}; make it at least that",
                                c.l2.line_bytes, c.l1.line_bytes));
+    check_core(what, c);
     check_memory(what, c);
     constexpr double most_lines = 1 << 27; // about a gigabyte of the host's memory for their tags
     double lines =

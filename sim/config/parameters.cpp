@@ -77,6 +77,14 @@ void add_core(Table& t) {
     auto s = &Config::core;
     t.add("core.issue_width", s, &C::issue_width, "instructions/cycle", 1, 1, 16,
           "issue slots, shared by the threads");
+    t.add_text(
+        "core.pairing", s, &C::pairing, "any",
+        "any: each slot takes any instruction; else ports, apart by |, that take one a cycle of the "
+        "kinds they list (any, scalar, vector, memory, load, store, branch, classes, vector.CLASS ...)");
+    t.add_text("core.shared_classes", s, &C::shared_classes, "none",
+               "classes that share one unit, which takes one instruction an interval; none: no such unit");
+    t.add("core.shared_cores", s, &C::shared_cores, "cores", 1, 1, 1024,
+          "neighbouring cores of a tile that share a unit of core.shared_classes");
     t.add("core.lanes", s, &C::lanes, "lanes", 4, 1, 64,
           "32-bit lanes of the SIMD unit; wider operations are split", true);
     t.add("core.window", s, &C::window, "operations", 1, 1, 1024,
@@ -87,10 +95,17 @@ void add_core(Table& t) {
           "stack slots that spilled values share");
     t.add("core.scalar_overhead", s, &C::scalar_overhead, "instructions", 0, 0, 100,
           "integer and call overhead charged with every load and branch");
-    t.add("core.predictor", s, &C::predictor, {"counters", "none", "perfect"},
-          "counters: two bits a branch site and history; none: branches wait; perfect: never wrong");
-    t.add("core.predictor_history", s, &C::predictor_history, "branches", 0, 0, 10,
-          "outcomes of the thread's last branches that choose the counter");
+    t.add("core.predictor", s, &C::predictor,
+          {"counters", "bimodal", "gshare", "taken", "not_taken", "none", "perfect"},
+          "counters: two bits a branch site (line of source) and history, no two shared; bimodal: two bits a "
+          "site, "
+          "gshare: a site and history, in tables of limited size; taken, not_taken: always; none: branches "
+          "wait; "
+          "perfect: never wrong");
+    t.add("core.predictor_history", s, &C::predictor_history, "branches", 0, 0, 20,
+          "outcomes of the thread's last branches that choose the counter (counters, gshare)");
+    t.add("core.predictor_entries", s, &C::predictor_entries, "counters", 4096, 1, 1 << 20,
+          "counters of a core (bimodal, gshare)", true);
     t.add("core.mispredict_cycles", s, &C::mispredict_cycles, "cycles", 5, 0, 1000,
           "from a branch's outcome to the first operation after a wrong prediction");
     t.add("core.switch_policy", s, &C::switch_policy, {"fine", "stall"},
@@ -100,6 +115,10 @@ void add_core(Table& t) {
     t.add("core.gather", s, &C::gather, {"line", "lane"},
           "line: one L1 access a distinct line of a sub-vector; lane: a load instruction for every active "
           "lane");
+    t.add("core.skip_idle", s, &C::skip_idle, {"off", "on"},
+          "on: masked loads, stores, gathers and scatters issue only the sub-vectors with an active lane, "
+          "one at "
+          "the least (arithmetic has no masks: idle lanes compute)");
     t.add("core.spin_period", s, &C::spin_period, "cycles", 16, 1, 100000,
           "between two looks of a waiting thread");
 }

@@ -49,6 +49,13 @@ public:
             }
         }
     }
+    /// The first free slot from `from` on; takes none.
+    Slot find(Slot from) {
+        for (std::uint64_t number = from / 64, open = ~std::uint64_t{0} << (from % 64);;
+             ++number, open = ~std::uint64_t{0})
+            if (std::uint64_t free = ~word(number) & open; free != 0)
+                return number * 64 + static_cast<unsigned>(std::countr_zero(free));
+    }
     /// Takes the first `count` free slots from `from` on, adjacent or not.
     Span take(Slot from, std::uint32_t count) {
         std::uint64_t number = from / 64;

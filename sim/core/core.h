@@ -7,24 +7,38 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace sim {
 
 struct Hart;
 
+/// What instructions of core.shared_classes go through, of one core or of several.
+struct SharedUnit {
+    explicit SharedUnit(const cycle& earliest) : calendar("shared unit", earliest) {}
+    Calendar calendar;
+    std::uint64_t busy_cycles = 0;
+};
+
 struct Core {
-    Core(const Config& config, const cycle& earliest, L2& l2, Tickets& tickets, Attribution& attribution)
+    Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, L2& l2, Tickets& tickets,
+         Attribution& attribution)
         : issue("issue slots", earliest, static_cast<unsigned>(config.core.issue_width)),
-          ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)),
-          predictor(static_cast<unsigned>(config.core.predictor_history)),
+          ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)), predictor(config.core),
           l1(config, l2, tickets, attribution) {
         for (std::size_t i = 0; i < units.size(); ++i)
             if (config.interval[i] > 1)
                 units[i].emplace("unit", earliest);
+        for (std::size_t i = 0; i < pairing_ports; ++i)
+            issue_ports.emplace_back("issue port", earliest);
+        port_instructions.resize(pairing_ports);
     }
 
     Calendar issue, ports;
+    std::vector<Calendar> issue_ports; // of core.pairing
+    std::vector<std::uint64_t> port_instructions;
     std::array<std::optional<Calendar>, class_count> units; // of classes that are not pipelined
+    SharedUnit* shared = nullptr;
     Predictor predictor;
     L1 l1;
     Hart* running = nullptr; // policy stall: who holds the core ...

@@ -51,7 +51,8 @@ struct Hart {
     // --- operands of the operation at hand whose times are open
     struct Pending {
         cycle ticket;
-        bool lanes, spill;
+        std::uint32_t span; // 0: a scalar
+        bool spill;
     };
     std::array<Pending, 16> pending;
     std::size_t pending_count = 0;

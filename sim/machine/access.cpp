@@ -33,7 +33,8 @@ void Engine::await_operands(Hart& h, Due& ready) {
     for (std::size_t i = 0; i < h.pending_count; ++i) {
         Hart::Pending p = h.pending[i];
         Answered a = await(h, p.ticket);
-        ready.later(Due(p.lanes ? follow(a.first, a.last) : a.last, p.spill ? Cause::spill : a.from));
+        ready.later(
+            Due(p.span != 0 ? follow(a.first, a.last, p.span) : a.last, p.spill ? Cause::spill : a.from));
     }
     h.pending_count = 0;
 }
@@ -130,8 +131,19 @@ void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* i
     }
 }
 
+std::uint32_t Engine::masked_instructions(std::uint64_t lanes) const {
+    if (!skip_idle_)
+        return pieces_;
+    std::uint64_t piece_mask = ~std::uint64_t{0} >> (64 - piece_lanes_);
+    std::uint32_t active = 0;
+    for (std::uint32_t i = 0; i < width; i += piece_lanes_)
+        active += (lanes >> i & piece_mask) != 0 ? 1 : 0;
+    return std::max(1U, active);
+}
+
 inline std::uint32_t Engine::indexed_instructions(std::uint64_t lanes) const {
-    return lane_gather_ ? std::max(1U, static_cast<std::uint32_t>(std::popcount(lanes))) : pieces_;
+    return lane_gather_ ? std::max(1U, static_cast<std::uint32_t>(std::popcount(lanes)))
+                        : masked_instructions(lanes);
 }
 
 // --- what becomes of it
@@ -184,30 +196,30 @@ inline void Engine::stored(Hart& h, const Data& data) {
 }
 
 /// Rule 3: a register that was not kept comes back through the L1, stored first if it never was.
-void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored) {
+void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span) {
     std::uint64_t place = h.spill_base + value % wide(config_.core.spill_slots) * (width * 4);
     Due now = begin(h);
     if (unstored) {
         ++h.counters.spill_stores;
-        Issued at = issue(h, 0, pieces_, now);
+        Issued at = issue(h, vector_kind(store_kind), pieces_, now);
         Data data;
         touch_lanes(h, place, all_lanes, true, at.first, data);
         stored(h, data);
     }
     ++h.counters.spill_loads;
-    Issued at = issue(h, 0, pieces_, now);
+    Issued at = issue(h, vector_kind(load_kind), pieces_, now);
     Data data;
     touch_lanes(h, place, all_lanes, false, at.first, data);
     if (data.open != 0)
-        h.pending[h.pending_count++] = {ticket_of(h, data), true, true};
+        h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else
-        ready.later(Due(follow(data.first, data.last), Cause::spill));
+        ready.later(Due(follow(data.first, data.last, span), Cause::spill));
 }
 
 stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector) {
     charge_overhead(h, begin(h));
     settle(h, ready);
-    Issued at = issue(h, 0, 1, ready);
+    Issued at = issue(h, load_kind, 1, ready);
     Data data;
     touch(h, address(p), bytes, false, at.first, data);
     finish_issue(h, at, data.granted);
@@ -219,14 +231,15 @@ stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool 
 stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready) {
     charge_overhead(h, begin(h));
     settle(h, ready);
-    Issued at = issue(h, 0, pieces_, ready);
+    std::uint32_t instructions = masked_instructions(lanes);
+    Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;
     if (lanes == 0)
         data.first = data.last = at.last + l1_latency_;
     else
         touch_lanes(h, address(p), lanes, false, at.first, data);
     finish_issue(h, at, data.granted);
-    count(h, pieces_, true);
+    count(h, instructions, true);
     ++h.counters.loads;
     return loaded(h, data, true);
 }
@@ -235,7 +248,7 @@ stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uin
     charge_overhead(h, begin(h));
     settle(h, ready);
     std::uint32_t instructions = indexed_instructions(lanes);
-    Issued at = issue(h, 0, instructions, ready);
+    Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;
     if (lanes == 0)
         data.first = data.last = at.last + l1_latency_;
@@ -250,7 +263,7 @@ stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uin
 
 void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     settle(h, ready);
-    Issued at = issue(h, 0, 1, ready);
+    Issued at = issue(h, store_kind, 1, ready);
     Data data;
     touch(h, address(p), bytes, true, at.first, data);
     finish_issue(h, at, data.granted);
@@ -261,12 +274,13 @@ void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
 
 void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready) {
     settle(h, ready);
-    Issued at = issue(h, 0, pieces_, ready);
+    std::uint32_t instructions = masked_instructions(lanes);
+    Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
     if (lanes != 0)
         touch_lanes(h, address(p), lanes, true, at.first, data);
     finish_issue(h, at, data.granted);
-    count(h, pieces_, true);
+    count(h, instructions, true);
     ++h.counters.stores;
     stored(h, data);
 }
@@ -274,7 +288,7 @@ void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
 void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready) {
     settle(h, ready);
     std::uint32_t instructions = indexed_instructions(lanes);
-    Issued at = issue(h, 0, instructions, ready);
+    Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
     if (lanes != 0)
         touch_indexed(h, address(p), index, lanes, true, at.first, data);
@@ -287,7 +301,7 @@ void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uin
 
 void Engine::prefetch(Hart& h, const void* p, Due ready) {
     settle(h, ready);
-    Issued at = issue(h, 0, 1, ready);
+    Issued at = issue(h, load_kind, 1, ready);
     cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
     ++h.core->l1.counters().busy_cycles;
     h.core->l1.prefetch(address(p) >> line_shift_, t, h.column);
@@ -304,7 +318,7 @@ void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     std::uint64_t first = (begin + line_bytes_ - 1) >> line_shift_;
     std::uint64_t last = end >> line_shift_;
     std::uint32_t lines = last > first ? static_cast<std::uint32_t>(last - first) : 0;
-    Issued at = issue(h, 0, std::max(1U, lines), ready);
+    Issued at = issue(h, store_kind, std::max(1U, lines), ready);
     for (std::uint64_t line = first; line < last; ++line) {
         h.core->l1.discard(line);
         std::uint64_t outer = (line << line_shift_) / l2_line * l2_line;
@@ -330,11 +344,13 @@ struct Next {
         engine.need_scalar(hart, ready, s);
         return *this;
     }
-    Next& lanes(const stamp& s) {
-        engine.need_lanes(hart, ready, s);
+    Next& lanes(const stamp& s, std::uint32_t span) {
+        engine.need_lanes(hart, ready, s, span);
         return *this;
     }
 };
+constexpr std::size_t vector_load = sim::vector_kind(sim::load_kind);
+constexpr std::size_t vector_store = sim::vector_kind(sim::store_kind);
 
 } // namespace
 
@@ -350,13 +366,15 @@ stamp load_broadcast(site, const void* p, std::uint32_t bytes, const stamp& addr
 }
 stamp load_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& mask) {
     Next n;
-    n.scalar(address).lanes(mask);
+    std::uint32_t span = n.engine.span(vector_load, lanes);
+    n.scalar(address).lanes(mask, span);
     return n.engine.load_vector(n.hart, p, lanes, n.ready);
 }
 stamp gather(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& mask) {
     Next n;
-    n.scalar(address).lanes(indices).lanes(mask);
+    std::uint32_t span = n.engine.span(vector_load, lanes);
+    n.scalar(address).lanes(indices, span).lanes(mask, span);
     return n.engine.gather(n.hart, p, index, lanes, n.ready);
 }
 void store(site, const void* p, std::uint32_t bytes, const stamp& address, const stamp& data) {
@@ -367,13 +385,15 @@ void store(site, const void* p, std::uint32_t bytes, const stamp& address, const
 void store_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& data,
                   const stamp& mask) {
     Next n;
-    n.scalar(address).lanes(data).lanes(mask);
+    std::uint32_t span = n.engine.span(vector_store, lanes);
+    n.scalar(address).lanes(data, span).lanes(mask, span);
     n.engine.store_vector(n.hart, p, lanes, n.ready);
 }
 void scatter(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& data, const stamp& mask) {
     Next n;
-    n.scalar(address).lanes(indices).lanes(data).lanes(mask);
+    std::uint32_t span = n.engine.span(vector_store, lanes);
+    n.scalar(address).lanes(indices, span).lanes(data, span).lanes(mask, span);
     n.engine.scatter(n.hart, p, index, lanes, n.ready);
 }
 void prefetch(site, const void* p, const stamp& address) {

@@ -20,14 +20,69 @@ cycle Engine::hold_core(Hart& h, cycle t) {
     return t;
 }
 
-inline stamp Engine::compute(Hart& h, int kind, std::uint32_t instructions, Due ready, bool vector) {
+/// Instructions that need more than an issue slot each: takes what they need from `t` on.
+Issued Engine::book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const {
+    Issued at{};
+    bool together = needs_[kind] == Needs::several;
+    std::uint32_t interval = interval_[kind];
+    for (std::uint32_t i = 0; i < instructions; ++i) {
+        if (together) {
+            at.last = t = book_together(core, kind, t);
+        } else {
+            cycle begin = core.units[class_of(kind)]->take_run(t, interval);
+            at.last = core.issue.take(begin << issue_shift_) >> issue_shift_;
+            t = begin + interval;
+        }
+        at.first = i == 0 ? at.last : at.first;
+    }
+    return at;
+}
+
+/// The first cycle from `t` on at which an issue slot, a port and a unit for one instruction are free; takes
+/// them.
+cycle Engine::book_together(Core& core, std::size_t kind, cycle t) const {
+    std::uint32_t interval = interval_[kind];
+    std::optional<Calendar>& own = core.units[class_of(kind)];
+    Calendar* unit = shared_[kind] ? &core.shared->calendar : own ? &*own : nullptr;
+    for (;;) {
+        t = core.issue.find(t << issue_shift_) >> issue_shift_;
+        if (unit != nullptr)
+            if (cycle free = unit->find_run(t, interval); free != t) {
+                t = free;
+                continue;
+            }
+        cycle next = ~cycle{0};
+        const std::vector<std::uint8_t>& ports = pairing_.of(kind);
+        auto port = std::find_if(ports.begin(), ports.end(), [&](std::uint8_t p) {
+            cycle free = core.issue_ports[p].find(t);
+            next = std::min(next, free);
+            return free == t;
+        });
+        if (port == ports.end() && !ports.empty()) {
+            t = next;
+            continue;
+        }
+        core.issue.take(t << issue_shift_);
+        if (!ports.empty()) {
+            core.issue_ports[*port].take(t);
+            ++core.port_instructions[*port];
+        }
+        if (unit != nullptr)
+            unit->mark_run(t, interval);
+        if (shared_[kind])
+            core.shared->busy_cycles += interval;
+        return t;
+    }
+}
+
+inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector) {
     settle(h, ready);
-    if (kind == static_cast<int>(operation::broadcast))
+    if (kind == vector_kind(static_cast<std::size_t>(operation::broadcast)))
         instructions = 1; // all registers of the value are the same one
     Issued at = issue(h, kind, instructions, ready);
     finish_issue(h, at, 0);
     count(h, instructions, vector || instructions > 1);
-    std::uint32_t latency = latency_[static_cast<std::size_t>(kind)];
+    std::uint32_t latency = latency_[kind];
     stamp r;
     r.last = at.last + latency;
     r.first = vector ? at.first + latency : r.last;
@@ -50,7 +105,9 @@ void Engine::branch(Hart& h, site where, Due ready, bool taken) {
         return;
     if (prediction_ == Prediction::none) {
         h.bound.later(Due(known, Cause::branch));
-    } else if (!h.core->predictor.right(sites_.number(where), h.history, taken)) {
+    } else if (prediction_ == Prediction::counters
+                   ? !h.core->predictor.right(sites_.number(where), h.history, taken)
+                   : taken != (prediction_ == Prediction::taken)) {
         ++h.counters.mispredicts;
         h.bound.later(Due(known + wide(config_.core.mispredict_cycles), Cause::branch));
     }
@@ -72,17 +129,19 @@ template <class... Stamp> inline stamp operate(operation op, Shape shape, const 
     Engine& engine = *sim::running_engine;
     Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
+    auto kind = static_cast<std::size_t>(op);
+    if (shape != Shape::scalar)
+        kind = sim::vector_kind(kind);
     auto need = [&](const stamp& s) {
         if (shape == Shape::scalar)
             engine.need_scalar(hart, ready, s);
         else if (shape == Shape::lanes)
-            engine.need_lanes(hart, ready, s);
+            engine.need_lanes(hart, ready, s, engine.span(kind));
         else
-            engine.need_all(hart, ready, s);
+            engine.need_all(hart, ready, s, engine.span(kind));
     };
     (need(operands), ...);
-    return engine.compute(hart, static_cast<int>(op),
-                          shape == Shape::scalar ? 1 : engine.vector_instructions(), ready,
+    return engine.compute(hart, kind, shape == Shape::scalar ? 1 : engine.vector_instructions(), ready,
                           shape == Shape::lanes || shape == Shape::across);
 }
 

@@ -38,19 +38,20 @@ Labels with_frame_end(Labels labels) {
 Engine::Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
                const std::function<void(int)>& worker)
     : config_(config), pieces_(std::max(1U, width / narrow(config.core.lanes))),
-      piece_lanes_(width / pieces_),
-      span_((pieces_ + narrow(config.core.issue_width) - 1) / narrow(config.core.issue_width)),
-      issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
+      piece_lanes_(width / pieces_), issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
       issue_width_(narrow(config.core.issue_width)), port_bytes_(narrow(config.l1.port_bytes)),
       line_bytes_(narrow(config.l1.line_bytes)), line_shift_(log2(config.l1.line_bytes)),
-      l1_latency_(wide(config.l1.latency)),
+      l1_latency_(wide(config.l1.latency)), pairing_(config.core.pairing),
       overhead_(static_cast<std::uint32_t>(config.core.scalar_overhead * 1024.0 + 0.5)),
       registers_(config.core.vector_registers > 0), lane_gather_(config.core.gather == "lane"),
-      hold_policy_(config.core.switch_policy == "stall"), in_order_(config.core.window == 1 || hold_policy_),
-      prediction_(config.core.predictor == "none"      ? Prediction::none
-                  : config.core.predictor == "perfect" ? Prediction::perfect
-                                                       : Prediction::counters),
+      skip_idle_(config.core.skip_idle == "on"), hold_policy_(config.core.switch_policy == "stall"),
+      in_order_(config.core.window == 1 || hold_policy_),
+      prediction_(config.core.predictor == "none"        ? Prediction::none
+                  : config.core.predictor == "perfect"   ? Prediction::perfect
+                  : config.core.predictor == "taken"     ? Prediction::taken
+                  : config.core.predictor == "not_taken" ? Prediction::not_taken
+                                                         : Prediction::counters),
       base_(space.base()), window_cycles_(window_cycles(config)),
       shortest_read_(Memory::shortest_read(config)), reach_(reach_cycles(config)), space_(space),
       labels_(with_frame_end(labels)), attribution_(space, labels_.columns(), line_shift_),
@@ -58,16 +59,18 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       beyond_(config, [this](std::uint32_t tile, cycle ticket,
                              cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
       workers_(workers) {
-    for (std::size_t i = 0; i < class_count; ++i) {
-        latency_[i] = narrow(config.latency[i]);
-        interval_[i] = narrow(config.interval[i]);
-    }
+    describe_kinds();
     std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
     spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
+    bool shares = config.core.shared_classes != "none";
     for (integer t = 0; t < config.chip.tiles; ++t) {
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, attribution_);
         for (integer c = 0; c < config.chip.cores; ++c) {
-            Core& core = tile.cores.emplace_back(config, tile.earliest, tile.l2, tile.tickets, attribution_);
+            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.l2,
+                                                 tile.tickets, attribution_);
+            if (shares && c % config.core.shared_cores == 0)
+                tile.shared_units.emplace_back(tile.earliest);
+            core.shared = shares ? &tile.shared_units.back() : nullptr;
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
@@ -86,6 +89,28 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                 worker(h.worker);
                 h.finished = true;
             });
+}
+
+/// In how many cycles so many instructions of a kind issue at the least.
+std::uint32_t Engine::span_of(std::size_t kind, std::uint32_t instructions) const {
+    auto ports = static_cast<std::uint32_t>(pairing_.of(kind).size());
+    std::uint32_t rate = shared_[kind] ? 1 : ports != 0 ? std::min(issue_width_, ports) : issue_width_;
+    return (instructions + rate - 1) / rate;
+}
+
+/// What an instruction of each kind takes, and for how long.
+void Engine::describe_kinds() {
+    std::array<bool, class_count> shared = shared_classes(config_.core.shared_classes);
+    for (std::size_t kind = 0; kind < issue_kinds; ++kind) {
+        std::size_t c = class_of(kind);
+        latency_[kind] = narrow(config_.latency[c]);
+        interval_[kind] = narrow(config_.interval[c]);
+        shared_[kind] = shared[c] && kind % form_kinds == c; // a load takes its own core's adder
+        spans_[kind] = span_of(kind, pieces_);
+        needs_[kind] = pairing_.ports() != 0 || shared_[kind] ? Needs::several
+                       : interval_[kind] > 1                  ? Needs::own_unit
+                                                              : Needs::slot;
+    }
 }
 
 // --- windows
@@ -293,8 +318,12 @@ Report Engine::report() const {
     r.work.resize(labels_.columns());
     for (const Tile& tile : tiles_) {
         r.l2.push_back(tile.l2.counters());
-        for (const Core& core : tile.cores)
+        for (const Core& core : tile.cores) {
             r.l1.push_back(core.l1.counters());
+            r.port_instructions.push_back(core.port_instructions);
+        }
+        for (const SharedUnit& unit : tile.shared_units)
+            r.shared_unit_cycles.push_back(unit.busy_cycles);
     }
     auto threads = static_cast<int>(config_.chip.threads);
     for (const Hart& h : harts_) {

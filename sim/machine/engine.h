@@ -5,6 +5,7 @@
 #pragma once
 
 #include "isa/services.h"
+#include "sim/core/pairing.h"
 #include "sim/core/sites.h"
 #include "sim/machine/beyond.h"
 #include "sim/machine/homes.h"
@@ -36,7 +37,7 @@ public:
     Report run();
 
     // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
-    stamp compute(Hart& h, int kind, std::uint32_t instructions, Due ready, bool vector);
+    stamp compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector);
     void branch(Hart& h, site where, Due ready, bool taken);
     stamp load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector);
     stamp load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready);
@@ -59,7 +60,7 @@ public:
     Answered await(Hart& h, cycle ticket);
 
     // --- operands (rules 1 and 3): each makes `ready` no earlier than the operand, or notes that its time is
-    // open
+    // open. `span`: in how many cycles the operation can issue at the least
     Due begin(Hart& h) const { return later(h.bound, h.window[h.position]); }
     static Due later(Due a, Due b) {
         a.later(b);
@@ -67,22 +68,26 @@ public:
     }
     void need_scalar(Hart& h, Due& ready, const stamp& s) const {
         if (is_ticket(s.last)) [[unlikely]]
-            h.pending[h.pending_count++] = {s.last, false, false};
+            h.pending[h.pending_count++] = {s.last, 0, false};
         else
             ready.later(Due(s.last, static_cast<Cause>(s.cause)));
     }
-    void need_all(Hart& h, Due& ready, const stamp& s) {
-        need_register(h, ready, s);
+    void need_all(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
+        need_register(h, ready, s, span);
         need_scalar(h, ready, s);
     }
-    void need_lanes(Hart& h, Due& ready, const stamp& s) {
-        need_register(h, ready, s);
+    void need_lanes(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
+        need_register(h, ready, s, span);
         if (is_ticket(s.last)) [[unlikely]]
-            h.pending[h.pending_count++] = {s.last, true, false};
+            h.pending[h.pending_count++] = {s.last, span, false};
         else
-            ready.later(Due(follow(s.first, s.last), static_cast<Cause>(s.cause)));
+            ready.later(Due(follow(s.first, s.last, span), static_cast<Cause>(s.cause)));
     }
     std::uint32_t vector_instructions() const { return pieces_; }
+    std::uint32_t span(std::size_t kind) const { return spans_[kind]; }
+    std::uint32_t span(std::size_t kind, std::uint64_t lanes) const {
+        return skip_idle_ ? span_of(kind, masked_instructions(lanes)) : spans_[kind];
+    }
 
 private:
     /// What the accesses of one operation bring together.
@@ -93,17 +98,17 @@ private:
         std::array<cycle, width> tickets; // of these; not initialised
         Data() {}                         // NOLINT: leaves `tickets` alone
     };
-    cycle follow(cycle first, cycle last) const {
-        return std::max(first, last > span_ - 1 ? last - (span_ - 1) : 0);
+    static cycle follow(cycle first, cycle last, std::uint32_t span) {
+        return std::max(first, last > span - 1 ? last - (span - 1) : 0);
     }
-    void need_register(Hart& h, Due& ready, const stamp& s) {
+    void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         if (s.value != 0 && registers_) {
             RegisterFile::Use where = h.registers.use(s.value);
             if (where != RegisterFile::Use::resident) [[unlikely]]
-                reload(h, ready, s.value, where == RegisterFile::Use::unstored);
+                reload(h, ready, s.value, where == RegisterFile::Use::unstored, span);
         }
     }
-    void reload(Hart& h, Due& ready, std::uint32_t value, bool unstored);
+    void reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span);
     /// Waits until the times of all operands are known.
     void settle(Hart& h, Due& ready) {
         if (h.pending_count != 0) [[unlikely]]
@@ -121,7 +126,9 @@ private:
     }
     cycle turn(Hart& h, cycle t);
     cycle hold_core(Hart& h, cycle t);
-    Issued issue(Hart& h, int kind, std::uint32_t instructions, Due ready);
+    Issued issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
+    Issued book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
+    cycle book_together(Core& core, std::size_t kind, cycle t) const;
     void finish_issue(Hart& h, Issued at, cycle granted);
     void charge_overhead(Hart& h, Due ready);
     void count(Hart& h, std::uint32_t instructions, bool vector);
@@ -131,6 +138,8 @@ private:
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                        bool write, cycle from, Data& data);
+    std::uint32_t span_of(std::size_t kind, std::uint32_t instructions) const;
+    std::uint32_t masked_instructions(std::uint64_t lanes) const;
     std::uint32_t indexed_instructions(std::uint64_t lanes) const;
     cycle ticket_of(Hart& h, const Data& data) const;
     stamp loaded(Hart& h, const Data& data, bool vector);
@@ -151,6 +160,7 @@ private:
     [[noreturn]] static void outside(const void* p);
     static void check_label(const char* what, std::size_t number, std::size_t count);
 
+    void describe_kinds();
     // --- windows
     bool run_window();
     cycle next_event() const;
@@ -169,16 +179,22 @@ private:
     Config config_;
     std::uint32_t pieces_;      // machine instructions of a vector operation
     std::uint32_t piece_lanes_; // logical lanes of one of them
-    std::uint32_t span_;        // cycles in which they can issue at the least
     unsigned issue_shift_, port_shift_;
     std::uint32_t issue_width_, port_bytes_, line_bytes_;
     unsigned line_shift_;
     std::uint64_t l1_latency_;
-    std::array<std::uint32_t, class_count> latency_{}, interval_{};
+    // by kind of instruction (pairing.h)
+    std::array<std::uint32_t, issue_kinds> latency_{}, interval_{};
+    std::array<std::uint32_t, issue_kinds>
+        spans_{}; // cycles in which a vector operation can issue at the least
+    enum class Needs : std::uint8_t { slot, own_unit, several };
+    std::array<Needs, issue_kinds> needs_{};
+    std::array<bool, issue_kinds> shared_{};
+    Pairing pairing_;
     std::uint32_t overhead_; // 1/1024 instructions
-    bool registers_, lane_gather_, hold_policy_;
+    bool registers_, lane_gather_, skip_idle_, hold_policy_;
     bool in_order_; // operations act when they are ready, not when the issue window reaches them
-    enum class Prediction { counters, none, perfect } prediction_;
+    enum class Prediction { counters, taken, not_taken, none, perfect } prediction_;
 
     const std::byte* base_;
     std::uint64_t window_cycles_; // of the windows in which tiles run by themselves

@@ -18,7 +18,7 @@ inline cycle Engine::turn(Hart& h, cycle t) {
     return t;
 }
 
-inline Issued Engine::issue(Hart& h, int kind, std::uint32_t instructions, Due ready) {
+inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
     Core& core = *h.core;
     cycle t = ready.at();
     if (in_order_) {
@@ -32,18 +32,11 @@ inline Issued Engine::issue(Hart& h, int kind, std::uint32_t instructions, Due r
         t = std::max(t, h.bound.at());
     }
     Issued at{};
-    std::uint32_t interval = interval_[static_cast<std::size_t>(kind)];
-    if (interval == 1) {
+    if (needs_[kind] == Needs::slot) {
         Calendar::Span s = core.issue.take(t << issue_shift_, instructions);
         at = {s.first >> issue_shift_, s.last >> issue_shift_};
     } else {
-        Calendar& unit = *core.units[static_cast<std::size_t>(kind)];
-        for (std::uint32_t i = 0; i < instructions; ++i) {
-            cycle begin = unit.take_run(t, interval);
-            at.last = core.issue.take(begin << issue_shift_) >> issue_shift_;
-            at.first = i == 0 ? at.last : at.first;
-            t = begin + interval;
-        }
+        at = book(core, kind, instructions, t);
     }
     if (hold_policy_)
         core.busy_until = std::max(core.busy_until, at.last + 1);
@@ -96,7 +89,7 @@ inline void Engine::charge_overhead(Hart& h, Due ready) {
     if (whole == 0)
         return;
     h.counters.overhead_instructions += whole;
-    issue(h, 0, whole, ready);
+    issue(h, integer_kind, whole, ready);
 }
 
 inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses,

@@ -33,6 +33,23 @@ json stack(const Stack& s) {
     return out;
 }
 
+/// Of each core's threads together, with what its issue ports took.
+json cores(const Report& r) {
+    json out = json::array();
+    std::vector<Stack> stacks = r.core_stacks();
+    for (std::size_t core = 0; core < stacks.size(); ++core) {
+        std::uint64_t instructions = 0;
+        for (const ThreadReport& t : r.threads)
+            if (static_cast<std::size_t>(t.core) == core)
+                instructions += t.instructions;
+        json row = {{"core", core}, {"instructions", instructions}, {"stack", stack(stacks[core])}};
+        if (!r.port_instructions[core].empty())
+            row["port_instructions"] = r.port_instructions[core];
+        out.push_back(std::move(row));
+    }
+    return out;
+}
+
 /// Over the columns that are wanted.
 template <class Wanted> Stack sum_of(const ThreadReport& t, Wanted wanted) {
     Stack sum{};
@@ -57,6 +74,7 @@ json threads(const Report& r) {
     for (const ThreadReport& t : r.threads) {
         json row = {{"tile", t.tile},     {"core", t.core},     {"thread", t.thread},
                     {"worker", t.worker}, {"finish", t.finish}, {"instructions", t.instructions}};
+        row["stack_of_all_phases"] = stack(t.stack());
         for (std::size_t p = 0; p < r.labels.phases.size(); ++p)
             row["stack"][r.labels.phases[p]] =
                 stack(sum_of(t, [&](std::size_t c) { return r.labels.phase(c) == p; }));
@@ -132,6 +150,9 @@ std::string print_json(const Report& r, bool with_host) {
     out["coherence_of_plain_data"] = "not modelled";
     out["core"] = counters(r.core, core_counters);
     out["stack"] = stack(r.stack());
+    out["cores"] = cores(r);
+    if (!r.shared_unit_cycles.empty())
+        out["shared_unit_cycles"] = r.shared_unit_cycles;
     out["phases"] = phases(r);
     out["kinds"] = kinds(r);
     out["l1"] = counters(r.l1_total(), cache_counters);

@@ -144,22 +144,35 @@ void check_use(const Report& r, const CacheCounters& l1) {
     auto cores = static_cast<std::uint64_t>(r.config.all_cores());
     at_most("issue slots used <= slots", r.core.instructions,
             r.cycles * cores * static_cast<std::uint64_t>(r.config.core.issue_width));
+    for (const auto& ports : r.port_instructions)
+        for (std::uint64_t instructions : ports)
+            at_most("instructions of an issue port <= cycles", instructions, r.cycles);
+    for (std::uint64_t cycles : r.shared_unit_cycles)
+        at_most("cycles of a shared unit <= cycles", cycles, r.drained);
     at_most("L1 port cycles used <= port cycles", l1.busy_cycles,
             r.drained * cores * static_cast<std::uint64_t>(r.config.l1.ports));
 }
 
 void check_stacks(const Report& r) {
-    for (const ThreadReport& t : r.threads) {
-        std::uint64_t sum = 0;
-        for (const Stack& s : t.stacks)
-            sum = std::accumulate(s.begin(), s.end(), sum);
-        equal("a thread's CPI stack = cycles", sum, r.cycles);
-    }
+    auto sum_of = [](const Stack& s) { return std::accumulate(s.begin(), s.end(), std::uint64_t{0}); };
+    for (const ThreadReport& t : r.threads)
+        equal("a thread's CPI stack = cycles", sum_of(t.stack()), r.cycles);
+    auto threads = static_cast<std::uint64_t>(r.config.chip.threads);
+    std::vector<Stack> cores = r.core_stacks();
+    for (const Stack& s : cores)
+        equal("a core's CPI stack = threads x cycles", sum_of(s), threads * r.cycles);
+    equal("the chip's CPI stack = cores x threads x cycles", sum_of(r.stack()),
+          cores.size() * threads * r.cycles);
     Work sum;
     for (const Work& w : r.work) {
         sum.vops += w.vops;
         sum.instructions += w.instructions;
     }
+    std::uint64_t through_ports = 0;
+    for (const auto& ports : r.port_instructions)
+        through_ports = std::accumulate(ports.begin(), ports.end(), through_ports);
+    if (r.config.core.pairing != "any") // looks of waiting threads take slots alone
+        equal("instructions = sum over issue ports", r.core.instructions, through_ports + 2 * r.core.spins);
     equal("operations = sum over kinds and phases", r.core.vops, sum.vops);
     equal("instructions = sum over kinds and phases", r.core.instructions, sum.instructions);
 }
@@ -200,6 +213,11 @@ CacheCounters sum_of(const std::vector<CacheCounters>& all) {
     return sum;
 }
 
+void add(Stack& sum, const Stack& s) {
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += s[i];
+}
+
 } // namespace
 
 CacheCounters Report::l1_total() const {
@@ -210,12 +228,24 @@ CacheCounters Report::l2_total() const {
     return sum_of(l2);
 }
 
+Stack ThreadReport::stack() const {
+    Stack sum{};
+    for (const Stack& s : stacks)
+        add(sum, s);
+    return sum;
+}
+
+std::vector<Stack> Report::core_stacks() const {
+    std::vector<Stack> cores(l1.size(), Stack{});
+    for (const ThreadReport& t : threads)
+        add(cores[static_cast<std::size_t>(t.core)], t.stack());
+    return cores;
+}
+
 Stack Report::stack() const {
     Stack sum{};
     for (const ThreadReport& t : threads)
-        for (const Stack& s : t.stacks)
-            for (std::size_t i = 0; i < sum.size(); ++i)
-                sum[i] += s[i];
+        add(sum, t.stack());
     return sum;
 }
 

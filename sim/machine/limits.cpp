@@ -57,13 +57,25 @@ std::uint64_t activate_clocks(const Report& r) {
 
 std::vector<Limit> limits(const Report& r) {
     const Config& c = r.config;
-    return {
+    std::vector<Limit> out = {
         {"issue slots", most_instructions(r) / wide(c.core.issue_width), "the core that issued most"},
         {"L1 ports", busiest(r.l1) / wide(c.l1.ports), "the core whose L1 was accessed most"},
         {"L2 banks", busiest(r.l2) / wide(c.l2.banks), "the tile whose L2 was accessed most"},
         {"memory bus", core_cycles(c, bus_clocks(r)), "the channel that moved most"},
         {"row activates", core_cycles(c, activate_clocks(r)), "the rank that opened most rows, four in tFAW"},
     };
+    std::uint64_t port = 0;
+    for (const auto& ports : r.port_instructions)
+        for (std::uint64_t instructions : ports)
+            port = std::max(port, instructions);
+    std::uint64_t unit = 0;
+    for (std::uint64_t cycles : r.shared_unit_cycles)
+        unit = std::max(unit, cycles);
+    if (c.core.shared_classes != "none")
+        out.insert(out.begin() + 1, {"shared units", unit, "the unit of core.shared_classes that did most"});
+    if (c.core.pairing != "any")
+        out.insert(out.begin() + 1, {"issue ports", port, "the port of core.pairing that took most"});
+    return out;
 }
 
 const Limit& binding(const std::vector<Limit>& all) {

@@ -68,6 +68,7 @@ struct ThreadReport {
     cycle finish = 0;
     std::uint64_t instructions = 0;
     std::vector<Stack> stacks; // by column; sums to the run's cycles
+    Stack stack() const;       // of all columns
 };
 
 struct Report {
@@ -81,8 +82,10 @@ struct Report {
     CoreCounters core;
     std::vector<Work> work; // by column
     std::vector<ThreadReport> threads;
-    std::vector<CacheCounters> l1; // by core
-    std::vector<CacheCounters> l2; // by tile
+    std::vector<std::vector<std::uint64_t>> port_instructions; // by core and port of core.pairing
+    std::vector<std::uint64_t> shared_unit_cycles;             // by unit of core.shared_classes, taken
+    std::vector<CacheCounters> l1;                             // by core
+    std::vector<CacheCounters> l2;                             // by tile
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<TrafficRow> traffic;            // where there was any
@@ -93,7 +96,8 @@ struct Report {
     double seconds() const;
     CacheCounters l1_total() const;
     CacheCounters l2_total() const;
-    Stack stack() const; // of all threads and columns
+    Stack stack() const;                    // of all threads and columns
+    std::vector<Stack> core_stacks() const; // of a core's threads, by core
 };
 
 /// Throws std::logic_error naming the first law that the numbers break.

@@ -28,7 +28,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
         ready.later(Due(h.stored, Cause::synchronise));
     }
     ready.later(Due(std::max(h.now, h.issued), Cause::synchronise));
-    Issued at = issue(h, 0, 1, ready);
+    Issued at = issue(h, writes ? store_kind : load_kind, 1, ready);
     h.now = at.last;
     finish_issue(h, at, 0);
     count(h, 1, false);

@@ -32,6 +32,40 @@ void overview(std::string& out, const Report& r) {
     out += "coherence of plain data is not modelled; shared words are kept coherent by invalidation\n";
 }
 
+/// A row for each of few cores or threads, or the least, median and most of many, in per cent of their
+/// cycles.
+void stacks_of(std::string& out, const char* what, const std::vector<Stack>& stacks, std::uint64_t cycles) {
+    constexpr std::size_t few = 16;
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < cause_count; ++i)
+        if (std::any_of(stacks.begin(), stacks.end(), [i](const Stack& s) { return s[i] != 0; }))
+            used.push_back(i);
+    out += fmt::format("\n% of cycles by {:<7}", what);
+    for (std::size_t i : used)
+        out += fmt::format(" {:>11}", causes[i].name);
+    out += '\n';
+    auto row = [&](const std::string& name, auto value) {
+        out += fmt::format("  {:<20}", name);
+        for (std::size_t i : used)
+            out += fmt::format(" {:>11.1f}", 100 * ratio(value(i), cycles));
+        out += '\n';
+    };
+    if (stacks.size() <= few) {
+        for (std::size_t n = 0; n < stacks.size(); ++n)
+            row(fmt::format("{} {}", what, n), [&](std::size_t i) { return stacks[n][i]; });
+        return;
+    }
+    std::vector<std::vector<std::uint64_t>> sorted(cause_count);
+    for (std::size_t i : used) {
+        for (const Stack& s : stacks)
+            sorted[i].push_back(s[i]);
+        std::sort(sorted[i].begin(), sorted[i].end());
+    }
+    for (auto [name, place] :
+         {std::pair{"least", std::size_t{0}}, {"median", stacks.size() / 2}, {"most", stacks.size() - 1}})
+        row(fmt::format("{} of {}", name, stacks.size()), [&](std::size_t i) { return sorted[i][place]; });
+}
+
 void stack(std::string& out, const Report& r) {
     Stack s = r.stack();
     std::uint64_t all = r.cycles * r.threads.size();
@@ -40,6 +74,11 @@ void stack(std::string& out, const Report& r) {
         if (s[i] != 0)
             out += fmt::format("  {:<12} {:>14} {:>6.1f} %   {}\n", causes[i].name, s[i],
                                100 * ratio(s[i], all), causes[i].meaning);
+    std::vector<Stack> threads;
+    for (const ThreadReport& t : r.threads)
+        threads.push_back(t.stack());
+    stacks_of(out, "core", r.core_stacks(), r.cycles * static_cast<std::uint64_t>(r.config.chip.threads));
+    stacks_of(out, "thread", threads, r.cycles);
 }
 
 void level(std::string& out, const char* name, const CacheCounters& c) {

@@ -35,6 +35,7 @@ struct Tile {
     cycle earliest = 0; // no operation from now on acts before
     Tickets tickets;
     L2 l2;
+    std::deque<SharedUnit> shared_units;
     std::deque<Core> cores;
     std::vector<Hart*> harts;
     Scheduler scheduler;

@@ -23,8 +23,18 @@ Config random_machine(std::mt19937& random) {
     c.core.window = pick(0, 1) == 0 ? 1 : pick(2, 200);
     c.core.vector_registers = pick(0, 8);
     c.core.scalar_overhead = static_cast<double>(pick(0, 30)) / 10;
-    c.core.predictor = std::array{"counters", "none", "perfect"}[random() % 3];
+    c.core.predictor =
+        std::array{"counters", "bimodal", "gshare", "taken", "not_taken", "none", "perfect"}[random() % 7];
     c.core.predictor_history = pick(0, 6);
+    c.core.predictor_entries = power(6, 10);
+    c.core.skip_idle = pick(0, 1) == 0 ? "off" : "on";
+    c.core.pairing =
+        std::array{"any", "any", "any | scalar.integer load store branch",
+                   "vector.multiply vector.divide scalar | vector scalar | scalar branch | load | "
+                   "store"}[random() % 4];
+    c.core.shared_classes =
+        std::array{"none", "add multiply fused divide square_root", "integer"}[random() % 3];
+    c.core.shared_cores = c.chip.cores % 2 == 0 ? pick(1, 2) : 1;
     c.core.switch_policy = pick(0, 3) == 0 ? "stall" : "fine";
     c.core.switch_cycles = pick(0, 8);
     c.core.gather = pick(0, 1) == 0 ? "line" : "lane";
