@@ -130,8 +130,9 @@ ConvergenceReport measure_convergence(Scene scene, const KernelTable& kernels,
     const auto known = [&](const Hit& h) { return h.patch >= 0 && curved(patch_record(frame, h.patch)); };
     for (int octave = coarsest_octave; octave >= finest_octave; --octave) {
         ConvergenceReport::Step step;
-        step.edge = std::ldexp(target.edge, octave);
-        const std::vector<Hit> hits = traced(step.edge);
+        const double edge = std::ldexp(target.edge, octave);
+        step.edge = frame.unit() * edge;
+        const std::vector<Hit> hits = traced(edge);
         if (report.cancelled)
             return report;
         std::vector<double> errors;
@@ -142,7 +143,7 @@ ConvergenceReport measure_convergence(Scene scene, const KernelTable& kernels,
         if (!errors.empty()) {
             const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
             std::nth_element(errors.begin(), middle, errors.end());
-            step.median_error = *middle;
+            step.median_error = frame.unit() * *middle;
         }
         report.steps.push_back(step);
         if (options.progress)

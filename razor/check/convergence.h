@@ -19,9 +19,9 @@ struct ConvergenceOptions {
 
 struct ConvergenceReport {
     struct Step {
-        double edge = 0; // length asked for, scene units
+        double edge = 0; // length asked for, world units
         double median_error =
-            0; // of the distances of hits, scene units: silhouettes and folds do not show in it
+            0; // of the distances of hits, world units: silhouettes and folds do not show in it
         std::int64_t hits = 0; // of curved patches, also at the limit
     };
     std::vector<Step> steps; // each with edges half as long as the one before

@@ -1,4 +1,5 @@
 // A built frame as the triangles that rays meet, read from frame memory on the host: for oracles and checks.
+// All of it is in the frame's unit (Frame::unit).
 #pragma once
 
 #include "razor/frame/frame.h"

@@ -23,7 +23,7 @@ constexpr std::size_t bad_rays_kept = 3;
 class Shooting {
 public:
     Shooting(Frame& frame, const KernelTable& kernels, Lod lod, const EscapeOptions& options)
-        : kernels_(kernels), lod_(lod), options_(options), tracer_(frame, capacity, 1),
+        : kernels_(kernels), lod_(lod), options_(options), tracer_(frame, capacity, 1), unit_(frame.unit()),
           random_(options.seed) {
         frame.build_all(kernels);
         surface_ = std::make_unique<FieldSurface>(frame);
@@ -220,15 +220,24 @@ private:
         const auto found = seen.crossings(ray, 0);
         keep({ray, hit.t, found.empty() ? -1 : found.front().t}, report_.differing);
     }
-    static void keep(const BadRay& ray, std::vector<BadRay>& rays) {
-        if (rays.size() < bad_rays_kept)
-            rays.push_back(ray);
+    /// In world units.
+    void keep(BadRay bad, std::vector<BadRay>& rays) const {
+        if (rays.size() >= bad_rays_kept)
+            return;
+        const auto unit = static_cast<float>(unit_);
+        for (float& x : bad.ray.origin)
+            x *= unit;
+        bad.ray.base *= unit;
+        bad.t *= bad.t < 0 ? 1 : unit;
+        bad.expected *= bad.expected < 0 ? 1 : unit_;
+        rays.push_back(bad);
     }
 
     const KernelTable& kernels_;
     Lod lod_;
     EscapeOptions options_;
     Tracer tracer_;
+    double unit_;
     std::unique_ptr<FieldSurface> surface_;
     std::vector<SeenSurface> levels_;
     double edge_ = 1; // finest

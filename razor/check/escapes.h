@@ -31,7 +31,7 @@ struct EscapeOptions {
     const std::atomic<bool>* cancel = nullptr;
 };
 
-/// One that went wrong, to be tried again.
+/// One that went wrong, to be tried again: in world units, from the scene's centre (Frame::origin).
 struct BadRay {
     Ray ray;
     float t = -1;         // of its hit; -1: none

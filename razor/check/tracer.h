@@ -8,6 +8,7 @@
 
 namespace razor::check {
 
+/// In scene coordinates and the frame's unit (Frame::unit), as are hits.
 struct Ray {
     Point origin{}, direction{};
     float t_min = 0, t_max = 3.0e38F;

@@ -75,7 +75,7 @@ public:
         mirrored_ =
             record.moved != 0 && glm::dot(dvec3(m[0], m[1], m[2]),
                                           glm::cross(dvec3(m[3], m[4], m[5]), dvec3(m[6], m[7], m[8]))) < 0;
-        world_ = frame.origin() + origin;
+        world_ = frame.origin() + frame.unit() * origin;
         out_.mesh = record.mesh;
     }
 
@@ -85,7 +85,7 @@ public:
         for (std::size_t t = 0; t < triangles_.size(); ++t)
             add_face(triangles_[t]);
         for (dvec3& p : out_.points)
-            p += world_;
+            p = world_ + frame_.unit() * p;
         return std::move(out_);
     }
 

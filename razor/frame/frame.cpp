@@ -2,6 +2,7 @@
 
 #include "razor/frame/frame_memory.h"
 #include "razor/frame/scratch.h"
+#include "razor/frame/unit.h"
 #include "razor/scene/error.h"
 
 #include <fmt/core.h>
@@ -34,12 +35,8 @@ constexpr const char* film_names[film_planes] = {"R",        "G",       "B",    
 } // namespace
 
 Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.meshes), options(o) {
-    if (meshes.empty())
-        throw UserError(fmt::format("{}: the scene has no mesh; add one", scene.name));
-    for (const Mesh& mesh : meshes) {
-        validate_mesh(mesh);
+    for (const Mesh& mesh : meshes)
         topologies.push_back(analyse_topology(mesh));
-    }
     trees = count_trees(options);
     std::vector<bool> drawn;
     for (const Topology& t : topologies)
@@ -96,8 +93,15 @@ void Frame::Impl::reset() {
 }
 
 Frame::Frame(const Scene& scene, const FrameOptions& options) {
+    if (scene.meshes.empty())
+        throw UserError(fmt::format("{}: the scene has no mesh; add one", scene.name));
+    for (const Mesh& mesh : scene.meshes)
+        validate_mesh(mesh);
     try {
-        impl_ = std::make_unique<Impl>(scene, options);
+        const double unit = frame_unit(scene);
+        impl_ = unit == 1 ? std::make_unique<Impl>(scene, options)
+                          : std::make_unique<Impl>(scaled(scene, 1 / unit), options);
+        impl_->unit = unit;
     } catch (const UserError&) {
         throw;
     } catch (const std::runtime_error& e) { // no address space
@@ -185,7 +189,10 @@ int Frame::instances() const {
     return static_cast<int>(impl_->geometry.instances.size());
 }
 glm::dvec3 Frame::origin() const {
-    return impl_->geometry.origin;
+    return impl_->geometry.origin * impl_->unit;
+}
+double Frame::unit() const {
+    return impl_->unit;
 }
 
 std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) {
@@ -263,6 +270,9 @@ Film Frame::film() const {
         film.add(name).values.assign(values, values + pixels);
         values += pixels;
     }
+    if (impl_->unit != 1)
+        for (float& depth : film.find("depth.Z")->values)
+            depth = static_cast<float>(depth * impl_->unit);
     return film;
 }
 

@@ -75,7 +75,7 @@ public:
     template <class T> T* extra(const std::string& structure, std::size_t count) {
         return reinterpret_cast<T*>(memory_bytes(structure, count * sizeof(T)));
     }
-    /// Rays may start or end this far from the scene's centre (world units).
+    /// Rays may start or end so much further from the scene's centre (in the frame's unit).
     void set_reach(double distance);
 
     /// Lets the workers end early: no tile is taken from the queue any more.
@@ -91,9 +91,11 @@ public:
     int instances() const;
     /// Fraction of the tiles taken from the queue.
     double progress() const;
-    /// The film as it stands.
+    /// The film as it stands; depth is in world units.
     Film film() const;
-    /// Scene coordinates are world coordinates minus this.
+    /// What lies in frame memory is in a unit of its own, so many world units long (razor/frame/unit.h), and
+    /// scene coordinates begin here in the world: world = origin + unit * scene.
+    double unit() const;
     glm::dvec3 origin() const;
 
 private:

@@ -38,8 +38,10 @@ inline int colour(int owner, Coloured kind) {
 }
 
 struct Frame::Impl {
+    /// Of valid meshes, in the frame's unit.
     Impl(const Scene& scene, const FrameOptions& options);
 
+    double unit = 1; // see frame_unit()
     std::vector<Mesh> meshes;
     std::vector<Topology> topologies;
     FrameOptions options;

@@ -37,7 +37,9 @@ double automatic_edge_length(const Scene& scene, const Box& box) {
 } // namespace
 
 double nearest_power_of_two(double length) {
-    return std::exp2(std::round(std::log2(length)));
+    int exponent = 0;
+    const double fraction = std::frexp(length, &exponent); // in [1/2, 1)
+    return std::ldexp(1.0, fraction < 0.70710678118654752 ? exponent - 1 : exponent);
 }
 
 namespace {
@@ -99,18 +101,20 @@ void place_instance(const Affine& world, const glm::dvec3& mesh_origin, const gl
 
 } // namespace
 
-SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
-    SceneGeometry g;
-    const SceneGraph graph = drawn_graph(scene.graph, scene.meshes.size());
-    std::vector<Box> of_meshes;
-    for (const Mesh& mesh : scene.meshes)
-        of_meshes.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
-    FlatGraph flat;
+FlatGraph lay_out(const Scene& scene, std::span<const Box> mesh_bounds) {
     try {
-        flat = flatten(graph, of_meshes);
+        return flatten(drawn_graph(scene.graph, scene.meshes.size()), mesh_bounds);
     } catch (const UserError& error) {
         throw UserError(fmt::format("{}: {}", scene.name, error.what()));
     }
+}
+
+SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
+    SceneGeometry g;
+    std::vector<Box> of_meshes;
+    for (const Mesh& mesh : scene.meshes)
+        of_meshes.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
+    const FlatGraph flat = lay_out(scene, of_meshes);
     Box all;
     std::vector<Box> boxes;
     std::vector<bool> seen;

@@ -4,6 +4,7 @@
 #include "razor/scene/graph/hierarchy.h"
 #include "razor/scene/scene.h"
 
+#include <span>
 #include <vector>
 
 namespace razor {
@@ -23,6 +24,9 @@ struct Instance {
     bool moved() const { return linear != glm::dmat3(1) || offset != glm::vec3(0); }
 };
 
+/// The scene's graph laid out, as of flatten(); messages begin with the scene's name.
+FlatGraph lay_out(const Scene& scene, std::span<const Box> mesh_bounds);
+
 struct SceneGeometry {
     glm::dvec3 origin; // of scene coordinates: the centre of everything
     std::vector<glm::dvec3> mesh_origins;
@@ -32,7 +36,7 @@ struct SceneGeometry {
 };
 
 /// The meshes must be valid. `drawn`: which of them have anything to see, one that the graph places at least.
-/// Throws UserError where the graph cannot be laid out (see flatten()).
+/// Throws UserError as lay_out() does.
 SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn);
 
 /// The power of two nearest to `length` in the logarithm; length > 0.

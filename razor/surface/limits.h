@@ -13,7 +13,8 @@ inline constexpr int largest_bilinear_face = 1024;
 /// Points that one face's limit surface may depend on: each page of weights has a row for every one.
 inline constexpr int largest_control_count = 8192;
 
-/// World units. Squared lengths must stay finite in single precision.
-inline constexpr double largest_coordinate = 1e18;
+/// World units, as in scene files. Frames scale what they are given (razor/frame/unit.h), but what leaves
+/// them, such as depth, must fit single precision (3e38).
+inline constexpr double largest_coordinate = 1e30;
 
 } // namespace razor

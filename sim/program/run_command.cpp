@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include <atomic>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <thread>
@@ -194,6 +195,10 @@ int RunCommand::run() const {
         report = machine.run(frame.memory(), workers, labels,
                              [&](int worker) { frame.render(razor::simulated::kernels, worker); });
     }
+    // Edges of 2^level, of the frame's units until here.
+    for (TrafficRow& row : report.traffic)
+        if (row.level)
+            *row.level += std::ilogb(frame.unit());
     std::optional<NativeRun> native;
     try {
         if (!interrupted.load() && !no_native_)

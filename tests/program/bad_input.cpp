@@ -37,7 +37,7 @@ protected:
         folder_.file("random.instances", noise);
         folder_.file("row.instances", "good.obj 0 0 0\ngood.obj 0 0\n");
         folder_.file("lost.instances", "good.obj 0 0 0\nlost.obj 0 0 0\n");
-        folder_.file("far.instances", "good.obj 1e19 0 0\n");
+        folder_.file("far.instances", "good.obj 1e30 0 0 0 1e30\n");
         folder_.file("flat.toml",
                      "[[mesh]]\nname = \"a\"\nfile = \"good.obj\"\n[[object]]\nmesh = \"a\"\nscale = 0\n");
         folder_.file("cycle.toml", "[[group]]\nname = \"a\"\n[[group.object]]\ngroup = \"a\"\n");
@@ -90,7 +90,7 @@ TEST_F(Razor, RefusesBadInput) {
         {"random.instances", "random.instances:"},
         {"row.instances", "row.instances:2: 2 numbers after the file name"},
         {"lost.instances", "lost.instances:2: "},
-        {"far.instances", "far.instances: object 'far/line 1' reaches beyond 1e+18"},
+        {"far.instances", "far.instances: object 'far/line 1' reaches beyond 1e+30"},
         {"flat.toml", "flat.toml:6:9: the object's scale flattens it"},
         {"cycle.toml", "cycle.toml:2:8: groups contain each other ('a' in 'a')"},
         {"many.toml", "many.toml:4:1: the scene graph has more than 4194304 instances"},

@@ -130,6 +130,31 @@ TEST_F(Simulator, AttributesTrafficToRaysAndLevels) {
     }
 }
 
+// What a scene is stated in changes the names of levels alone, which are powers of two of its own unit.
+TEST_F(Simulator, CountsTheSameInAllUnits) {
+    const auto simulated = [&](const std::string& scale) {
+        folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\nscale = " + scale + "\n");
+        const Outcome result = simulator(
+            "run --quiet --scene s.toml --size 24x24 --spp 1 --light-samples 1 --sky-samples 1 --edge-pixels "
+            "4 --lod recursive --json a.json --machine " +
+            tiny);
+        EXPECT_EQ(result.code, 0) << result.err;
+        nlohmann::json all = report("a.json");
+        all.erase("scene");
+        return all;
+    };
+    nlohmann::json small = simulated("9.094947017729282e-13"); // 2^-40
+    const nlohmann::json usual = simulated("1");
+    int levels = 0;
+    for (nlohmann::json& row : small.at("traffic"))
+        if (!row.at("level").is_null()) {
+            row.at("level") = row.at("level").get<int>() + 40;
+            ++levels;
+        }
+    EXPECT_GT(levels, 10);
+    EXPECT_EQ(small, usual);
+}
+
 // 512 threads on 16 tiles: the native picture, the same report twice, and what the report says of limits and
 // the host.
 TEST_F(Simulator, RunsCopernicus) {

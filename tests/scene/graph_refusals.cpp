@@ -54,8 +54,8 @@ TEST(FlatGraph, RefusesWhatCannotBeDrawn) {
     expect({{{"r", {place_group(1, scaled(1e-20))}}, {"g", {place(0, scaled(1e-20))}}}},
            "is scaled by 1e-40");
     expect({{{"r", {place_group(1, scaled(1e20))}}, {"g", {place(0, scaled(1e20))}}}}, "is scaled by 1e+40");
-    expect(root(place(0, {.translate = {1.1e18, 0, 0}})), "reaches beyond 1e+18");
-    EXPECT_EQ(refusal(root(place(0, {.translate = {9.9e17, 0, 0}})), boxes), "");
+    expect(root(place(0, {.translate = {1.1e30, 0, 0}})), "reaches beyond 1e+30");
+    EXPECT_EQ(refusal(root(place(0, {.translate = {9.9e29, 0, 0}})), boxes), "");
     Placement faint = place_group(1);
     faint.rate = 1e-4;
     Placement faint_mesh = place(0);

@@ -278,7 +278,7 @@ TEST(Objects, MistakesNamePlaceCauseAndMend) {
         {mesh + group("thin", "mesh = \"m\"\nscale = [1, 1e-5, 1]") +
              "[[object]]\ngroup = \"thin\"\nscale = [1, 1e-5, 1]\n",
          "object 'thin/m' is flattened"},
-        {object + "translate = [1e19, 0, 0]\n", "object 'm' reaches beyond 1e+18"},
+        {object + "translate = [1e30, 0, 0]\nscale = 1e30\n", "object 'm' reaches beyond 1e+30"},
         {mesh + group("g", "mesh = \"m\""), "s.toml:4:1: the scene graph places no mesh; add an object"},
     };
     for (const auto& [text, expected] : cases) {

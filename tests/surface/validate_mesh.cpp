@@ -78,7 +78,7 @@ TEST(ValidateMesh, Points) {
     expect_complaint(mesh, "point 5 (counted from 0)");
     mesh.points[5].y = std::numeric_limits<double>::infinity();
     expect_complaint(mesh, "not finite");
-    mesh.points[5].y = 1e30;
+    mesh.points[5].y = 1.1e30;
     expect_complaint(mesh, "scale the mesh down");
 }
 

@@ -11,7 +11,7 @@
 namespace razor {
 namespace {
 
-constexpr double largest_world_coordinate = 1e18; // as of mesh points: squares must fit single precision
+constexpr double largest_world_coordinate = 1e30; // as of mesh points: see razor/surface/limits.h
 constexpr double largest_bound = 1.01 * largest_world_coordinate; // bounds are a little larger than points
 constexpr double least_scale = 1e-30, largest_scale = 1e30;
 constexpr double least_rate = 1e-6, largest_rate = 1e6;

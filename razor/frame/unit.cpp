@@ -1,0 +1,86 @@
+#include "razor/frame/unit.h"
+
+#include "razor/frame/scene_geometry.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace razor {
+namespace {
+
+constexpr int usual_log2_extent = 9, most_log2_reach = 50;
+
+/// No squares here: lengths are of any size.
+double largest(const glm::dvec3& p) {
+    const glm::dvec3 a = glm::abs(p);
+    return std::max({a.x, a.y, a.z});
+}
+
+void scale(Camera& camera, double factor) {
+    camera.position *= factor;
+    camera.target *= factor;
+    camera.aperture_radius *= factor;
+    camera.focus_distance *= factor;
+}
+
+/// As conjugated by the scaling: linear parts stay.
+void scale(Placement& placement, double factor) {
+    placement.local.translate *= factor;
+    if (placement.local.matrix)
+        placement.local.matrix->translation *= factor;
+    placement.spacing *= factor;
+}
+
+} // namespace
+
+double frame_unit(const Scene& scene) {
+    std::vector<Box> of_meshes;
+    for (const Mesh& mesh : scene.meshes) {
+        Box& box = of_meshes.emplace_back();
+        for (const glm::dvec3& p : mesh.points)
+            box.add(p);
+    }
+    const Box all = lay_out(scene, of_meshes).nodes.front().bounds;
+    const double extent = largest(all.high - all.low);
+    if (!(extent > 0)) // a point: there is nothing to see
+        return 1;
+    double reach = extent;
+    const auto reaches = [&](const glm::dvec3& p) { reach = std::max(reach, largest(p - all.centre())); };
+    for (const Camera& camera : {scene.camera, dicing_camera(scene)}) {
+        reaches(camera.position);
+        reach = std::max({reach, camera.aperture_radius, camera.focus_distance});
+    }
+    for (const RectangleLight& light : scene.lights)
+        for (const glm::dvec3& p : {light.corner, light.corner + light.edge_u, light.corner + light.edge_v})
+            reaches(p);
+    if (extent >= std::ldexp(1.0, least_log2_extent) && extent <= std::ldexp(1.0, most_log2_extent) &&
+        reach <= std::ldexp(1.0, most_log2_reach))
+        return 1;
+    const int exponent =
+        std::max(std::ilogb(extent) - usual_log2_extent, std::ilogb(reach) - most_log2_reach);
+    return std::ldexp(1.0, std::max(exponent, -1000)); // its inverse must be finite
+}
+
+Scene scaled(Scene scene, double factor) {
+    for (Mesh& mesh : scene.meshes) {
+        for (glm::dvec3& p : mesh.points)
+            p *= factor;
+        mesh.edge_length *= factor;
+    }
+    for (Group& group : scene.graph.groups)
+        for (Placement& placement : group.placements)
+            scale(placement, factor);
+    for (RectangleLight& light : scene.lights) {
+        light.corner *= factor;
+        light.edge_u *= factor;
+        light.edge_v *= factor;
+    }
+    scale(scene.camera, factor);
+    if (scene.dicing_camera)
+        scale(*scene.dicing_camera, factor);
+    return scene;
+}
+
+} // namespace razor
