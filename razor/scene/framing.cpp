@@ -21,6 +21,8 @@ constexpr double azimuth_degrees = 32;   // of the camera, from +z towards +x
 constexpr double elevation_degrees = 17; // of the camera above the horizon
 constexpr double fov_degrees = 30;
 constexpr double margin = 1.06; // free room around the model
+constexpr double least_radius = 1e-30;
+constexpr double largest_model_extent = 1e24; // the camera may stand a million radii away
 
 struct Extent {
     glm::dvec3 centre{0};
@@ -48,8 +50,6 @@ std::vector<glm::dvec3> used_points(const MeshDescription& mesh) {
 /// be too many to keep.
 class PointCloud {
 public:
-    explicit PointCloud(const MeshDescription& mesh) : points_{used_points(mesh)}, places_{{0, {}}} {}
-
     explicit PointCloud(const SceneDescription& scene) {
         for (const MeshDescription& mesh : scene.meshes) {
             points_.push_back(used_points(mesh));
@@ -94,8 +94,8 @@ Extent extent_of(const PointCloud& points) {
     Extent extent{0.5 * least + 0.5 * most, std::hypot(half.x, half.y, half.z), least.y};
     const double reach =
         std::max({std::abs(extent.centre.x), std::abs(extent.centre.y), std::abs(extent.centre.z)});
-    if (extent.radius <= 1e-12 * reach || extent.radius < 1e-25) { // a point, as far as numbers can tell
-        extent.radius = reach > 1e-19 ? 1e-6 * reach : 1;
+    if (extent.radius <= 1e-12 * reach || extent.radius < least_radius) { // as good as a point
+        extent.radius = 1e-6 * reach > least_radius ? 1e-6 * reach : 1;
     }
     return extent;
 }
@@ -145,14 +145,6 @@ RectangleLight light_for(const Extent& extent) {
 
 constexpr glm::vec3 sky_radiance{0.36F, 0.40F, 0.46F};
 
-/// 2^-k that brings `radius` to about 1, or 1 where it is of ordinary size already.
-double scale_for(double radius) {
-    if (radius >= 1e-3 && radius <= 1e6) {
-        return 1;
-    }
-    return std::ldexp(1.0, -std::clamp(std::ilogb(radius), -99, 99));
-}
-
 MeshDescription floor_under(const Extent& extent) {
     MeshDescription floor;
     floor.name = "floor";
@@ -174,9 +166,21 @@ SceneDescription empty_scene(const FramingOptions& options) {
     return scene;
 }
 
-void light_and_frame(SceneDescription& scene, const FramingOptions& options) {
-    const PointCloud points(scene);
+Extent checked_extent(const PointCloud& points) {
     const Extent extent = extent_of(points);
+    const glm::dvec3 c = glm::abs(extent.centre);
+    const double furthest = std::max({c.x, c.y, c.z}) + extent.radius;
+    if (!(furthest <= largest_model_extent)) {
+        throw UserError(fmt::format("points lie up to {:g} from the origin; scale it down, to {:g} at most",
+                                    furthest, largest_model_extent));
+    }
+    return extent;
+}
+
+void light_and_frame(SceneDescription& scene, const std::filesystem::path& path,
+                     const FramingOptions& options) try {
+    const PointCloud points(scene);
+    const Extent extent = checked_extent(points);
     scene.camera = camera_for(points, scene.settings);
     scene.lights = {light_for(extent)};
     scene.sky = sky_radiance;
@@ -184,6 +188,8 @@ void light_and_frame(SceneDescription& scene, const FramingOptions& options) {
         scene.materials.push_back({"floor", {0.50F, 0.49F, 0.48F}});
         scene.meshes.push_back(floor_under(extent));
     }
+} catch (const UserError& error) {
+    throw UserError(fmt::format("{}: {}", printable(path.string(), 1000), error.what()));
 }
 
 } // namespace
@@ -200,16 +206,7 @@ SceneDescription frame_model(const std::filesystem::path& path, const FramingOpt
     if (options.up == Up::z) {
         model.rotate.x = -90;
     }
-    for (const glm::dvec3& p : model.cage->points) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (std::abs(p[axis]) > 1e30) {
-                throw UserError(fmt::format("{}: a coordinate of {} is beyond 1e30; scale the model down",
-                                            printable(path.string(), 1000), p[axis]));
-            }
-        }
-    }
-    model.scale = glm::dvec3(scale_for(extent_of(PointCloud(model)).radius));
-    light_and_frame(scene, options);
+    light_and_frame(scene, path, options);
     return scene;
 }
 
@@ -225,12 +222,7 @@ SceneDescription frame_instances(const std::filesystem::path& path, const Framin
     if (options.up == Up::z) {
         object.transform.rotate.x = -90;
     }
-    try {
-        object.transform.scale = glm::dvec3(scale_for(extent_of(PointCloud(scene)).radius));
-        light_and_frame(scene, options);
-    } catch (const UserError& error) {
-        throw UserError(fmt::format("{}: {}", printable(path.string(), 1000), error.what()));
-    }
+    light_and_frame(scene, path, options);
     return scene;
 }
 

@@ -18,10 +18,9 @@ struct FramingOptions {
 };
 
 /// A scene of one OBJ model: turned y up, seen from slightly above and from the right, lit by a rectangle at
-/// the upper left and a constant sky, on a floor. Models smaller than 1/1000 or larger than a million units
-/// are scaled by a power of two to about one unit, so that squares stay in single precision; lengths such as
-/// depth are then in scaled units. Throws UserError where the file cannot be read or its coordinates exceed
-/// 1e30.
+/// the upper left and a constant sky, on a floor; all in the model's own units. Throws UserError where the
+/// file cannot be read or it reaches beyond 1e24: what is placed about it reaches further, and must stay
+/// below 1e30.
 SceneDescription frame_model(const std::filesystem::path& path, const FramingOptions& options);
 
 /// The same for a table of instances.

@@ -2,6 +2,7 @@
 #include "razor/scene/framing.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/scene_file.h"
 #include "tests/scene/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -76,15 +77,14 @@ TEST_F(Framing, FillsThePictureOfAnyShape) {
 }
 
 TEST_F(Framing, SurvivesExtremes) {
-    for (const double size : {1e-300, 1e-38, 1e-12, 1e-3, 1.0, 1e6, 1e12, 1e29}) {
+    for (const double size : {1e-300, 1e-38, 1e-29, 1e-12, 1e-3, 1.0, 1e6, 1e12, 1e23}) {
         SCOPED_TRACE(size);
         const Scene scene = framed(box({0, 0, 0}, glm::dvec3(size)));
-        check_framed(scene);
-        const double extent = scene.meshes[0].points[7].x;
-        if (size >= 1e-20) { // squares of distances stay in single precision
-            EXPECT_GT(extent, 1e-4);
-            EXPECT_LE(extent, 1e6);
+        const double reach = check_framed(scene);
+        if (size > 1e-30) {
+            EXPECT_GT(reach, 0.9);
         }
+        EXPECT_EQ(scene.meshes[0].points[7], glm::dvec3(size)) << "in the model's own units";
     }
     for (const glm::dvec3 half : {glm::dvec3(1, 0, 1), glm::dvec3(1, 1, 0), glm::dvec3(0, 1, 1),
                                   glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 0)}) {
@@ -93,15 +93,25 @@ TEST_F(Framing, SurvivesExtremes) {
             check_framed(framed(box(glm::dvec3(at), half)));
         }
     }
-    EXPECT_THROW(framed(box({0, 0, 0}, glm::dvec3(1e31))), UserError);
+    EXPECT_THROW(framed(box({0, 0, 0}, glm::dvec3(1.1e24))), UserError);
     EXPECT_THROW(framed(box({1e300, 0, 0}, glm::dvec3(1))), UserError);
 }
 
-TEST_F(Framing, ScalesByPowersOfTwoOnly) {
-    const Scene scene = framed(box({0, 0, 0}, glm::dvec3(3e-9)));
-    int exponent = 0;
-    EXPECT_EQ(std::frexp(scene.meshes[0].points[7].x / 3e-9, &exponent), 0.5);
-    EXPECT_EQ(framed(box({0, 0, 0}, glm::dvec3(3))).meshes[0].points[7], glm::dvec3(3));
+/// Whatever is placed about a model is within what scene files may say.
+TEST_F(Framing, ExtremesCanBeWrittenAndRead) {
+    FramingOptions options;
+    options.settings.width = 1;
+    options.settings.height = 32768;
+    for (const double size : {1e-29, 1.0, 5e23}) {
+        SCOPED_TRACE(size);
+        const SceneDescription scene =
+            frame_model(folder_.file("m.obj", box({0, 0, 0}, glm::dvec3(size))), options);
+        const Scene expected = build_scene(scene);
+        const Scene again = build_scene(parse_scene_file(to_toml(scene), "again.toml", folder_.path()));
+        EXPECT_EQ(again.camera.position, expected.camera.position);
+        ASSERT_EQ(again.meshes.size(), 2U);
+        EXPECT_EQ(again.meshes[1].points, expected.meshes[1].points);
+    }
 }
 
 TEST_F(Framing, TurnsZUpExactly) {

@@ -7,8 +7,8 @@ namespace razor {
 namespace {
 
 constexpr std::array<ShapeParameter, 4> parameters{{
-    {"width", 2, 1e-6, 1e9, false}, // along x
-    {"depth", 2, 1e-6, 1e9, false}, // along z
+    {"width", 2, 1e-30, 1e30, false}, // along x
+    {"depth", 2, 1e-30, 1e30, false}, // along z
     {"columns", 1, 1, 1000, true},
     {"rows", 1, 1, 1000, true},
 }};
