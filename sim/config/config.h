@@ -36,14 +36,13 @@ inline constexpr int class_count = isa::timing::operation_kinds + 1;
 inline constexpr int branch_class = isa::timing::operation_kinds;
 extern const std::array<const char*, class_count> class_names;
 
-struct L1Config {
-    integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, ports = 0, port_bytes = 0;
-    integer mshrs = 0, write_back_buffer = 0;
+struct CacheConfig {
+    integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, mshrs = 0, write_back_buffer = 0;
+    integer banks = 0, bank_bytes = 0; // but of an L1
+    std::string replacement;
 };
-
-struct L2Config {
-    integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, banks = 0, bank_bytes = 0;
-    integer mshrs = 0, write_back_buffer = 0;
+struct L1Config : CacheConfig {
+    integer ports = 0, port_bytes = 0;
 };
 
 struct CoherenceConfig {
@@ -76,7 +75,7 @@ struct Config {
     CoreConfig core;
     std::array<integer, class_count> latency{}, interval{};
     L1Config l1;
-    L2Config l2;
+    CacheConfig l2;
     CoherenceConfig coherence;
     MemoryConfig memory;
     KdTreeConfig kdtree;

@@ -16,7 +16,13 @@ namespace {
     throw ConfigError(fmt::format("{}: {}", what, message));
 }
 
-void check_cache(const std::string& what, const char* name, integer size, integer ways, integer line) {
+void check_cache(const std::string& what, const char* name, const CacheConfig& c) {
+    const integer size = c.size_bytes, ways = c.ways, line = c.line_bytes;
+    if (c.replacement == "plru" && !std::has_single_bit(static_cast<std::uint64_t>(ways)))
+        fail(what,
+             fmt::format("{0}.ways is {1}; {0}.replacement \"plru\" needs a power of two: make it {2} or {3}",
+                         name, ways, std::bit_floor(static_cast<std::uint64_t>(ways)),
+                         std::bit_ceil(static_cast<std::uint64_t>(ways))));
     if (size % (ways * line) != 0) {
         const auto sets_below = static_cast<std::uint64_t>(size / (ways * line));
         const auto set = static_cast<std::uint64_t>(ways * line);
@@ -101,8 +107,8 @@ void check_memory(const std::string& what, const Config& config) {
 } // namespace
 
 void check_consistency(const Config& c, const std::string& what) {
-    check_cache(what, "l1", c.l1.size_bytes, c.l1.ways, c.l1.line_bytes);
-    check_cache(what, "l2", c.l2.size_bytes, c.l2.ways, c.l2.line_bytes);
+    check_cache(what, "l1", c.l1);
+    check_cache(what, "l2", c.l2);
     if (c.l2.line_bytes < c.l1.line_bytes)
         fail(what, fmt::format("l2.line_bytes is {}, less than l1.line_bytes, {}; make it at least that",
                                c.l2.line_bytes, c.l1.line_bytes));

@@ -23,8 +23,8 @@ constexpr integer kibi = 1024;
 struct Table {
     std::vector<Parameter> rows;
 
-    template <class Section>
-    void add(std::string key, Section Config::*section, integer Section::*member, std::string unit,
+    template <class Section, class Part>
+    void add(std::string key, Section Config::*section, integer Part::*member, std::string unit,
              integer preset, integer least, integer most, std::string meaning, bool power_of_two = false) {
         auto at = [section, member](Config& c) -> integer& { return (c.*section).*member; };
         rows.push_back({std::move(key), std::move(unit), std::move(meaning),
@@ -37,8 +37,8 @@ struct Table {
         rows.push_back(
             {std::move(key), std::move(unit), std::move(meaning), RealKind{at, least, most, preset}});
     }
-    template <class Section>
-    void add(std::string key, Section Config::*section, std::string Section::*member,
+    template <class Section, class Part>
+    void add(std::string key, Section Config::*section, std::string Part::*member,
              std::vector<std::string> choices, std::string meaning, integer most_number = 0) {
         auto at = [section, member](Config& c) -> std::string& { return (c.*section).*member; };
         rows.push_back({std::move(key), "", std::move(meaning),
@@ -135,12 +135,18 @@ void add_classes(Table& t) {
                     "a sub-vector keeps the core's one unit of this class; 1: pipelined, as many as issue");
 }
 
+template <class Section> void add_replacement(Table& t, std::string key, Section Config::*section) {
+    t.add(std::move(key), section, &CacheConfig::replacement, {"lru", "plru", "srrip", "random"},
+          "who makes room: the least recently used; what a tree of bits leads to; the farthest of two-bit "
+          "predictions of the next use; any, by a fixed sequence");
+}
+
 void add_caches(Table& t) {
     using A = L1Config;
     auto a = &Config::l1;
     t.add("l1.size_bytes", a, &A::size_bytes, "bytes", 8 * kibi, 16, 64 * kibi * kibi,
           "data cache of a core");
-    t.add("l1.ways", a, &A::ways, "", 4, 1, 64, "associativity; replacement is least recently used");
+    t.add("l1.ways", a, &A::ways, "", 4, 1, 64, "associativity");
     t.add("l1.line_bytes", a, &A::line_bytes, "bytes", 64, 16, 1024, "line; write-back, write-allocate",
           true);
     t.add("l1.latency", a, &A::latency, "cycles", 2, 1, 1000,
@@ -151,11 +157,12 @@ void add_caches(Table& t) {
     t.add("l1.mshrs", a, &A::mshrs, "lines", 8, 1, 1024, "misses outstanding");
     t.add("l1.write_back_buffer", a, &A::write_back_buffer, "lines", 4, 1, 1024,
           "evicted dirty lines on their way");
-    using B = L2Config;
+    add_replacement(t, "l1.replacement", a);
+    using B = CacheConfig;
     auto b = &Config::l2;
     t.add("l2.size_bytes", b, &B::size_bytes, "bytes", 128 * kibi, 64, kibi * kibi * kibi,
           "cache shared by the cores");
-    t.add("l2.ways", b, &B::ways, "", 8, 1, 64, "associativity; replacement is least recently used");
+    t.add("l2.ways", b, &B::ways, "", 8, 1, 64, "associativity");
     t.add("l2.line_bytes", b, &B::line_bytes, "bytes", 64, 16, 1024, "line; write-back, write-allocate",
           true);
     t.add("l2.latency", b, &B::latency, "cycles", 12, 1, 1000,
@@ -166,6 +173,7 @@ void add_caches(Table& t) {
     t.add("l2.mshrs", b, &B::mshrs, "lines", 16, 1, 4096, "misses outstanding");
     t.add("l2.write_back_buffer", b, &B::write_back_buffer, "lines", 8, 1, 4096,
           "evicted dirty lines on their way");
+    add_replacement(t, "l2.replacement", b);
     using C = CoherenceConfig;
     auto c = &Config::coherence;
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,

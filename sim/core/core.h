@@ -3,7 +3,7 @@
 
 #include "sim/core/calendar.h"
 #include "sim/core/predictor.h"
-#include "sim/memory/l1.h"
+#include "sim/memory/cache.h"
 
 #include <array>
 #include <optional>
@@ -21,11 +21,11 @@ struct SharedUnit {
 };
 
 struct Core {
-    Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, L2& l2, Tickets& tickets,
-         Attribution& attribution)
+    Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, Cache& below,
+         Tickets& tickets, Attribution& attribution)
         : issue("issue slots", earliest, static_cast<unsigned>(config.core.issue_width)),
           ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)), predictor(config.core),
-          l1(config, l2, tickets, attribution) {
+          l1(config.l1, 0, false, earliest, below, tickets, attribution) {
         for (std::size_t i = 0; i < units.size(); ++i)
             if (config.interval[i] > 1)
                 units[i].emplace("unit", earliest);
@@ -40,7 +40,7 @@ struct Core {
     std::array<std::optional<Calendar>, class_count> units; // of classes that are not pipelined
     SharedUnit* shared = nullptr;
     Predictor predictor;
-    L1 l1;
+    Cache l1;
     Hart* running = nullptr; // policy stall: who holds the core ...
     cycle busy_until = 0;    // ... and the cycle after its last issue
 };

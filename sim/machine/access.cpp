@@ -304,7 +304,7 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
     Issued at = issue(h, load_kind, 1, ready);
     cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
     ++h.core->l1.counters().busy_cycles;
-    h.core->l1.prefetch(address(p) >> line_shift_, t, h.column);
+    h.core->l1.prefetch(address(p), t, h.column);
     finish_issue(h, at, 0);
     count(h, 1, false);
 }
@@ -320,7 +320,7 @@ void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     std::uint32_t lines = last > first ? static_cast<std::uint32_t>(last - first) : 0;
     Issued at = issue(h, store_kind, std::max(1U, lines), ready);
     for (std::uint64_t line = first; line < last; ++line) {
-        h.core->l1.discard(line);
+        h.core->l1.discard(line << line_shift_);
         std::uint64_t outer = (line << line_shift_) / l2_line * l2_line;
         if (outer >= begin && outer + l2_line <= end)
             h.tile->l2.discard(outer);

@@ -2,7 +2,7 @@
 // between windows, in the order (cycle, tile, sequence).
 #pragma once
 
-#include "sim/memory/l2.h"
+#include "sim/memory/below.h"
 #include "sim/memory/memory.h"
 #include "sim/memory/pool.h"
 

@@ -226,7 +226,7 @@ bool Engine::run_window() {
     if (!failure_)
         perform_deeds();
     for (Tile& tile : tiles_)
-        beyond_.accept(tile.l2.leaving());
+        beyond_.accept(tile.exit.leaving());
     beyond_.serve(window_end_);
     set_floors(window_end_);
     for (Tile& tile : tiles_) {
@@ -258,7 +258,7 @@ Report Engine::run() {
 void Engine::finish_frame() {
     auto serve_all = [this] {
         for (Tile& tile : tiles_)
-            beyond_.accept(tile.l2.leaving());
+            beyond_.accept(tile.exit.leaving());
         beyond_.serve(Beyond::everything);
     };
     serve_all();

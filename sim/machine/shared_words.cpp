@@ -41,7 +41,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
-        Answer line = h.tile->l2.modify(a, at.last + l1_latency_, h.column);
+        Answer line = h.tile->l2.modify({a, line_bytes_, at.last + l1_latency_, h.column});
         auto [ready_at, behind] =
             h.tile->queues.enter(a, line.ready, wide(config_.coherence.atomic_cycles), h.tile->tickets);
         Answered there{ready_at, ready_at, line.from};
@@ -77,15 +77,14 @@ void Engine::check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready) 
 
 /// Other copies of the word's line go.
 void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip) {
-    std::uint64_t line = address >> line_shift_;
     if (!chip) {
         for (Core& core : h.tile->cores)
-            core.l1.invalidate(line, t, h.column);
+            core.l1.invalidate(address, t, h.column);
         return;
     }
     for (Tile& tile : tiles_) {
         for (Core& core : tile.cores)
-            core.l1.invalidate(line, t, h.column);
+            core.l1.invalidate(address, t, h.column);
         if (&tile != h.tile)
             tile.l2.invalidate(address, t, h.column);
     }
@@ -135,7 +134,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         invalidate_elsewhere(h, a, t, chip);
         if (kind == isa::timing::atomic::store_release) {
             ++h.counters.releases;
-            h.tile->l2.write(a, t + l1_latency_, h.column, false);
+            h.tile->l2.write({a, line_bytes_, t + l1_latency_, h.column});
             ready = Due(t, Cause::synchronise);
         } else {
             ready = h.acting;

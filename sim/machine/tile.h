@@ -7,6 +7,7 @@
 #include "sim/machine/published.h"
 #include "sim/machine/scheduler.h"
 #include "sim/machine/word_queues.h"
+#include "sim/memory/tile_exit.h"
 
 #include <deque>
 #include <vector>
@@ -15,7 +16,8 @@ namespace sim {
 
 struct Tile {
     Tile(const Config& config, std::uint32_t number, std::uint64_t window, Attribution& attribution)
-        : number(number), l2(config, number, earliest, tickets, attribution),
+        : number(number), exit(number, tickets, attribution),
+          l2(config.l2, 1, true, earliest, exit, tickets, attribution),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
                     static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
 
@@ -34,7 +36,8 @@ struct Tile {
     std::uint32_t number;
     cycle earliest = 0; // no operation from now on acts before
     Tickets tickets;
-    L2 l2;
+    TileExit exit;
+    Cache l2;
     std::deque<SharedUnit> shared_units;
     std::deque<Core> cores;
     std::vector<Hart*> harts;

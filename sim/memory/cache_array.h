@@ -1,6 +1,13 @@
-// Tags of a set-associative cache with least-recently-used replacement, and two flags a line. Knows nothing
-// of time or data. A set lies in consecutive memory of the host, 64 bytes for eight ways: the tags, filled up
-// to groups of four; the ways, last used first, a byte each; the flags.
+// Tags of a set-associative cache, replacement, and two flags a line. Knows nothing of time or data. A set
+// lies in consecutive memory of the host, 64 bytes for eight ways: the tags, filled up to groups of four;
+// what replacement remembers; the flags. Replacement remembers
+// * lru: the ways, last used first, a byte each;
+// * plru: a bit for each inner node of a binary tree over the ways, which leads to the half that was not used
+//   last;
+// * srrip: two bits a way, how far off its next use is taken to be: 2 when filled, 0 when used again; the
+//   first way at 3 goes, all others wait one more where none is (Jaleel et al., ISCA 2010, hit priority);
+// * random: nothing; the cache's own numbers, which always begin alike, choose.
+// The latter three have the way that was used last in the first byte. Empty ways are always taken first.
 #pragma once
 
 #include <bit>
@@ -8,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -15,28 +23,18 @@
 
 namespace sim {
 
+enum class Replacement : std::uint8_t { lru, plru, srrip, random };
+/// Of the name in a machine file.
+Replacement replacement_of(std::string_view name);
+
 class CacheArray {
 public:
     using Entry = std::uint32_t; // set << 6 | way
     static constexpr Entry none = ~Entry{0};
     static constexpr std::uint64_t no_line = ~std::uint64_t{0};
 
-    /// `sets` is a power of two, at most 2^25; at most 64 ways.
-    CacheArray(std::size_t sets, std::size_t ways)
-        : mask_(sets - 1), ways_(static_cast<std::uint32_t>(ways)), order_at_((ways + 3) / 4 * 16),
-          flags_at_((order_at_ + ways + 7) / 8 * 8), stride_((flags_at_ + 16 + 15) / 16 * 16),
-          bytes_(sets * stride_ + 64) {
-        while ((std::size_t{1} << set_bits_) < sets)
-            ++set_bits_;
-        std::size_t misaligned = reinterpret_cast<std::uintptr_t>(bytes_.data()) % 64;
-        base_ = bytes_.data() + (misaligned == 0 ? 0 : 64 - misaligned);
-        for (std::size_t s = 0; s <= mask_; ++s) {
-            std::byte* set = base_ + s * stride_;
-            std::memset(set, 0xFF, order_at_);
-            for (std::size_t w = 0; w < ways; ++w)
-                set[order_at_ + w] = static_cast<std::byte>(ways - 1 - w); // way 0 is taken first
-        }
-    }
+    /// `sets` is a power of two, at most 2^25; at most 64 ways, for plru a power of two.
+    explicit CacheArray(std::size_t sets, std::size_t ways, Replacement replacement = Replacement::lru);
     CacheArray(const CacheArray&) = delete;
     CacheArray& operator=(const CacheArray&) = delete;
 
@@ -58,6 +56,10 @@ public:
         auto way = static_cast<std::byte>(e & 63U);
         if (order[0] == way)
             return;
+        if (replacement_ != Replacement::lru) [[unlikely]] {
+            touch_other(order, e & 63U);
+            return;
+        }
         if (std::endian::native == std::endian::little && ways_ <= 8) {
             // All at once: bytes below that of the way move up by one. The bytes above are other ways or
             // unused.
@@ -78,8 +80,10 @@ public:
             order[i] = order[i - 1];
         order[0] = way;
     }
-    /// The entry that a line would take: an empty one, or the least recently used of its set.
-    Entry oldest(std::uint64_t line) const {
+    /// The entry that a line would take: an empty one, or the one that replacement chooses in its set.
+    Entry victim(std::uint64_t line) const {
+        if (replacement_ != Replacement::lru) [[unlikely]]
+            return other_victim(line);
         return entry(line, static_cast<std::uint32_t>(set_of(line)[order_at_ + ways_ - 1]));
     }
     /// The number of the line in an entry, or no_line.
@@ -87,10 +91,13 @@ public:
         std::uint32_t t = tag_at(base_ + (e >> 6U) * stride_, e & 63U);
         return t == empty ? no_line : std::uint64_t{t} << set_bits_ | e >> 6U;
     }
-    /// Puts a line, clean and not on its way, into an entry of its set, most recently used.
+    /// Puts a line, clean and not on its way, into the entry that victim() gave, as one just used.
     void fill(Entry e, std::uint64_t line) {
+        if (replacement_ != Replacement::lru) [[unlikely]]
+            note_fill(e);
+        else
+            touch(e);
         set_tag(e, tag(line));
-        touch(e);
         set_dirty(e, false);
         set_in_flight(e, false);
     }
@@ -99,6 +106,8 @@ public:
         set_tag(e, empty);
         set_dirty(e, false);
         set_in_flight(e, false);
+        if (replacement_ != Replacement::lru)
+            return;
         // Oldest from now on.
         std::byte* order = set + order_at_;
         std::size_t i = 0;
@@ -124,6 +133,11 @@ public:
 
 private:
     static constexpr std::uint32_t empty = ~std::uint32_t{0};
+
+    void touch_other(std::byte* order, std::uint32_t way);
+    Entry other_victim(std::uint64_t line) const;
+    void note_fill(Entry e);
+    static constexpr std::size_t state_at = 8; // from the first byte, of plru and srrip
 
     std::byte* set_of(std::uint64_t line) const { return base_ + (line & mask_) * stride_; }
     Entry entry(std::uint64_t line, std::uint32_t way) const {
@@ -173,6 +187,8 @@ private:
     std::uint64_t mask_;
     unsigned set_bits_ = 0;
     std::uint32_t ways_;
+    Replacement replacement_;
+    std::uint64_t random_ = 0x9E3779B97F4A7C15U;
     std::size_t order_at_, flags_at_, stride_;
     std::vector<std::byte> bytes_;
     std::byte* base_;

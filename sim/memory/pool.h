@@ -48,7 +48,7 @@ public:
     }
     void hold(const Hold& h) {
         if (holds_.size() >= limit_)
-            drop_oldest();
+            unlimited_ ? drop_ended(h.from) : drop_oldest();
         holds_.push_back(h);
     }
     /// The hold of a line, or nullptr: it has ended.
@@ -62,6 +62,11 @@ public:
             }
         return nullptr;
     }
+    /// From now on as many are held as there may be; take() is not asked.
+    void lift_limit() {
+        unlimited_ = true;
+        limit_ = entries_ * 4 + 64;
+    }
     static constexpr cycle unknown = ~cycle{0};
 
 private:
@@ -72,6 +77,9 @@ private:
         h.until = a.last;
         h.cause = a.from;
         return true;
+    }
+    void drop_ended(cycle by) {
+        std::erase_if(holds_, [&](Hold& h) { return (!is_ticket(h.until) || resolve(h)) && h.until <= by; });
     }
     void drop_oldest() {
         std::size_t oldest = holds_.size();
@@ -86,6 +94,7 @@ private:
     }
 
     std::size_t entries_, limit_;
+    bool unlimited_ = false;
     std::vector<Hold> holds_;
     Tickets& tickets_;
 };

@@ -18,6 +18,15 @@ struct Traffic {
     std::uint64_t memory_reads = 0, memory_writes = 0;
 };
 
+/// Where a cache of a level counts.
+struct TrafficOfLevel {
+    std::uint64_t Traffic::*reads, Traffic::*writes, Traffic::*misses, Traffic::*write_backs;
+};
+inline constexpr std::array<TrafficOfLevel, 2> traffic_of_level = {{
+    {&Traffic::l1_reads, &Traffic::l1_writes, &Traffic::l1_misses, &Traffic::l1_write_backs},
+    {&Traffic::l2_reads, &Traffic::l2_writes, &Traffic::l2_misses, &Traffic::l2_write_backs},
+}};
+
 struct TrafficColumn {
     const char* name;
     std::uint64_t Traffic::*count;

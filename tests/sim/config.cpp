@@ -36,6 +36,7 @@ TEST(MachineFile, MistakesAreOneClearLine) {
         {"[l1]\nsize_bytes = 1000\n", "m.toml:", "do not divide"},
         {"[l1]\nsize_bytes = 12288\n", "m.toml:", "power of two"},
         {"[chip]\ncores = 1024\n[l1]\nsize_bytes = \"64MiB\"\n", "m.toml:", "lines together"},
+        {"[l2]\nways = 12\nsize_bytes = 98304\nreplacement = \"plru\"\n", "m.toml:", "make it 8 or 16"},
         {"[l2]\nline_bytes = 32\n", "m.toml:", "(l1.line_bytes from default, l2.line_bytes from m.toml:2)"},
         {"[memory]\nbus_bytes = 16\n", "m.toml:", "more than l2.line_bytes"},
         {"[memory]\nrow_bytes = 1\n", "m.toml:2:13:", "must be from 64"},

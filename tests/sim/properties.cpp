@@ -49,8 +49,14 @@ Config random_machine(std::mt19937& random) {
     c.l1.port_bytes = power(2, 7);
     c.l1.mshrs = pick(1, 12);
     c.l1.write_back_buffer = pick(1, 6);
+    auto replacement = [&](integer ways) {
+        return std::array{"lru", "srrip", "random",
+                          std::has_single_bit(u(ways)) ? "plru" : "lru"}[random() % 4];
+    };
+    c.l1.replacement = replacement(c.l1.ways);
     c.l2.line_bytes = c.l1.line_bytes * power(0, 2);
     c.l2.ways = pick(1, 16);
+    c.l2.replacement = replacement(c.l2.ways);
     c.l2.size_bytes = c.l2.line_bytes * c.l2.ways * power(0, 9);
     c.l2.banks = power(0, 4);
     c.l2.bank_bytes = power(0, 7);

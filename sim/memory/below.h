@@ -1,0 +1,58 @@
+// What a cache asks of what lies below it: another cache, or the way out of its tile.
+#pragma once
+
+#include "sim/core/stalls.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sim {
+
+/// When an access is served (a cycle or a ticket), and what serves it. Or, `retry` not 0: nothing has
+/// happened, for an MSHR or buffer is not free; ask again at that cycle, or (unknown) when the window has
+/// ended.
+struct Answer {
+    static constexpr cycle unknown = ~cycle{0};
+    cycle ready;
+    Cause from;
+    cycle retry = 0;
+
+    static Answer later(cycle when) { return {0, Cause::mshrs, when}; }
+};
+
+/// A request for some bytes of one line, at any address in it.
+struct Access {
+    std::uint64_t address;
+    std::uint32_t bytes; // that move
+    cycle at;
+    std::size_t column;
+    bool whole =
+        false; // of a write: all bytes that move are written, so that a line of them need not be read
+    bool followed = false; // of a write: the read of what takes its place follows at once
+    bool forced = false;   // happens at once, whatever is busy
+};
+
+class Below {
+public:
+    Below() = default;
+    Below(const Below&) = delete;
+    Below& operator=(const Below&) = delete;
+    virtual ~Below() = default;
+
+    virtual Answer read(const Access& a) = 0;
+    /// Ready when it is accepted.
+    virtual Answer write(const Access& a) = 0;
+};
+
+/// What leaves a tile: a dirty line to be written, a line to be read, or the one and then the other.
+struct Request {
+    static constexpr std::uint64_t nothing = ~std::uint64_t{0};
+    cycle at;
+    std::uint32_t tile;
+    std::uint64_t sequence;                        // within its tile
+    std::uint64_t write = nothing, read = nothing; // addresses
+    cycle ticket = 0;                              // of the read
+};
+
+} // namespace sim

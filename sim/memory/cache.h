@@ -1,0 +1,113 @@
+// A cache of a tile: a core's L1, whose ports the core books, or a level below it, with banks interleaved by
+// line, each busy while it moves what is asked for. Write-back, write-allocate, neither inclusive nor
+// exclusive of the caches above. A line being filled counts as present; whoever hits it waits for the fill.
+// Misses are held in MSHRs, evicted dirty lines in a write-back buffer; those of the last cache of a tile
+// stand where their times are known, beyond the tile. Not modelled: ports and banks of fills; the network to
+// the cores (its time is part of the latency); that a line which must make room before it has come would
+// still be on its way. A line written back is accepted when its bank has taken it, also where that evicts
+// another dirty line.
+#pragma once
+
+#include "sim/config/config.h"
+#include "sim/core/calendar.h"
+#include "sim/memory/attribution.h"
+#include "sim/memory/below.h"
+#include "sim/memory/cache_array.h"
+#include "sim/memory/counters.h"
+#include "sim/memory/pool.h"
+
+#include <bit>
+#include <vector>
+
+namespace sim {
+
+class Cache final : public Below {
+public:
+    /// `level`: 0 for an L1. `last`: below it the tile ends.
+    Cache(const CacheConfig& config, unsigned level, bool last, const cycle& earliest, Below& below,
+          Tickets& tickets, Attribution& attribution);
+
+    /// A core's `accesses` accesses to the line (number) at cycle `t`.
+    Answer access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t, std::size_t column) {
+        CacheArray::Entry entry = array_.find(line);
+        Answer answer{t + latency_, Cause::l1};
+        if (entry != CacheArray::none) {
+            counters_.hits += accesses;
+            array_.touch(entry);
+            if (write)
+                array_.set_dirty(entry, true);
+            if (array_.in_flight(entry)) [[unlikely]]
+                answer = in_flight(entry, line, answer);
+        } else {
+            answer = fill(line, t, t + latency_, column);
+            if (answer.retry != 0)
+                return answer;
+            if (write)
+                array_.set_dirty(array_.find(line), true);
+            counters_.hits += accesses - 1;
+            ++counters_.misses;
+            ++(attribution_.cell(line << line_shift_, column).*traffic_.misses);
+        }
+        Traffic& cell = attribution_.touch(line << line_shift_, column);
+        (write ? counters_.writes : counters_.reads) += accesses;
+        cell.*(write ? traffic_.writes : traffic_.reads) += accesses;
+        return answer;
+    }
+    /// Begins a fill if the line is absent and an MSHR is free.
+    void prefetch(std::uint64_t address, cycle t, std::size_t column);
+
+    /// A line of the cache above, or a word.
+    Answer read(const Access& a) override { return serve(a, false); }
+    /// A line written back from above, or a released word.
+    Answer write(const Access& a) override { return serve(a, true); }
+    /// A read-modify-write of a shared word: a read that leaves the line dirty.
+    Answer modify(const Access& a) {
+        Answer answer = serve(a, false);
+        array_.set_dirty(array_.find(a.address >> line_shift_), true);
+        return answer;
+    }
+    /// A shared word in the line was written elsewhere: drops the line, writing it back if it is dirty.
+    void invalidate(std::uint64_t address, cycle t, std::size_t column);
+    /// The line's contents are dead: it need not be written back.
+    void discard(std::uint64_t address);
+    /// The frame is over: `keep(address)` says which dirty lines are written back; all others are dropped.
+    template <class Keep> void finish(cycle t, std::size_t column, Keep keep) {
+        array_.for_each([&](CacheArray::Entry e) {
+            if (!array_.dirty(e))
+                return;
+            if (keep(array_.line(e) << line_shift_))
+                write_back(e, t, t, column, false, true);
+            else
+                ++counters_.dropped;
+            array_.set_dirty(e, false);
+        });
+    }
+    CacheCounters& counters() { return counters_; }
+    const CacheCounters& counters() const { return counters_; }
+    /// From this cycle on no bank is busy.
+    cycle quiet() const { return quiet_; }
+
+private:
+    Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
+    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column);
+    cycle write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
+                     bool forced);
+    Answer serve(const Access& a, bool write);
+    Answer miss(const Access& a, std::uint64_t line, bool write, cycle done);
+
+    unsigned line_shift_, bank_shift_;
+    std::uint64_t latency_, bank_mask_;
+    bool last_;
+    Cause cause_;
+    TrafficOfLevel traffic_;
+    CacheArray array_;
+    std::vector<Calendar> banks_;
+    Pool mshrs_, write_backs_;
+    cycle quiet_ = 0;
+    CacheCounters counters_;
+    Tickets& tickets_;
+    Below& below_;
+    Attribution& attribution_;
+};
+
+} // namespace sim

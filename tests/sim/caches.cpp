@@ -1,0 +1,175 @@
+// Caches against a simulator of their own (cache_oracle.h), on streams of references: exact integers. A
+// stream of 10 million, of which RAZOR_CACHE_REFERENCES says how many are taken, and a recorded trace.
+#include "sim/memory/cache.h"
+#include "tests/sim/cache_oracle.h"
+#include "tests/sim/machines.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <random>
+
+namespace sim::test {
+namespace {
+
+struct Reference {
+    std::uint64_t address;
+    std::uint32_t bytes;
+    bool write;
+};
+
+/// Answers at once, and keeps what was asked.
+class InstantMemory final : public Below {
+public:
+    std::vector<OracleRequest> asked;
+    Answer read(const Access& a) override {
+        asked.push_back({a.address, a.bytes, false});
+        return {a.at, Cause::memory};
+    }
+    Answer write(const Access& a) override {
+        asked.push_back({a.address, a.bytes, true});
+        return {a.at, Cause::memory};
+    }
+};
+
+/// Two caches above a memory, without a machine around them.
+class Hierarchy {
+public:
+    explicit Hierarchy(const Config& c)
+        : line_shift_(static_cast<unsigned>(std::countr_zero(u(c.l1.line_bytes)))), space_(1 << 20),
+          attribution_(space_, 1, line_shift_), l2(c.l2, 1, true, now_, memory, tickets_, attribution_),
+          l1(c.l1, 0, false, now_, l2, tickets_, attribution_) {}
+
+    void access(const Reference& r) {
+        for (std::uint64_t line = r.address >> line_shift_; line <= (r.address + r.bytes - 1) >> line_shift_;
+             ++line) {
+            now_ += 1000;
+            ASSERT_EQ(l1.access(line, r.write, 1, now_, 0).retry, 0U);
+        }
+    }
+
+    InstantMemory memory;
+
+private:
+    unsigned line_shift_;
+    cycle now_ = 0;
+    isa::address_space space_;
+    Tickets tickets_;
+    Attribution attribution_;
+
+public:
+    Cache l2, l1;
+};
+
+CacheOracle::Kind kind(const CacheConfig& c) {
+    return {u(c.size_bytes), u(c.ways), u(c.line_bytes), c.replacement};
+}
+
+void expect_equal(const CacheCounters& c, const CacheOracle& o) {
+    EXPECT_EQ(c.reads + c.writes, o.accesses);
+    EXPECT_EQ(c.hits, o.hits);
+    EXPECT_EQ(c.misses, o.misses);
+    EXPECT_EQ(c.fills, o.fills);
+    EXPECT_EQ(c.write_backs, o.write_backs);
+}
+
+void compare(const Config& c, const std::vector<Reference>& stream) {
+    Hierarchy h(c);
+    for (const Reference& r : stream)
+        h.access(r);
+    CacheOracle l1(kind(c.l1)), l2(kind(c.l2));
+    const std::uint64_t line = u(c.l1.line_bytes);
+    for (const Reference& r : stream)
+        for (std::uint64_t a = r.address / line * line; a < r.address + r.bytes; a += line)
+            l1.access(a, r.write);
+    for (const OracleRequest& r : l1.out)
+        l2.access(r.address, r.write, r.write && r.bytes == u(c.l2.line_bytes));
+    expect_equal(h.l1.counters(), l1);
+    expect_equal(h.l2.counters(), l2);
+    EXPECT_TRUE(h.memory.asked == l2.out);
+}
+
+/// Mostly near what was used before, now and then anywhere, sometimes in a row.
+std::vector<Reference> synthetic(std::size_t count) {
+    std::mt19937_64 random(11);
+    std::vector<Reference> out(count);
+    std::uint64_t at = 0, region = 0;
+    for (Reference& r : out) {
+        const std::uint64_t dice = random() % 100;
+        if (dice < 2)
+            region = random() % 64 * 65536;
+        at = dice < 40 ? at + 8 : region + random() % (dice < 90 ? 4096U : 262144U) / 4 * 4;
+        r = {at, 4, random() % 3 == 0};
+    }
+    return out;
+}
+
+Config machine(integer size, integer ways, integer line, integer l2_size, integer l2_ways, integer l2_line,
+               const std::string& replacement) {
+    Config c = simple();
+    c.l1.size_bytes = size;
+    c.l1.ways = ways;
+    c.l1.line_bytes = line;
+    c.l2.size_bytes = l2_size;
+    c.l2.ways = l2_ways;
+    c.l2.line_bytes = l2_line;
+    c.l1.replacement = c.l2.replacement = replacement;
+    return c;
+}
+
+std::vector<Config> machines() {
+    std::vector<Config> out;
+    for (const char* replacement : {"lru", "plru", "srrip", "random"}) {
+        out.push_back(machine(8192, 4, 64, 131072, 8, 64, replacement));
+        out.push_back(machine(4096, 1, 16, 65536, 16, 64, replacement));
+        out.push_back(machine(16384, 64, 32, 262144, 2, 128, replacement));
+        if (std::string(replacement) != "plru")
+            out.push_back(machine(12288, 3, 64, 98304, 12, 64, replacement));
+    }
+    return out;
+}
+
+TEST(CacheOracle, SyntheticStream) {
+    const char* text = std::getenv("RAZOR_CACHE_REFERENCES");
+    const std::vector<Reference> stream = synthetic(text != nullptr ? std::stoull(text) : 200000);
+    for (const Config& c : machines()) {
+        SCOPED_TRACE(c.l1.replacement + " " + std::to_string(c.l1.ways));
+        compare(c, stream);
+    }
+}
+
+/// Reads and writes of a Dinero trace (`label hexaddress bytes`); pages are numbered as they come, so that
+/// addresses are small.
+std::vector<Reference> read_trace(const std::string& file) {
+    std::vector<Reference> out;
+    std::map<std::uint64_t, std::uint64_t> pages;
+    FILE* pipe = popen(("gzip -dc " + file).c_str(), "r");
+    if (pipe == nullptr)
+        return out;
+    int label = 0;
+    std::uint64_t address = 0;
+    std::uint32_t bytes = 0;
+    while (std::fscanf(pipe, "%d %lx %u", &label, &address, &bytes) == 3)
+        if (label != 2) {
+            const std::uint64_t page = pages.try_emplace(address / 4096, pages.size()).first->second;
+            out.push_back({page * 4096 + address % 4096, std::max(bytes, 1U), label == 1});
+        }
+    pclose(pipe);
+    return out;
+}
+
+TEST(CacheOracle, RecordedTrace) {
+    const std::string file = RAZOR_SOURCE_DIR "/../shared/scenes/traces/simple_app.din.gz";
+    if (!std::filesystem::exists(file))
+        GTEST_SKIP() << "no " << file;
+    const std::vector<Reference> stream = read_trace(file);
+    ASSERT_EQ(stream.size(), 31507U + 12338U);
+    for (const Config& c : machines()) {
+        SCOPED_TRACE(c.l1.replacement + " " + std::to_string(c.l1.ways));
+        compare(c, stream);
+    }
+}
+
+} // namespace
+} // namespace sim::test
