@@ -17,7 +17,7 @@
 namespace sim {
 namespace {
 
-Fibre* leaving = nullptr; // who switched last
+constinit thread_local Fibre* leaving = nullptr; // who switched last on this host thread
 
 void announce([[maybe_unused]] void** fake_stack, [[maybe_unused]] const void* stack,
               [[maybe_unused]] std::size_t bytes) {

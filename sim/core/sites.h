@@ -1,4 +1,4 @@
-// Dense numbers for places in the source, in the order in which a run first meets them. Two pointers to the
+// Dense numbers for places in the source, in the order in which a tile first meets them. Two pointers to the
 // same file name are one file, so that numbers depend on no linker.
 #pragma once
 

@@ -106,7 +106,7 @@ void Engine::branch(Hart& h, site where, Due ready, bool taken) {
     if (prediction_ == Prediction::none) {
         h.bound.later(Due(known, Cause::branch));
     } else if (prediction_ == Prediction::counters
-                   ? !h.core->predictor.right(sites_.number(where), h.history, taken)
+                   ? !h.core->predictor.right(h.tile->sites.number(where), h.history, taken)
                    : taken != (prediction_ == Prediction::taken)) {
         ++h.counters.mispredicts;
         h.bound.later(Due(known + wide(config_.core.mispredict_cycles), Cause::branch));

@@ -11,7 +11,7 @@
 namespace sim {
 
 Engine* running_engine = nullptr;
-Hart* running_hart = nullptr;
+constinit thread_local Hart* running_hart = nullptr;
 
 void Engine::outside(const void* p) {
     fmt::print(stderr, "razor-sim: broken invariant: a kernel touched {}, which is not in frame memory\n", p);
@@ -36,7 +36,7 @@ Labels with_frame_end(Labels labels) {
 } // namespace
 
 Engine::Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
-               const std::function<void(int)>& worker)
+               int host_threads, const std::function<void(int)>& worker)
     : config_(config), pieces_(std::max(1U, width / narrow(config.core.lanes))),
       piece_lanes_(width / pieces_), issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
@@ -54,27 +54,26 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                                                          : Prediction::counters),
       base_(space.base()), window_cycles_(window_cycles(config)),
       shortest_read_(Memory::shortest_read(config)), reach_(reach_cycles(config)), space_(space),
-      labels_(with_frame_end(labels)), attribution_(space, labels_.columns(), line_shift_),
-      homes_(space, config.chip.tiles),
+      labels_(with_frame_end(labels)), lines_(space, line_shift_), homes_(space, config.chip.tiles),
       beyond_(config, [this](std::uint32_t tile, cycle ticket,
                              cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
-      workers_(workers) {
+      host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), workers_(workers) {
     describe_kinds();
     std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
     spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
     bool shares = config.core.shared_classes != "none";
     for (integer t = 0; t < config.chip.tiles; ++t) {
-        Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, attribution_);
+        Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
         for (integer c = 0; c < config.chip.cores; ++c) {
             Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.l2,
-                                                 tile.tickets, attribution_);
+                                                 tile.tickets, tile.attribution);
             if (shares && c % config.core.shared_cores == 0)
                 tile.shared_units.emplace_back(tile.earliest);
             core.shared = shares ? &tile.shared_units.back() : nullptr;
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
-                h.spill_base = attribution_.spill_begin() + number * spill_bytes;
+                h.spill_base = lines_.spill_begin() + number * spill_bytes;
                 tile.harts.push_back(&h);
             }
         }
@@ -131,16 +130,26 @@ void Engine::fail(const std::exception_ptr& why) {
         failure_ = why;
 }
 
-void Engine::run_tiles() {
-    for (Tile& tile : tiles_) {
-        for (Hart* sleeper : tile.sleepers)
-            look(*sleeper, window_end_);
-        if (tile.scheduler.next() >= window_end_)
-            continue;
+void Engine::run_tile(Tile& tile) {
+    for (Hart* sleeper : tile.sleepers)
+        look(*sleeper, window_end_);
+    if (tile.scheduler.next() < window_end_)
         tile.scheduler.run(window_end_);
+}
+
+void Engine::run_tiles() {
+    const int step = host_threads_.count();
+    if (step == 1)
+        for (Tile& tile : tiles_)
+            run_tile(tile);
+    else
+        host_threads_.all([this, step](int first) {
+            for (std::size_t t = wide(first); t < tiles_.size(); t += wide(step))
+                run_tile(tiles_[t]);
+        });
+    for (const Tile& tile : tiles_)
         if (tile.scheduler.failure())
             fail(tile.scheduler.failure());
-    }
 }
 
 /// Words that several tiles may reach, and pages: in order of (cycle, thread).
@@ -166,8 +175,10 @@ void Engine::perform_deeds() {
             }
             resume(*d.hart);
         } else {
-            running_hart = d.hart;
-            scheduler.step(d.hart->number);
+            host_threads_.one(host_thread(*d.hart->tile), [&](int) {
+                running_hart = d.hart;
+                scheduler.step(d.hart->number);
+            });
             if (scheduler.failure()) {
                 fail(scheduler.failure());
                 return;
@@ -232,6 +243,7 @@ bool Engine::run_window() {
     for (Tile& tile : tiles_) {
         answer_parked(tile);
         forget_tickets(tile);
+        tile.attribution.publish_notes();
     }
     return true;
 }
@@ -246,7 +258,7 @@ Report Engine::run() {
             fail(std::make_exception_ptr(Deadlock(describe_deadlock())));
     if (failure_) {
         for (Tile& tile : tiles_)
-            tile.scheduler.cancel();
+            host_threads_.one(host_thread(tile), [&](int) { tile.scheduler.cancel(); });
         std::rethrow_exception(failure_);
     }
     finish_frame();
@@ -307,12 +319,15 @@ Report Engine::report() const {
     Report r;
     r.config = config_;
     r.labels = labels_;
-    r.structures = attribution_.structures();
+    r.structures = lines_.structures();
     r.workers = workers_;
     r.cycles = cycles_;
     r.window = window_cycles_;
-    r.traffic = attribution_.traffic();
-    r.touched = attribution_.touched();
+    std::vector<const Attribution*> attributions;
+    for (const Tile& tile : tiles_)
+        attributions.push_back(&tile.attribution);
+    r.traffic = Attribution::traffic(attributions);
+    r.touched = lines_.touched();
     r.memory = beyond_.memory().counters();
     r.memory_by_rank = beyond_.memory().rank_counters();
     r.work.resize(labels_.columns());

@@ -6,9 +6,9 @@
 
 #include "isa/services.h"
 #include "sim/core/pairing.h"
-#include "sim/core/sites.h"
 #include "sim/machine/beyond.h"
 #include "sim/machine/homes.h"
+#include "sim/machine/host_threads.h"
 #include "sim/machine/machine.h"
 #include "sim/machine/tile.h"
 #include "sim/machine/windows.h"
@@ -33,7 +33,7 @@ struct Issued {
 class Engine {
 public:
     Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
-           const std::function<void(int)>& worker);
+           int host_threads, const std::function<void(int)>& worker);
     Report run();
 
     // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
@@ -54,8 +54,8 @@ public:
                       std::int32_t index);
     std::size_t set_phase(Hart& h, std::size_t phase);
     std::size_t set_kind(Hart& h, std::size_t kind);
-    void note_level(const void* p, std::uint64_t bytes, int level);
-    void note_level_of(const void* p, std::uint64_t bytes, const void* other);
+    void note_level(Hart& h, const void* p, std::uint64_t bytes, int level) const;
+    void note_level_of(Hart& h, const void* p, std::uint64_t bytes, const void* other) const;
     /// Returns when the ticket is answered.
     Answered await(Hart& h, cycle ticket);
 
@@ -153,7 +153,7 @@ private:
     void stop_looking(Hart& sleeper, cycle woken);
     std::uint64_t address(const void* p) const {
         auto a = static_cast<std::uint64_t>(static_cast<const std::byte*>(p) - base_);
-        if (a >= attribution_.spill_begin()) [[unlikely]]
+        if (a >= lines_.spill_begin()) [[unlikely]]
             outside(p);
         return a;
     }
@@ -166,6 +166,8 @@ private:
     cycle next_event() const;
     void set_floors(cycle arrival);
     void run_tiles();
+    void run_tile(Tile& tile);
+    int host_thread(const Tile& tile) const { return static_cast<int>(tile.number) % host_threads_.count(); }
     void perform_deeds();
     void resume(Hart& h);
     void answer_parked(Tile& tile);
@@ -202,22 +204,23 @@ private:
     std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
     const isa::address_space& space_;
     Labels labels_; // the caller's, and the end of the frame
-    Attribution attribution_;
+    LineMap lines_;
     Homes homes_;
     Published published_; // words that several tiles reach
     Beyond beyond_;
     std::deque<Tile> tiles_;
     std::deque<Hart> harts_;
-    Sites sites_;
+    HostThreads host_threads_; // tile t runs on number t % count
     cycle window_end_ = 0;
     std::exception_ptr failure_;
     cycle cycles_ = 0; // of the whole run
     int workers_;
 };
 
-/// The run and the hardware thread that the port acts for; null outside a run.
+/// The run and the hardware thread that the port acts for; null outside a run. Fibres never move between host
+/// threads.
 extern Engine* running_engine;
-extern Hart* running_hart;
+extern constinit thread_local Hart* running_hart;
 
 /// While a thread lets others run: whoever comes back is the one that left, also when it is being unwound.
 class Away {

@@ -181,6 +181,7 @@ std::string print_json(const Report& r, bool with_host) {
         out["host"] = {
             {"seconds", r.host_seconds},
             {"processor_seconds", r.processor_seconds},
+            {"threads", r.host_threads},
             {"vops_per_second", static_cast<double>(r.core.vops) / r.processor_seconds},
             {"instructions_per_second", static_cast<double>(r.core.instructions) / r.processor_seconds}};
     return out.dump(2) + "\n";

@@ -30,8 +30,9 @@ public:
     /// alone. Rethrows what a worker or a page service throws, after all other workers have been unwound;
     /// throws Deadlock. Checks all laws. One run at a time in a process. A worker begins in phase 0 and kind
     /// 0.
+    /// Tiles run on `host_threads` threads of the host, which changes no digit of the report.
     Report run(const isa::address_space& space, int workers, const Labels& labels,
-               const std::function<void(int worker)>& worker) const;
+               const std::function<void(int worker)>& worker, int host_threads = 1) const;
 
 private:
     Config config_;

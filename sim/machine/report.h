@@ -91,7 +91,8 @@ struct Report {
     std::vector<TrafficRow> traffic;            // where there was any
     std::vector<TouchedLines> touched;          // of the structures but `spill`
     double host_seconds = 0;                    // apart from everything else in JSON
-    double processor_seconds = 0;               // of these, what the host's processor worked
+    double processor_seconds = 0;               // what the host's processor worked, all its threads
+    int host_threads = 1;
 
     double seconds() const;
     CacheCounters l1_total() const;

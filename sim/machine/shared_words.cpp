@@ -252,14 +252,14 @@ std::size_t Engine::set_kind(Hart& h, std::size_t kind) {
     return before;
 }
 
-void Engine::note_level(const void* p, std::uint64_t bytes, int level) {
+void Engine::note_level(Hart& h, const void* p, std::uint64_t bytes, int level) const {
     if (bytes != 0)
-        attribution_.note_level(address(p), bytes, level);
+        h.tile->attribution.note_level(address(p), bytes, level);
 }
 
-void Engine::note_level_of(const void* p, std::uint64_t bytes, const void* other) {
+void Engine::note_level_of(Hart& h, const void* p, std::uint64_t bytes, const void* other) const {
     if (bytes != 0)
-        attribution_.note_level_of(address(p), bytes, address(other));
+        h.tile->attribution.note_level_of(address(p), bytes, address(other));
 }
 
 } // namespace sim
@@ -300,10 +300,10 @@ std::int32_t set_kind(std::int32_t kind) {
         sim::running_engine->set_kind(*sim::running_hart, static_cast<std::size_t>(kind)));
 }
 void note_level(const void* p, std::uint64_t bytes, std::int32_t level) {
-    sim::running_engine->note_level(p, bytes, level);
+    sim::running_engine->note_level(*sim::running_hart, p, bytes, level);
 }
 void note_level_of(const void* p, std::uint64_t bytes, const void* other) {
-    sim::running_engine->note_level_of(p, bytes, other);
+    sim::running_engine->note_level_of(*sim::running_hart, p, bytes, other);
 }
 
 } // namespace isa::timing

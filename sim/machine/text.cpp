@@ -231,9 +231,10 @@ std::string print_text(const Report& r) {
     traffic(out, r);
     double worked = r.processor_seconds;
     out += fmt::format(
-        "\nhost: {:.3f} s, {:.3f} s of processor time: {:.2f} million operations and {:.2f} million "
-        "instructions a second of it\n",
-        r.host_seconds, worked, static_cast<double>(r.core.vops) / worked * 1e-6,
+        "\nhost: {:.3f} s on {} thread{}, {:.3f} s of processor time: {:.2f} million operations and {:.2f} "
+        "million instructions a second of it\n",
+        r.host_seconds, r.host_threads, r.host_threads == 1 ? "" : "s", worked,
+        static_cast<double>(r.core.vops) / worked * 1e-6,
         static_cast<double>(r.core.instructions) / worked * 1e-6);
     return out;
 }

@@ -4,6 +4,7 @@
 
 #include "sim/core/core.h"
 #include "sim/core/hart.h"
+#include "sim/core/sites.h"
 #include "sim/machine/published.h"
 #include "sim/machine/scheduler.h"
 #include "sim/machine/word_queues.h"
@@ -15,8 +16,9 @@
 namespace sim {
 
 struct Tile {
-    Tile(const Config& config, std::uint32_t number, std::uint64_t window, Attribution& attribution)
-        : number(number), exit(number, tickets, attribution),
+    Tile(const Config& config, std::uint32_t number, std::uint64_t window, LineMap& lines,
+         std::size_t columns)
+        : number(number), attribution(lines, number, columns), exit(number, tickets, attribution),
           l2(config.l2, 1, true, earliest, exit, tickets, attribution),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
                     static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
@@ -35,12 +37,14 @@ struct Tile {
 
     std::uint32_t number;
     cycle earliest = 0; // no operation from now on acts before
+    Attribution attribution;
     Tickets tickets;
     TileExit exit;
     Cache l2;
     std::deque<SharedUnit> shared_units;
     std::deque<Core> cores;
     std::vector<Hart*> harts;
+    Sites sites;
     Scheduler scheduler;
     Published published; // words that only this tile has touched
     WordQueues queues;

@@ -154,6 +154,10 @@ void RunCommand::add_to(CLI::App& app) {
            "who shares a kd-tree: chip (all), tile, core, worker (nobody), or N neighbouring workers; "
            "without it, as the machine file says (kdtree.share)")
         ->type_name("WHO");
+    run.add_option(
+           "--host-threads", host_threads_,
+           "threads of the host that tiles run on, which changes no digit of the report; without it, 1")
+        ->type_name("N");
     run.add_flag("--no-native", no_native_,
                  "do not render the frame natively as well, to compare time and picture");
     run.add_flag("--quiet", quiet_, "show no progress");
@@ -175,6 +179,8 @@ int RunCommand::run() const {
     const int workers =
         workers_.empty() ? machine.threads() : razor::parse_whole("--workers", workers_, {1, most});
     const std::vector<int> trees = Placement(config.chip).trees(workers, config.kdtree.share);
+    const int host_threads =
+        host_threads_.empty() ? 1 : razor::parse_whole("--host-threads", host_threads_, {1, 1024});
     const razor::SceneDescription description = scene_.describe();
     const std::string scene = razor::to_toml(description);
     for (const std::string& output : outputs_)
@@ -192,8 +198,9 @@ int RunCommand::run() const {
     {
         razor::Progress progress(!quiet_);
         const Watch watch(frame, progress, interrupted);
-        report = machine.run(frame.memory(), workers, labels,
-                             [&](int worker) { frame.render(razor::simulated::kernels, worker); });
+        report = machine.run(
+            frame.memory(), workers, labels,
+            [&](int worker) { frame.render(razor::simulated::kernels, worker); }, host_threads);
     }
     // Edges of 2^level, of the frame's units until here.
     for (TrafficRow& row : report.traffic)

@@ -78,6 +78,27 @@ TEST_F(Simulator, SharesTreesAsAsked) {
 }
 
 // Traffic by kind of ray and by level of what is read. At one fixed level rays meet blocks of no other.
+TEST_F(Simulator, HostThreadsChangeNoDigit) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n[[mesh]]\nshape = \"knot\"\n");
+    const std::string start = std::string("run --quiet --no-native --scene s.toml --size 40x40 --spp 1 "
+                                          "--sky-samples 0 --light-samples 1 --edge-pixels 8 --machine ") +
+                              tiny +
+                              " -g chip.tiles=4 -g chip.cores=1 -g sim.quantum=100 -g sim.window=5000 ";
+    for (const std::string share : {"chip", "tile", "worker", "3"}) {
+        nlohmann::json serial;
+        for (const char* threads : {"1", "2", "3"}) {
+            SCOPED_TRACE(share + ", " + threads);
+            const Outcome result =
+                simulator(start + "--share " + share + " --host-threads " + threads + " --json a.json");
+            ASSERT_EQ(result.code, 0) << result.err;
+            if (serial.is_null())
+                serial = report("a.json");
+            else
+                EXPECT_EQ(report("a.json"), serial);
+        }
+    }
+}
+
 TEST_F(Simulator, AttributesTrafficToRaysAndLevels) {
     folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
     const std::string start =

@@ -223,6 +223,61 @@ TEST(Tiles, LongQuantaAreWholeWindows) {
     EXPECT_NE(reports[39], reports[40]);
 }
 
+struct NoPages : isa::page_service {
+    void make_page(std::int32_t, std::int32_t, std::int32_t) override {}
+};
+
+// With words shared by all tiles, pages, levels and kinds.
+TEST(Tiles, ReportsDoNotDependOnHostThreads) {
+    for (integer quantum : {0, 1000})
+        for (bool sharing : {false, true}) {
+            std::map<int, std::string> reports;
+            for (int host_threads : {1, 2, 3, 8}) {
+                Config c = tiled(5, 2, 2);
+                c.core.window = 8;
+                c.sim.quantum = quantum;
+                Shared s;
+                NoPages pages;
+                Report r = Machine(c).run(
+                    s.memory.space, 20, {{"work"}, {"one", "other"}},
+                    [&](int w) {
+                        mixed_work(s.plain(), s.word(sharing ? 0 : w / 4), w, 10);
+                        ask_for_page(pages, 2, w);
+                        set_kind(w % 2);
+                        std::int32_t* own = s.plain() + 131072 * (w + 1);
+                        note_level(own, 256, w % 3);
+                        mixed_work(own, s.word(sharing ? w % 3 : w / 4), w, 5);
+                    },
+                    host_threads);
+                EXPECT_EQ(r.host_threads, host_threads);
+                reports[host_threads] = print_json(r, false);
+            }
+            for (int host_threads : {2, 3, 8})
+                EXPECT_EQ(reports[host_threads], reports[1]) << host_threads << " host threads";
+        }
+}
+
+// What a worker throws reaches the caller also from another host thread, after all others were unwound.
+TEST(Tiles, FailuresOnHostThreads) {
+    for (int host_threads : {1, 3}) {
+        Shared s;
+        EXPECT_THROW(Machine(tiled(3, 1, 1))
+                         .run(
+                             s.memory.space, 3, {{"work"}},
+                             [&](int w) {
+                                 if (w == 2)
+                                     throw std::runtime_error("worker 2");
+                                 await(s.word(0));
+                             },
+                             host_threads),
+                     std::runtime_error);
+        EXPECT_THROW(Machine(tiled(3, 1, 1))
+                         .run(
+                             s.memory.space, 3, {{"work"}}, [&](int w) { await(s.word(w)); }, host_threads),
+                     Deadlock);
+    }
+}
+
 TEST(Tiles, TwoRunsAreEqual) {
     auto report = [] {
         Config c = tiled(4, 2, 2);
