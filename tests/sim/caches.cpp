@@ -38,7 +38,7 @@ class Hierarchy {
 public:
     explicit Hierarchy(const Config& c)
         : line_shift_(static_cast<unsigned>(std::countr_zero(u(c.l1.line_bytes)))), space_(1 << 20),
-          attribution_(space_, 1, line_shift_), l2(c.l2, 1, true, now_, memory, tickets_, attribution_),
+          lines_(space_, line_shift_), attribution_(lines_, 0, 1), l2(c.l2, 1, true, now_, memory, tickets_, attribution_),
           l1(c.l1, 0, false, now_, l2, tickets_, attribution_) {}
 
     void access(const Reference& r) {
@@ -56,6 +56,7 @@ private:
     cycle now_ = 0;
     isa::address_space space_;
     Tickets tickets_;
+    LineMap lines_;
     Attribution attribution_;
 
 public:
