@@ -27,7 +27,8 @@ struct CoreConfig {
     integer predictor_history = 0, predictor_entries = 0, mispredict_cycles = 0;
     std::string switch_policy;
     integer switch_cycles = 0;
-    std::string gather, skip_idle;
+    std::string gather, skip_idle, address_folding;
+    integer store_buffer = 0;
     integer spin_period = 0;
 };
 

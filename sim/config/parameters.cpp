@@ -115,6 +115,13 @@ void add_core(Table& t) {
     t.add("core.gather", s, &C::gather, {"line", "lane"},
           "line: one L1 access a distinct line of a sub-vector; lane: a load instruction for every active "
           "lane");
+    t.add("core.address_folding", s, &C::address_folding, {"off", "on"},
+          "on: loads and stores add base and index of their address themselves; only sums used otherwise are "
+          "instructions");
+    t.add("core.store_buffer", s, &C::store_buffer, "entries", 0, 0, 256,
+          "stores of a thread on their way to the L1, in order, forwarded to its loads; 0: as many as there "
+          "are, "
+          "loads wait for the line");
     t.add("core.skip_idle", s, &C::skip_idle, {"off", "on"},
           "on: masked loads, stores, gathers and scatters issue only the sub-vectors with an active lane, "
           "one at "

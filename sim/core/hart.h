@@ -4,6 +4,7 @@
 #include "sim/core/calendar.h"
 #include "sim/core/registers.h"
 #include "sim/core/stalls.h"
+#include "sim/core/store_buffer.h"
 #include "sim/machine/report.h"
 
 #include <vector>
@@ -16,7 +17,8 @@ struct Tile;
 struct Hart {
     Hart(std::uint32_t number, Tile& tile, Core& core, const Config& config, std::size_t columns)
         : number(number), tile(&tile), core(&core), window(static_cast<std::size_t>(config.core.window)),
-          registers(static_cast<std::size_t>(config.core.vector_registers)), stacks(columns, Stack{}),
+          registers(static_cast<std::size_t>(config.core.vector_registers)),
+          store_buffer(static_cast<std::size_t>(config.core.store_buffer)), stacks(columns, Stack{}),
           vops(columns, 0), instructions(columns, 0) {}
 
     std::uint32_t number;
@@ -39,6 +41,14 @@ struct Hart {
     cycle accounted = 0;
     RegisterFile registers;
     std::uint64_t spill_base = 0;
+    StoreBuffer store_buffer;
+    /// Addresses that were computed because an instruction used them otherwise (core.address_folding).
+    struct Unfolded {
+        std::uint32_t number = 0;
+        cycle ready = 0;
+    };
+    std::array<Unfolded, 64> unfolded; // by number, remembered that long
+    std::uint32_t last_address = 0;
     std::uint32_t history = 0;  // of branches
     std::uint32_t overhead = 0; // 1/1024 instructions not yet charged
 

@@ -18,12 +18,13 @@ enum class Cause : std::uint8_t {
     l2,
     memory,
     mshrs,
+    stores,
     branch,
     spill,
     synchronise,
     idle,
 };
-inline constexpr std::size_t cause_count = 11;
+inline constexpr std::size_t cause_count = 12;
 struct CauseName {
     const char *name, *meaning;
 };
@@ -31,10 +32,11 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"busy", "issuing its own instructions"},
     {"slots", "ready, but issue slots or units were taken, or the core was another thread's"},
     {"compute", "waiting for the result of an operation"},
-    {"l1", "waiting for data that the L1 held"},
+    {"l1", "waiting for data that the L1 or a store buffer held"},
     {"l2", "waiting for data that came from the L2"},
     {"memory", "waiting for data that came from memory"},
     {"mshrs", "a miss waited for a free MSHR or write-back entry"},
+    {"stores", "a store waited for a free entry of the store buffer"},
     {"branch", "restarting after a mispredicted (or waiting on an unpredicted) branch"},
     {"spill", "waiting for a spilled register"},
     {"synchronise", "waiting for a shared word"},

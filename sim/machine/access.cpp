@@ -108,6 +108,19 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
         touch_line(h, run_line, write, run, run * slots, from, data);
 }
 
+inline void Engine::read_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data) {
+    if (buffered_ && meets_stores(h, address, address + width * 4 - 1, from)) [[unlikely]]
+        load_lanes_around(h, address, lanes, from, data);
+    else
+        touch_lanes(h, address, lanes, false, from, data);
+}
+inline void Engine::write_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data) {
+    if (buffered_) [[unlikely]]
+        buffer_lanes(h, address, lanes, from, data);
+    else
+        touch_lanes(h, address, lanes, true, from, data);
+}
+
 /// Lanes anywhere: for each machine instruction every distinct line once, or (core.gather = "lane") every
 /// lane.
 void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
@@ -179,7 +192,7 @@ inline stamp Engine::loaded(Hart& h, const Data& data, bool vector) {
     return r;
 }
 
-inline void Engine::stored(Hart& h, const Data& data) {
+void Engine::stored(Hart& h, const Data& data) {
     h.stored = std::max(h.stored, data.last);
     h.complete.later(Due(data.last, data.from));
     if (data.open == 0) [[likely]]
@@ -203,13 +216,15 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
         ++h.counters.spill_stores;
         Issued at = issue(h, vector_kind(store_kind), pieces_, now);
         Data data;
-        touch_lanes(h, place, all_lanes, true, at.first, data);
+        write_lanes(h, place, all_lanes, at.first, data);
+        if (data.held == Cause::stores) [[unlikely]]
+            h.bound.later(Due(data.granted, data.held));
         stored(h, data);
     }
     ++h.counters.spill_loads;
     Issued at = issue(h, vector_kind(load_kind), pieces_, now);
     Data data;
-    touch_lanes(h, place, all_lanes, false, at.first, data);
+    read_lanes(h, place, all_lanes, at.first, data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else
@@ -221,7 +236,11 @@ stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool 
     settle(h, ready);
     Issued at = issue(h, load_kind, 1, ready);
     Data data;
-    touch(h, address(p), bytes, false, at.first, data);
+    std::uint64_t a = address(p);
+    if (buffered_ && meets_stores(h, a, a + bytes - 1, at.first)) [[unlikely]]
+        load_bytes_around(h, a, bytes, at.first, data);
+    else
+        touch(h, a, bytes, false, at.first, data);
     finish_issue(h, at, data.granted);
     count(h, 1, vector);
     ++h.counters.loads;
@@ -237,7 +256,7 @@ stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
     if (lanes == 0)
         data.first = data.last = at.last + l1_latency_;
     else
-        touch_lanes(h, address(p), lanes, false, at.first, data);
+        read_lanes(h, address(p), lanes, at.first, data);
     finish_issue(h, at, data.granted);
     count(h, instructions, true);
     ++h.counters.loads;
@@ -253,7 +272,8 @@ stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uin
     if (lanes == 0)
         data.first = data.last = at.last + l1_latency_;
     else
-        touch_indexed(h, address(p), index, lanes, false, at.first, data);
+        touch_indexed(h, address(p), index, lanes, false,
+                      buffered_ ? gather_after(h, address(p), index, lanes, at.first) : at.first, data);
     finish_issue(h, at, data.granted);
     count(h, instructions, true);
     ++h.counters.loads;
@@ -265,8 +285,11 @@ void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     settle(h, ready);
     Issued at = issue(h, store_kind, 1, ready);
     Data data;
-    touch(h, address(p), bytes, true, at.first, data);
-    finish_issue(h, at, data.granted);
+    if (buffered_) [[unlikely]]
+        buffer_bytes(h, address(p), bytes, at.first, data);
+    else
+        touch(h, address(p), bytes, true, at.first, data);
+    finish_issue(h, at, data.granted, data.held);
     count(h, 1, false);
     ++h.counters.stores;
     stored(h, data);
@@ -278,8 +301,8 @@ void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
     Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
     if (lanes != 0)
-        touch_lanes(h, address(p), lanes, true, at.first, data);
-    finish_issue(h, at, data.granted);
+        write_lanes(h, address(p), lanes, at.first, data);
+    finish_issue(h, at, data.granted, data.held);
     count(h, instructions, true);
     ++h.counters.stores;
     stored(h, data);
@@ -290,9 +313,11 @@ void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uin
     std::uint32_t instructions = indexed_instructions(lanes);
     Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
-    if (lanes != 0)
+    if (buffered_) [[unlikely]]
+        buffer_indexed(h, address(p), index, lanes, at.first, data);
+    else if (lanes != 0)
         touch_indexed(h, address(p), index, lanes, true, at.first, data);
-    finish_issue(h, at, data.granted);
+    finish_issue(h, at, data.granted, data.held);
     count(h, instructions, true);
     ++h.counters.stores;
     ++h.counters.scatters;
@@ -340,6 +365,10 @@ struct Next {
     sim::Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
 
+    Next& address(const stamp& s) {
+        engine.need_address(hart, ready, s);
+        return *this;
+    }
     Next& scalar(const stamp& s) {
         engine.need_scalar(hart, ready, s);
         return *this;
@@ -356,54 +385,54 @@ constexpr std::size_t vector_store = sim::vector_kind(sim::store_kind);
 
 stamp load(site, const void* p, std::uint32_t bytes, const stamp& address) {
     Next n;
-    n.scalar(address);
+    n.address(address);
     return n.engine.load(n.hart, p, bytes, n.ready, false);
 }
 stamp load_broadcast(site, const void* p, std::uint32_t bytes, const stamp& address) {
     Next n;
-    n.scalar(address);
+    n.address(address);
     return n.engine.load(n.hart, p, bytes, n.ready, true);
 }
 stamp load_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_load, lanes);
-    n.scalar(address).lanes(mask, span);
+    n.address(address).lanes(mask, span);
     return n.engine.load_vector(n.hart, p, lanes, n.ready);
 }
 stamp gather(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_load, lanes);
-    n.scalar(address).lanes(indices, span).lanes(mask, span);
+    n.address(address).lanes(indices, span).lanes(mask, span);
     return n.engine.gather(n.hart, p, index, lanes, n.ready);
 }
 void store(site, const void* p, std::uint32_t bytes, const stamp& address, const stamp& data) {
     Next n;
-    n.scalar(address).scalar(data);
+    n.address(address).scalar(data);
     n.engine.store(n.hart, p, bytes, n.ready);
 }
 void store_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& data,
                   const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_store, lanes);
-    n.scalar(address).lanes(data, span).lanes(mask, span);
+    n.address(address).lanes(data, span).lanes(mask, span);
     n.engine.store_vector(n.hart, p, lanes, n.ready);
 }
 void scatter(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& data, const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_store, lanes);
-    n.scalar(address).lanes(indices, span).lanes(data, span).lanes(mask, span);
+    n.address(address).lanes(indices, span).lanes(data, span).lanes(mask, span);
     n.engine.scatter(n.hart, p, index, lanes, n.ready);
 }
 void prefetch(site, const void* p, const stamp& address) {
     Next n;
-    n.scalar(address);
+    n.address(address);
     n.engine.prefetch(n.hart, p, n.ready);
 }
 void discard(site, const void* p, std::uint32_t bytes, const stamp& address) {
     Next n;
-    n.scalar(address);
+    n.address(address);
     n.engine.discard(n.hart, p, bytes, n.ready);
 }
 

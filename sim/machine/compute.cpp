@@ -92,6 +92,46 @@ inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructio
     return r;
 }
 
+/// An address whose operands are there at `ready`, or when what is pending is: no instruction yet.
+stamp Engine::fold_address(Hart& h, Due ready) {
+    stamp s;
+    s.first = ready.at();
+    s.cause = static_cast<std::uint8_t>(ready.why());
+    if (h.pending_count != 0) {
+        std::array<cycle, 2> open{};
+        for (std::size_t i = 0; i < h.pending_count; ++i)
+            open[i] = h.pending[i].ticket;
+        s.first = h.tile->tickets.join({ready.at(), ready.at(), ready.why()}, open.data(),
+                                       static_cast<std::uint32_t>(h.pending_count));
+        h.pending_count = 0;
+    }
+    s.last = fold_bits | ++h.last_address;
+    ++h.counters.folded;
+    count(h, 0, false);
+    return s;
+}
+
+/// Something other than a load or store uses the address: now it is an instruction, once.
+void Engine::unfold(Hart& h, Due& ready, const stamp& s) {
+    auto number = static_cast<std::uint32_t>(s.last & ~fold_bits);
+    Hart::Unfolded& u = h.unfolded[number % h.unfolded.size()];
+    if (u.number != number) {
+        Due operands = begin(h);
+        if (is_ticket(s.first)) {
+            Answered a = await(h, s.first);
+            operands.later(Due(a.last, a.from));
+        } else {
+            operands.later(Due(s.first, static_cast<Cause>(s.cause)));
+        }
+        constexpr auto kind = static_cast<std::size_t>(operation::address);
+        Issued at = issue(h, kind, 1, operands);
+        u = {number, at.last + latency_[kind]};
+        ++h.counters.unfolded;
+        h.complete.later(Due(u.ready, Cause::compute));
+    }
+    ready.later(Due(u.ready, Cause::compute));
+}
+
 void Engine::branch(Hart& h, site where, Due ready, bool taken) {
     charge_overhead(h, begin(h));
     settle(h, ready);
@@ -166,6 +206,14 @@ stamp scalar_op(operation op, const stamp& a) {
     return operate(op, Shape::scalar, a);
 }
 stamp scalar_op(operation op, const stamp& a, const stamp& b) {
+    if (op == operation::address && sim::running_engine->folds_addresses()) [[unlikely]] {
+        Engine& engine = *sim::running_engine;
+        Hart& hart = *sim::running_hart;
+        sim::Due ready;
+        engine.need_scalar(hart, ready, a);
+        engine.need_scalar(hart, ready, b);
+        return engine.fold_address(hart, ready);
+    }
     return operate(op, Shape::scalar, a, b);
 }
 stamp scalar_op(operation op, const stamp& a, const stamp& b, const stamp& c) {

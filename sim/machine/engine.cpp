@@ -45,7 +45,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       l1_latency_(wide(config.l1.latency)), pairing_(config.core.pairing),
       overhead_(static_cast<std::uint32_t>(config.core.scalar_overhead * 1024.0 + 0.5)),
       registers_(config.core.vector_registers > 0), lane_gather_(config.core.gather == "lane"),
-      skip_idle_(config.core.skip_idle == "on"), hold_policy_(config.core.switch_policy == "stall"),
+      skip_idle_(config.core.skip_idle == "on"), folding_(config.core.address_folding == "on"),
+      buffered_(config.core.store_buffer > 0), hold_policy_(config.core.switch_policy == "stall"),
       in_order_(config.core.window == 1 || hold_policy_),
       prediction_(config.core.predictor == "none"        ? Prediction::none
                   : config.core.predictor == "perfect"   ? Prediction::perfect

@@ -1,6 +1,6 @@
 // One run: all state of the machine, and what the timing port does with it. Time advances in windows: every
 // tile runs to the window's end by itself; what left it is served then, in order of time. Not modelled:
-// instruction fetch, TLBs, a store buffer, order between a load and an earlier store to the same place inside
+// instruction fetch, TLBs, order between a load and an earlier store to the same place inside
 // an issue window, coherence beyond shared words, the network between tiles and memory.
 #pragma once
 
@@ -66,11 +66,18 @@ public:
         a.later(b);
         return a;
     }
-    void need_scalar(Hart& h, Due& ready, const stamp& s) const {
+    void need_scalar(Hart& h, Due& ready, const stamp& s) {
         if (is_ticket(s.last)) [[unlikely]]
-            h.pending[h.pending_count++] = {s.last, 0, false};
+            need_open(h, ready, s, 0);
         else
             ready.later(Due(s.last, static_cast<Cause>(s.cause)));
+    }
+    /// The address of a load or store: what was folded into it is there when its operands are.
+    void need_address(Hart& h, Due& ready, const stamp& s) {
+        if (is_folded(s)) [[unlikely]]
+            need_operands(h, ready, s);
+        else
+            need_scalar(h, ready, s);
     }
     void need_all(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         need_register(h, ready, s, span);
@@ -79,11 +86,13 @@ public:
     void need_lanes(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         need_register(h, ready, s, span);
         if (is_ticket(s.last)) [[unlikely]]
-            h.pending[h.pending_count++] = {s.last, span, false};
+            need_open(h, ready, s, span);
         else
             ready.later(Due(follow(s.first, s.last, span), static_cast<Cause>(s.cause)));
     }
     std::uint32_t vector_instructions() const { return pieces_; }
+    bool folds_addresses() const { return folding_; }
+    stamp fold_address(Hart& h, Due ready);
     std::uint32_t span(std::size_t kind) const { return spans_[kind]; }
     std::uint32_t span(std::size_t kind, std::uint64_t lanes) const {
         return skip_idle_ ? span_of(kind, masked_instructions(lanes)) : spans_[kind];
@@ -93,14 +102,31 @@ private:
     /// What the accesses of one operation bring together.
     struct Data {
         cycle first = ~cycle{0}, last = 0, granted = 0;
-        Cause from = Cause::l1;
-        std::uint32_t open = 0;           // how many are not answered yet
-        std::array<cycle, width> tickets; // of these; not initialised
-        Data() {}                         // NOLINT: leaves `tickets` alone
+        Cause from = Cause::l1, held = Cause::mshrs; // what brought the last; what `granted` waited for
+        std::uint32_t open = 0;                      // how many are not answered yet
+        std::array<cycle, width> tickets;            // of these; not initialised
+        Data() {}                                    // NOLINT: leaves `tickets` alone
     };
     static cycle follow(cycle first, cycle last, std::uint32_t span) {
         return std::max(first, last > span - 1 ? last - (span - 1) : 0);
     }
+    /// A folded address: `first` says when its operands are there (a cycle or a ticket), `last` is its number
+    /// below these bits.
+    static constexpr cycle fold_bits = ticket_bit | ticket_bit >> 1U;
+    static bool is_folded(const stamp& s) { return (s.last & fold_bits) == fold_bits; }
+    void need_open(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
+        if (is_folded(s))
+            unfold(h, ready, s);
+        else
+            h.pending[h.pending_count++] = {s.last, span, false};
+    }
+    void need_operands(Hart& h, Due& ready, const stamp& s) {
+        if (is_ticket(s.first))
+            h.pending[h.pending_count++] = {s.first, 0, false};
+        else
+            ready.later(Due(s.first, static_cast<Cause>(s.cause)));
+    }
+    void unfold(Hart& h, Due& ready, const stamp& s);
     void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         if (s.value != 0 && registers_) {
             RegisterFile::Use where = h.registers.use(s.value);
@@ -129,7 +155,7 @@ private:
     Issued issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
     Issued book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
     cycle book_together(Core& core, std::size_t kind, cycle t) const;
-    void finish_issue(Hart& h, Issued at, cycle granted);
+    void finish_issue(Hart& h, Issued at, cycle granted, Cause held = Cause::mshrs);
     void charge_overhead(Hart& h, Due ready);
     void count(Hart& h, std::uint32_t instructions, bool vector);
     void touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from, Data& data);
@@ -145,6 +171,25 @@ private:
     stamp loaded(Hart& h, const Data& data, bool vector);
     stamp loaded_ticket(Hart& h, const Data& data);
     void stored(Hart& h, const Data& data);
+    // --- a store buffer (store_path.cpp)
+    cycle drain_oldest(Hart& h);
+    void buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool whole, std::uint32_t slots,
+                      cycle& from, Data& all);
+    void buffer_bytes(Hart& h, std::uint64_t address, std::uint32_t bytes, cycle from, Data& data);
+    void buffer_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
+    void buffer_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
+                        cycle from, Data& data);
+    std::size_t buffered_at(Hart& h, std::uint64_t low, std::uint64_t high, cycle t);
+    cycle drained(Hart& h, std::size_t entry);
+    void load_around(Hart& h, std::uint64_t low, std::uint64_t high, std::uint32_t slots, cycle from,
+                     Data& data);
+    bool meets_stores(Hart& h, std::uint64_t low, std::uint64_t high, cycle from);
+    void load_bytes_around(Hart& h, std::uint64_t address, std::uint32_t bytes, cycle from, Data& data);
+    void load_lanes_around(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
+    cycle gather_after(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
+                       cycle from);
+    void read_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
+    void write_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
 
     void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
     void publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip);
@@ -194,7 +239,7 @@ private:
     std::array<bool, issue_kinds> shared_{};
     Pairing pairing_;
     std::uint32_t overhead_; // 1/1024 instructions
-    bool registers_, lane_gather_, skip_idle_, hold_policy_;
+    bool registers_, lane_gather_, skip_idle_, folding_, buffered_, hold_policy_;
     bool in_order_; // operations act when they are ready, not when the issue window reaches them
     enum class Prediction { counters, taken, not_taken, none, perfect } prediction_;
 

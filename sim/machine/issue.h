@@ -60,11 +60,11 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instruction
 
 /// Ends an operation: later ones count from it (rule 2). A miss that waited for an MSHR left the pipeline
 /// only then.
-inline void Engine::finish_issue(Hart& h, Issued at, cycle granted) {
+inline void Engine::finish_issue(Hart& h, Issued at, cycle granted, Cause held) {
     Due& slot = h.window[h.position];
     h.bound.later(slot);
     if (granted > at.last)
-        h.bound.later(Due(granted, Cause::mshrs));
+        h.bound.later(Due(granted, held));
     slot = Due(at.last, Cause::busy);
     h.issued = std::max(h.issued, at.last);
     if (++h.position == h.window.size())

@@ -138,6 +138,12 @@ void check_levels(const Report& r, const CacheCounters& l1, const CacheCounters&
     check_memory(r);
 }
 
+/// What store buffers did, where there are any.
+void check_buffers(const Report& r, const CacheCounters& l1) {
+    equal("entries of store buffers = L1 writes", r.core.buffered_stores,
+          r.config.core.store_buffer > 0 ? l1.writes : 0);
+}
+
 void check_use(const Report& r, const CacheCounters& l1) {
     for (const Limit& l : limits(r))
         at_most(l.resource, l.cycles, r.drained);
@@ -195,6 +201,7 @@ void check_laws(const Report& r) {
     check_touched(r);
     check_use(r, l1);
     check_stacks(r);
+    check_buffers(r, l1);
     if (exact(r.config))
         equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
 }

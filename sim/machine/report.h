@@ -18,8 +18,9 @@ struct CoreCounters {
     std::uint64_t scatters = 0, branches = 0, mispredicts = 0, atomics = 0, releases = 0, modifications = 0,
                   waits = 0, spins = 0, causality_waits = 0;
     std::uint64_t spill_stores = 0, spill_loads = 0, overhead_instructions = 0, switches = 0, pages = 0;
+    std::uint64_t buffered_stores = 0, forwarded_loads = 0, blocked_loads = 0, folded = 0, unfolded = 0;
 };
-inline constexpr std::array<CounterRow<CoreCounters>, 21> core_counters = {{
+inline constexpr std::array<CounterRow<CoreCounters>, 26> core_counters = {{
     {"vops", &CoreCounters::vops,
      "vocabulary operations: one operation of full logical width, or one scalar one"},
     {"vector_vops", &CoreCounters::vector_vops, "of these, vector operations"},
@@ -44,6 +45,12 @@ inline constexpr std::array<CounterRow<CoreCounters>, 21> core_counters = {{
      "instructions charged by core.scalar_overhead"},
     {"switches", &CoreCounters::switches, "changes of the thread that holds a core (policy stall)"},
     {"pages", &CoreCounters::pages, "requests for topology pages"},
+    {"buffered_stores", &CoreCounters::buffered_stores, "entries of store buffers that stores took"},
+    {"forwarded_loads", &CoreCounters::forwarded_loads, "machine loads that a store buffer answered"},
+    {"blocked_loads", &CoreCounters::blocked_loads,
+     "machine loads, and gathers, that waited for stores to leave the buffer"},
+    {"folded", &CoreCounters::folded, "address operations left to the loads and stores that use them"},
+    {"unfolded", &CoreCounters::unfolded, "of these, issued after all: something else used them"},
 }};
 
 using Stack = std::array<std::uint64_t, cause_count>;

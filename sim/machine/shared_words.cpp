@@ -270,7 +270,7 @@ void before_atomic(site, atomic kind, const void* p, const stamp& address, const
     sim::Engine& engine = *sim::running_engine;
     sim::Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
-    engine.need_scalar(hart, ready, address);
+    engine.need_address(hart, ready, address);
     engine.need_scalar(hart, ready, operands);
     engine.before_atomic(hart, kind, p, ready);
 }
@@ -282,7 +282,7 @@ stamp wait_while(site, const std::int32_t* p, std::int32_t value, const stamp& a
     sim::Engine& engine = *sim::running_engine;
     sim::Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
-    engine.need_scalar(hart, ready, address);
+    engine.need_address(hart, ready, address);
     engine.need_scalar(hart, ready, operand);
     return engine.wait_while(hart, p, value, ready);
 }

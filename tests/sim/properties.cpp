@@ -27,6 +27,8 @@ Config random_machine(std::mt19937& random) {
         std::array{"counters", "bimodal", "gshare", "taken", "not_taken", "none", "perfect"}[random() % 7];
     c.core.predictor_history = pick(0, 6);
     c.core.predictor_entries = power(6, 10);
+    c.core.address_folding = pick(0, 1) == 0 ? "off" : "on";
+    c.core.store_buffer = pick(0, 1) == 0 ? 0 : pick(1, 40);
     c.core.skip_idle = pick(0, 1) == 0 ? "off" : "on";
     c.core.pairing =
         std::array{"any", "any", "any | scalar.integer load store branch",
@@ -133,6 +135,20 @@ TEST(Properties, BrokenNumbersAreNoticed) {
     EXPECT_THROW(check_laws(r), std::logic_error);
     r = good;
     ++r.core.causality_waits;
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    r = good;
+    ++r.core.buffered_stores;
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    Config c = simple();
+    c.core.pairing = "any | scalar";
+    c.core.shared_classes = "add";
+    good = run(c, [](int) { scalar_op(operation::add, stamp{}); });
+    EXPECT_NO_THROW(check_laws(good));
+    r = good;
+    ++r.port_instructions[0][0];
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    r = good;
+    r.shared_unit_cycles[0] = r.drained + 1;
     EXPECT_THROW(check_laws(r), std::logic_error);
 }
 
