@@ -60,12 +60,12 @@ void Engine::settle_loads(Hart& h) {
 
 // --- which lines an operation touches
 
-/// One machine access.
+/// One machine access; across lines, one of each.
 inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from,
                           Data& data) {
-    std::uint32_t slots = (bytes + port_bytes_ - 1) / port_bytes_;
-    for (std::uint64_t line = address >> line_shift_; line <= (address + bytes - 1) >> line_shift_; ++line)
-        touch_line(h, line, write, 1, slots, from, data);
+    std::uint64_t high = address + bytes - 1;
+    for (std::uint64_t line = address >> line_shift_; line <= high >> line_shift_; ++line)
+        touch_line(h, line, write, 1, slots_in(line, address, high), from, data);
 }
 
 /// Consecutive lanes: an access for each machine instruction with a lane that is on, and each line it
@@ -73,8 +73,8 @@ inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, b
 void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from,
                          Data& data) {
     std::uint32_t bytes = piece_lanes_ * 4;
-    std::uint32_t slots = (std::min(bytes, line_bytes_) + port_bytes_ - 1) / port_bytes_;
     if (lanes == all_lanes && address % bytes == 0 && bytes <= line_bytes_) [[likely]] {
+        std::uint32_t slots = (bytes + port_bytes_ - 1) / port_bytes_;
         std::uint64_t end = address + width * 4;
         while (address < end) {
             std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
@@ -86,26 +86,26 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
     }
     std::uint64_t piece_mask = ~std::uint64_t{0} >> (64 - piece_lanes_);
     std::uint64_t run_line = 0;
-    std::uint32_t run = 0;
+    std::uint32_t run = 0, run_slots = 0;
     for (std::uint32_t i = 0; i < pieces_; ++i) {
         std::uint64_t on = lanes >> (i * piece_lanes_) & piece_mask;
         if (on == 0)
             continue;
         std::uint64_t piece = address + i * bytes;
-        std::uint64_t low = (piece + 4 * static_cast<unsigned>(std::countr_zero(on))) >> line_shift_;
-        std::uint64_t high =
-            (piece + 4 * static_cast<unsigned>(63 - std::countl_zero(on)) + 3) >> line_shift_;
-        for (std::uint64_t line = low; line <= high; ++line) {
+        std::uint64_t low = piece + 4 * static_cast<unsigned>(std::countr_zero(on));
+        std::uint64_t high = piece + 4 * static_cast<unsigned>(63 - std::countl_zero(on)) + 3;
+        for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line) {
             if (run != 0 && line != run_line) {
-                touch_line(h, run_line, write, run, run * slots, from, data);
-                run = 0;
+                touch_line(h, run_line, write, run, run_slots, from, data);
+                run = run_slots = 0;
             }
             run_line = line;
             ++run;
+            run_slots += slots_in(line, low, high);
         }
     }
     if (run != 0)
-        touch_line(h, run_line, write, run, run * slots, from, data);
+        touch_line(h, run_line, write, run, run_slots, from, data);
 }
 
 inline void Engine::read_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data) {

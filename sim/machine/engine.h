@@ -164,6 +164,12 @@ private:
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                        bool write, cycle from, Data& data);
+    /// Slots of a port that what lies of the bytes [low, high] in a line takes.
+    std::uint32_t slots_in(std::uint64_t line, std::uint64_t low, std::uint64_t high) const {
+        std::uint64_t first = std::max(low, line << line_shift_);
+        std::uint64_t last = std::min(high, (line << line_shift_) + line_bytes_ - 1);
+        return (static_cast<std::uint32_t>(last - first) + port_bytes_) / port_bytes_;
+    }
     std::uint32_t span_of(std::size_t kind, std::uint32_t instructions) const;
     std::uint32_t masked_instructions(std::uint64_t lanes) const;
     std::uint32_t indexed_instructions(std::uint64_t lanes) const;
@@ -173,16 +179,15 @@ private:
     void stored(Hart& h, const Data& data);
     // --- a store buffer (store_path.cpp)
     cycle drain_oldest(Hart& h);
-    void buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool whole, std::uint32_t slots,
-                      cycle& from, Data& all);
+    void buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool whole, cycle& from, Data& all,
+                      std::uint32_t slots = 0);
     void buffer_bytes(Hart& h, std::uint64_t address, std::uint32_t bytes, cycle from, Data& data);
     void buffer_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
     void buffer_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                         cycle from, Data& data);
     std::size_t buffered_at(Hart& h, std::uint64_t low, std::uint64_t high, cycle t);
     cycle drained(Hart& h, std::size_t entry);
-    void load_around(Hart& h, std::uint64_t low, std::uint64_t high, std::uint32_t slots, cycle from,
-                     Data& data);
+    void load_around(Hart& h, std::uint64_t low, std::uint64_t high, cycle from, Data& data);
     bool meets_stores(Hart& h, std::uint64_t low, std::uint64_t high, cycle from);
     void load_bytes_around(Hart& h, std::uint64_t address, std::uint32_t bytes, cycle from, Data& data);
     void load_lanes_around(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);

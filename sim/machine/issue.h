@@ -1,5 +1,5 @@
-// How an operation gets its place in time: the engine's hottest paths, for compute.cpp, access.cpp and
-// shared_words.cpp.
+// How an operation gets its place in time: the engine's hottest paths, for compute.cpp, access.cpp,
+// store_path.cpp and shared_words.cpp.
 #pragma once
 
 #include "sim/machine/engine.h"

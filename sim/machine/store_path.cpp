@@ -13,9 +13,9 @@ cycle Engine::drain_oldest(Hart& h) {
 }
 
 /// The bytes [low, high] of one machine store: an entry for each line, from `from` on, and its access of the
-/// L1.
-void Engine::buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool whole, std::uint32_t slots,
-                          cycle& from, Data& all) {
+/// L1, for which a port takes so many slots (0: as many as the bytes there need).
+void Engine::buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool whole, cycle& from, Data& all,
+                          std::uint32_t slots) {
     StoreBuffer& b = h.store_buffer;
     for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line) {
         cycle free = b.full() ? drain_oldest(h) : 0;
@@ -27,7 +27,7 @@ void Engine::buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool w
         from = std::max(from, h.bound.at()); // it may have waited for the answer
         Data data;
         cycle start = std::max(from, b.asked);
-        touch_line(h, line, true, 1, slots, start, data);
+        touch_line(h, line, true, 1, slots != 0 ? slots : slots_in(line, low, high), start, data);
         b.asked = start;
         std::uint64_t first = std::max(low, line << line_shift_);
         std::uint64_t last = std::min(high, ((line + 1) << line_shift_) - 1);
@@ -38,7 +38,7 @@ void Engine::buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool w
 }
 
 void Engine::buffer_bytes(Hart& h, std::uint64_t address, std::uint32_t bytes, cycle from, Data& data) {
-    buffer_store(h, address, address + bytes - 1, true, (bytes + port_bytes_ - 1) / port_bytes_, from, data);
+    buffer_store(h, address, address + bytes - 1, true, from, data);
 }
 
 namespace {
@@ -68,11 +68,10 @@ Bytes bytes_of(std::uint64_t on) {
 
 void Engine::buffer_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data) {
     std::uint32_t bytes = piece_lanes_ * 4;
-    std::uint32_t slots = (std::min(bytes, line_bytes_) + port_bytes_ - 1) / port_bytes_;
     each_piece(pieces_, piece_lanes_, lanes, [&](std::uint32_t i, std::uint64_t on) {
         Bytes b = bytes_of(on);
         std::uint64_t piece = address + i * bytes;
-        buffer_store(h, piece + b.low, piece + b.high, b.whole, slots, from, data);
+        buffer_store(h, piece + b.low, piece + b.high, b.whole, from, data);
     });
 }
 
@@ -100,7 +99,7 @@ void Engine::buffer_indexed(Hart& h, std::uint64_t address, const std::int32_t* 
                 one = false;
                 on &= ~(std::uint64_t{1} << lane);
             }
-            buffer_store(h, low, high, one, 1, from, data);
+            buffer_store(h, low, high, one, from, data, 1);
         }
     });
 }
@@ -140,14 +139,14 @@ cycle Engine::drained(Hart& h, std::size_t entry) {
 
 /// One machine load of the bytes [low, high]: forwarded from the youngest store that has any of them if that
 /// wrote all of them, else from the L1 when it has ended.
-void Engine::load_around(Hart& h, std::uint64_t low, std::uint64_t high, std::uint32_t slots, cycle from,
-                         Data& data) {
+void Engine::load_around(Hart& h, std::uint64_t low, std::uint64_t high, cycle from, Data& data) {
     from = std::max(from, h.bound.at()); // as the piece before may have waited
     std::size_t entry = buffered_at(h, low, high, from);
     if (entry != h.store_buffer.size()) {
         StoreBuffer::Entry& e = h.store_buffer.entry(entry);
         if (e.whole && e.low <= low && high <= e.high) { // it has asked the L1 as well
             ++h.counters.forwarded_loads;
+            std::uint32_t slots = slots_in(low >> line_shift_, low, high);
             h.core->l1.counters().busy_cycles += slots;
             cycle at = (h.core->ports.take(from << port_shift_, slots).last >> port_shift_) + l1_latency_;
             data.first = std::min(data.first, at);
@@ -162,7 +161,7 @@ void Engine::load_around(Hart& h, std::uint64_t low, std::uint64_t high, std::ui
         from = std::max({from, ended, h.bound.at()});
     }
     for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line)
-        touch_line(h, line, false, 1, slots, from, data);
+        touch_line(h, line, false, 1, slots_in(line, low, high), from, data);
 }
 
 /// Whether a store that may not have ended at `from` wrote any of the bytes.
@@ -171,16 +170,15 @@ bool Engine::meets_stores(Hart& h, std::uint64_t low, std::uint64_t high, cycle 
 }
 
 void Engine::load_bytes_around(Hart& h, std::uint64_t address, std::uint32_t bytes, cycle from, Data& data) {
-    load_around(h, address, address + bytes - 1, (bytes + port_bytes_ - 1) / port_bytes_, from, data);
+    load_around(h, address, address + bytes - 1, from, data);
 }
 
 void Engine::load_lanes_around(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data) {
     std::uint32_t bytes = piece_lanes_ * 4;
-    std::uint32_t slots = (std::min(bytes, line_bytes_) + port_bytes_ - 1) / port_bytes_;
     each_piece(pieces_, piece_lanes_, lanes, [&](std::uint32_t i, std::uint64_t on) {
         Bytes b = bytes_of(on);
         std::uint64_t piece = address + i * bytes;
-        load_around(h, piece + b.low, piece + b.high, slots, from, data);
+        load_around(h, piece + b.low, piece + b.high, from, data);
     });
 }
 

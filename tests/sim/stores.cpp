@@ -157,6 +157,31 @@ TEST(StoreBuffer, TheYoungestStoreCounts) {
     EXPECT_EQ(f.report.l1_total().reads, 1U);
 }
 
+// A store that hits has not ended before the one in front of it, which misses.
+TEST(StoreBuffer, LoadsSeeEntriesEndInOrder) {
+    auto behind_a_miss = [](bool part) {
+        return [part](std::byte* base) {
+            warm(base);
+            store(here, base + 4096, 4, stamp{}, stamp{});
+            store(here, base, 4, stamp{}, stamp{});
+            stamp later = scalar_op(operation::divide, stamp{}); // 16 cycles
+            return load(here, base, part ? 8 : 4, later);
+        };
+    };
+    auto the_miss = [](std::byte* base) {
+        warm(base);
+        store(here, base + 4096, 4, stamp{}, stamp{});
+        scalar_op(operation::integer, stamp{});
+        stamp later = scalar_op(operation::divide, stamp{});
+        return load(here, base + 4096, 4, later);
+    };
+    Forwarded f = forwarded(buffered(8), behind_a_miss(false));
+    EXPECT_EQ(f.report.core.forwarded_loads, 1U);
+    EXPECT_EQ(f.latency, l1_latency);
+    EXPECT_EQ(forwarded(buffered(8), behind_a_miss(true)).latency,
+              forwarded(buffered(0), the_miss).latency + l1_latency);
+}
+
 TEST(StoreBuffer, RowsAreForwardedPieceByPiece) {
     Config c = buffered(64);
     c.core.lanes = 4;
@@ -216,6 +241,25 @@ TEST(Split, AccessesTakeBothLines) {
         EXPECT_EQ(r.l1_total().reads, u(2 + n * (split ? 2 : 1)));
         EXPECT_EQ(r.l1_total().busy_cycles, u(2 + n * (split ? 2 : 1)));
     }
+}
+
+// Bytes take slots of a port in the line where they lie.
+TEST(Split, PortsMoveEachByteOnce) {
+    for (integer entries : {0, 64})
+        for (int offset : {0, 32, 60}) {
+            Config c = buffered(entries);
+            c.core.lanes = 16;
+            c.l1.port_bytes = 4;
+            auto pieces = u(ISA_WIDTH / 16);
+            Report r = run_on(c, [&](std::byte* base, int) {
+                load_vector(here, base + offset, all_lanes, stamp{}, stamp{});
+                store_vector(here, base + 4096 + offset, all_lanes, stamp{}, stamp{}, stamp{});
+                load(here, base + 8192 + offset, 8, stamp{});
+            });
+            EXPECT_EQ(r.l1_total().busy_cycles, 2 * pieces * 16 + 2) << offset;
+            EXPECT_EQ(r.l1_total().reads + r.l1_total().writes,
+                      2 * pieces * (offset == 0 ? 1U : 2U) + (offset == 60 ? 2U : 1U));
+        }
 }
 
 // --- folded addresses
