@@ -53,13 +53,16 @@ struct CoherenceConfig {
 struct MemoryConfig {
     std::string preset;
     integer clock_ps = 0, channels = 0, ranks = 0, bank_groups = 0, banks = 0, rows = 0, row_bytes = 0;
-    integer bus_bytes = 0, burst_length = 0, command_buses = 0;
+    integer bus_bytes = 0, burst_length = 0, transfers_per_clock = 0, command_buses = 0;
     integer tRCD = 0, tRP = 0, tRAS = 0, tRC = 0, tCL = 0, tCWL = 0, tCCD_S = 0, tCCD_L = 0, tRRD_S = 0;
     integer tRRD_L = 0, tFAW = 0, tRTP = 0, tWR = 0, tWTR_S = 0, tWTR_L = 0, tRTW = 0, tRTRS = 0;
-    integer tREFI = 0, tRFC = 0;
-    integer write_queue = 0, write_high = 0, write_low = 0;
+    integer tREFI = 0, tRFC = 0, tRFCpb = 0, tRREFD = 0, refresh_postponed = 0;
+    integer read_queue = 0, write_queue = 0, write_high = 0, write_low = 0, age_cap = 0, page_timeout = 0;
     integer controller_cycles = 0;
-    std::string page_policy, mapping, bank_xor;
+    std::string scheduler, refresh, page_policy, mapping, bank_xor;
+
+    /// Of the data bus, for one burst.
+    integer burst_clocks() const { return burst_length / transfers_per_clock; }
 };
 
 /// How the renderer uses the machine.

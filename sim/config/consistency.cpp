@@ -81,6 +81,10 @@ void check_memory(const std::string& what, const Config& config) {
              fmt::format("a memory burst is {} bytes (memory.bus_bytes x memory.burst_length), more than "
                          "l2.line_bytes, {}; lower either",
                          burst, config.l2.line_bytes));
+    if (c.burst_length < c.transfers_per_clock)
+        fail(what, fmt::format("memory.burst_length is {}, less than memory.transfers_per_clock, {}; a burst "
+                               "takes a clock at least: raise it",
+                               c.burst_length, c.transfers_per_clock));
     if (c.row_bytes < config.l2.line_bytes)
         fail(what,
              fmt::format("memory.row_bytes is {}, less than l2.line_bytes, {}; a line must lie in one row",
@@ -95,7 +99,20 @@ void check_memory(const std::string& what, const Config& config) {
     if (c.write_low >= c.write_high)
         fail(what, fmt::format("memory.write_low is {}, not less than memory.write_high, {}; lower it",
                                c.write_low, c.write_high));
+    if (c.refresh == "per-bank" && c.refresh_postponed != 0)
+        fail(what, fmt::format("memory.refresh_postponed is {}, but refreshes of single banks are not put "
+                               "off; make it 0 or memory.refresh all-bank",
+                               c.refresh_postponed));
     DramTiming t(c);
+    integer turns = c.ranks * c.bank_groups * c.banks;
+    auto apart = std::max({c.tRREFD, c.tRRD_L, c.tRP}) + 2;
+    if (c.refresh == "per-bank" && c.tREFI != 0 &&
+        (c.tREFI / turns < apart || c.tREFI < c.tRFCpb + static_cast<integer>(t.around_refresh()) + 64))
+        fail(what,
+             fmt::format("memory.tREFI is {}, too short to refresh {} banks in turn; raise "
+                         "it to {} or more",
+                         c.tREFI, turns,
+                         std::max(turns * apart, c.tRFCpb + static_cast<integer>(t.around_refresh()) + 64)));
     auto needed = static_cast<integer>(t.blocked_by_refresh()) + 64;
     if (c.tREFI != 0 && c.tREFI / c.ranks < needed)
         fail(what,

@@ -6,13 +6,20 @@ namespace sim {
 namespace {
 
 /// Queues and policies are of the controller; no data sheet gives them. Assumed: 64 entries, as gem5's
-/// controller has, drained in long batches.
+/// controller has, drained in long batches; an age that only what is starved reaches.
 MemoryConfig controller() {
     MemoryConfig c;
+    c.scheduler = "fr-fcfs";
+    c.age_cap = 5000;
+    c.read_queue = 64;
     c.write_queue = 64;
     c.write_high = 56;
     c.write_low = 8;
     c.page_policy = "open";
+    c.page_timeout = 200;
+    c.refresh = "all-bank";
+    c.refresh_postponed = 0;
+    c.transfers_per_clock = 2;
     c.bank_xor = "off";
     c.command_buses = 1;
     return c;
@@ -47,6 +54,8 @@ MemoryConfig ddr3_1600k() {
     c.tRTRS = 1;             // of the board; DRAMsim3's value
     c.tREFI = 6240;          // 7.8 us
     c.tRFC = 128;            // 160 ns, 2 Gbit
+    c.tRFCpb = 128;          // DDR3 refreshes all banks: unused
+    c.tRREFD = 5;            // unused
     c.mapping = "row:rank:bank:group:column:channel";
     return c;
 }
@@ -84,6 +93,8 @@ MemoryConfig ddr4_2400r() {
     c.tRTRS = 1;    // of the board; DRAMsim3's value
     c.tREFI = 9363; // 7.8 us
     c.tRFC = 421;   // 350 ns, 8 Gbit
+    c.tRFCpb = 421; // DDR4 refreshes all banks: unused
+    c.tRREFD = 6;   // unused
     c.mapping = "row:rank:bank:column:channel:group";
     return c;
 }
@@ -123,6 +134,8 @@ MemoryConfig hbm2() {
     c.tRTRS = 1;    // one rank: unused
     c.tREFI = 3900; // 3.9 us
     c.tRFC = 260;   // 260 ns
+    c.tRFCpb = 160; // 160 ns; DRAMsim3's tRFCb of HBM2 at 4 Gbit
+    c.tRREFD = 8;   // 8 ns
     c.mapping = "row:rank:bank:column:group:channel:column.1";
     return c;
 }

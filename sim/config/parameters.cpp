@@ -203,8 +203,7 @@ void add_memory(Table& t) {
     auto& preset = std::get<ChoiceKind>(t.rows.back().kind);
     preset.sets = apply_memory_preset;
     preset.sets_key = memory_preset_sets;
-    t.add("memory.clock_ps", s, &C::clock_ps, "ps", d.clock_ps, 50, 1000000,
-          "period of the command clock; data moves at twice its rate");
+    t.add("memory.clock_ps", s, &C::clock_ps, "ps", d.clock_ps, 50, 1000000, "period of the command clock");
     t.add("memory.channels", s, &C::channels, "", d.channels, 1, 256,
           "independent channels (HBM: pseudo channels)", true);
     t.add("memory.ranks", s, &C::ranks, "", d.ranks, 1, 8, "ranks of a channel", true);
@@ -217,6 +216,8 @@ void add_memory(Table& t) {
           true);
     t.add("memory.burst_length", s, &C::burst_length, "transfers", d.burst_length, 2, 64,
           "transfers of one access", true);
+    t.add("memory.transfers_per_clock", s, &C::transfers_per_clock, "", d.transfers_per_clock, 1, 16,
+          "data transfers of a pin in a clock: 2 of DDR, 4 or 8 where data have a faster clock", true);
     t.add("memory.command_buses", s, &C::command_buses, "", d.command_buses, 1, 2,
           "2: one for rows and one for columns; each takes one command a clock");
     struct Timing {
@@ -245,11 +246,28 @@ void add_memory(Table& t) {
              {"tRTRS", &C::tRTRS, 0, 64, "the bus idle from one rank's data to another's"},
              {"tREFI", &C::tREFI, 0, 1000000, "between refreshes, which close all rows of a rank; 0: none"},
              {"tRFC", &C::tRFC, 1, 100000, "a refresh blocks a rank"},
+             {"tRFCpb", &C::tRFCpb, 1, 100000, "a refresh of one bank blocks it"},
+             {"tRREFD", &C::tRREFD, 1, 1000, "refresh of one bank to activate or refresh of another"},
          })
         t.add(fmt::format("memory.{}", p.name), s, p.member, "clocks", d.*p.member, p.least, p.most,
               p.meaning);
-    t.add("memory.page_policy", s, &C::page_policy, {"open", "closed"},
-          "open: a row stays open until another is wanted; closed: it closes after each access");
+    t.add(
+        "memory.refresh", s, &C::refresh, {"all-bank", "per-bank"},
+        "of all banks of a rank at once or of one after the other (queued controller; else always all-bank)");
+    t.add("memory.refresh_postponed", s, &C::refresh_postponed, "", d.refresh_postponed, 0, 8,
+          "refreshes that a rank with requests may put off (queued controller, all-bank)");
+    t.add(
+        "memory.page_policy", s, &C::page_policy, {"open", "closed", "timeout"},
+        "open: a row stays open until another is wanted; closed: it closes after each access; timeout: after "
+        "page_timeout");
+    t.add("memory.page_timeout", s, &C::page_timeout, "clocks", d.page_timeout, 1, 1000000,
+          "from a row's last access until it is closed, with page_policy = timeout");
+    t.add("memory.scheduler", s, &C::scheduler, {"fr-fcfs", "fcfs"},
+          "the oldest of an open row before others, or in each bank the oldest (queued controller)");
+    t.add("memory.age_cap", s, &C::age_cap, "clocks", d.age_cap, 0, 1000000,
+          "no younger burst goes before one that has waited longer; 0: no end (queued controller)");
+    t.add("memory.read_queue", s, &C::read_queue, "bursts", d.read_queue, 1, 4096,
+          "read bursts that a channel's controller holds (queued controller)");
     t.add("memory.write_queue", s, &C::write_queue, "bursts", d.write_queue, 1, 4096,
           "written bursts that a channel's controller holds");
     t.add("memory.write_high", s, &C::write_high, "bursts", d.write_high, 1, 4096,

@@ -13,7 +13,7 @@ std::array<Bandwidth, 3> bandwidths(const Report& r) {
     double bank_cycles = real((c.l1.line_bytes + c.l2.bank_bytes - 1) / c.l2.bank_bytes);
     double ports = real(c.all_cores() * c.l1.ports * c.l1.port_bytes);
     double banks = real(c.chip.tiles * c.l2.banks * c.l1.line_bytes) / bank_cycles;
-    double buses = real(c.memory.channels * c.memory.bus_bytes * 2);
+    double buses = real(c.memory.channels * c.memory.bus_bytes * c.memory.transfers_per_clock);
     return {{{"L1", real(r.l1_total().busy_cycles) * real(c.l1.port_bytes) / ns, ports * core_clock},
              {"L2", real(r.l2_total().reads + r.l2_total().writes) * real(c.l1.line_bytes) / ns,
               banks * core_clock},

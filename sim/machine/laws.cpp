@@ -75,7 +75,7 @@ void check_commands(const MemoryConfig& c, const MemoryCounters& m, std::uint64_
     auto wide = [](integer x) { return static_cast<std::uint64_t>(x); };
     std::uint64_t bursts = m.read_bursts + m.write_bursts;
     equal("row hits + empties + conflicts = bursts", m.row_hits + m.row_empties + m.row_conflicts, bursts);
-    equal("bus clocks = bursts x clocks of one", m.busy_clocks, bursts * wide(c.burst_length / 2));
+    equal("bus clocks = bursts x clocks of one", m.busy_clocks, bursts * wide(c.burst_clocks()));
     equal("activates = row empties + conflicts + reopened", m.activates,
           m.row_empties + m.row_conflicts + m.reopened);
     at_most("row conflicts <= precharges", m.row_conflicts, m.precharges);
@@ -83,7 +83,7 @@ void check_commands(const MemoryConfig& c, const MemoryCounters& m, std::uint64_
     at_most("activates <= 4 a rank and tFAW", m.activates, 4 * ranks * (m.last_clock / wide(c.tFAW) + 1));
     at_most("clocks queued <= clocks of reads", m.queue_clocks, m.read_clocks);
     at_most("read bursts take tCL and their transfer at least",
-            m.read_bursts * wide(c.tCL + c.burst_length / 2), m.read_clocks);
+            m.read_bursts * wide(c.tCL + c.burst_clocks()), m.read_clocks);
 }
 
 /// Ranks take turns; each is refreshed every tREFI until the channel's last burst.

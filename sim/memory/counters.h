@@ -55,7 +55,7 @@ inline constexpr std::array<CounterRow<MemoryCounters>, 20> memory_counters = {{
     {"row_empties", &MemoryCounters::row_empties, "bursts whose bank had no open row"},
     {"row_conflicts", &MemoryCounters::row_conflicts, "bursts whose bank had another row open"},
     {"activates", &MemoryCounters::activates, "rows opened"},
-    {"reopened", &MemoryCounters::reopened, "of these, once more for a write that a refresh has overtaken"},
+    {"reopened", &MemoryCounters::reopened, "of these, once more for a burst whose row was closed before it was served"},
     {"precharges", &MemoryCounters::precharges, "rows closed, those closed by a refresh not counted"},
     {"refreshes", &MemoryCounters::refreshes, "refreshes of a rank, until the last burst"},
     {"batches", &MemoryCounters::batches, "times that queued writes were sent (with a channel's first rank)"},

@@ -9,6 +9,7 @@ DramChannel::DramChannel(std::uint32_t number, const MemoryConfig& c, const Dram
     : t_(timing), slots_(c, timing, disorder), number_(number),
       groups_(static_cast<std::uint32_t>(c.bank_groups)),
       banks_per_group_(static_cast<std::uint32_t>(c.banks)), closed_page_(c.page_policy == "closed"),
+      page_timeout_(c.page_policy == "timeout" ? static_cast<Clock>(c.page_timeout) : never),
       capacity_(static_cast<std::size_t>(c.write_queue)), high_(static_cast<std::size_t>(c.write_high)),
       low_(static_cast<std::size_t>(c.write_low)),
       banks_(static_cast<std::size_t>(c.ranks * c.bank_groups * c.banks)),
@@ -31,6 +32,24 @@ Clock DramChannel::before_closing(const Bank& bank, const DramPlace& p, Column c
             return column;
     }
     return never;
+}
+
+/// Page policy "timeout": found out when the bank is wanted again.
+void DramChannel::close_if_unused(Bank& bank, const DramPlace& p, Clock now) {
+    if (bank.now.row == no_row || bank.now.close != never || now <= bank.used + page_timeout_)
+        return;
+    Clock t = std::max(bank.precharge_from, bank.used + page_timeout_);
+    if (t > now)
+        return;
+    if (t + t_.tRP > bank.refresh) {
+        bank.now.close = bank.refresh - t_.tRP;
+        return;
+    }
+    DramPlace closed = p;
+    closed.row = bank.now.row;
+    log(DramCommand::Kind::precharge, t, closed, true);
+    ++counters_[p.rank].precharges;
+    bank.now.close = t;
 }
 
 /// Closes what is open; returns the clock from which the next row may be opened.
@@ -59,6 +78,8 @@ Clock DramChannel::close_row(Bank& bank, const DramPlace& p, Clock now, Row& row
 /// commands are issued `now` or later.
 DramChannel::Sent DramChannel::open_row(const DramPlace& p, Column c, Clock now, Clock from) {
     Bank& bank = bank_of(p);
+    if (page_timeout_ != never)
+        close_if_unused(bank, p, now);
     Clock after = t_.precharge[at(c)] + t_.tRP; // until a refresh may come
     if (Clock column = before_closing(bank, p, c, now, from); column != never)
         return {column, column, Row::hit, true};
@@ -85,7 +106,7 @@ DramChannel::Sent DramChannel::open_row(const DramPlace& p, Column c, Clock now,
     ++counters_[p.rank].activates;
     bank.before = bank.now;
     bank.now = {p.row, s.ready, never};
-    bank.activated = opened;
+    bank.activated = bank.used = opened;
     bank.precharge_from = opened + t_.tRAS;
     return s;
 }
@@ -102,6 +123,7 @@ void DramChannel::send(const DramPlace& p, Column c, const Sent& s, bool last) {
         return;
     Bank& bank = bank_of(p);
     bank.precharge_from = std::max(bank.precharge_from, s.column + t_.precharge[at(c)]);
+    bank.used = std::max(bank.used, s.column);
     if (closed_page_ && last) {
         bank.now.close = bank.precharge_from;
         ++n.precharges;

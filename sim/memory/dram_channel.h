@@ -3,7 +3,8 @@
 // first-ready queue), and every command takes the first clock that DramSlots allows, gaps before later ones
 // included. Writes wait in a queue; when it is filled to the high watermark, the oldest and those for the
 // same rows are sent in one batch, down to the low one. Reads of a burst that is still queued are answered
-// from the queue. A refresh comes at its time, neither early nor late, and closes the rows of its rank.
+// from the queue. A refresh comes at its time, neither early nor late, and closes the rows of its rank. A row
+// that is closed after a timeout takes no clock of the command bus for it.
 #pragma once
 
 #include "sim/memory/counters.h"
@@ -45,6 +46,7 @@ private:
         Opening now, before;
         Clock activated = 0;
         Clock precharge_from = 0;
+        Clock used = 0;                         // the last column command
         Clock refresh = 0;                      // the first after the activation: closes what is open
         std::uint64_t batch = 0, batch_row = 0; // the last batch of writes here, and its row
     };
@@ -65,6 +67,7 @@ private:
         return banks_[(p.rank * groups_ + p.group) * banks_per_group_ + p.bank];
     }
     Clock before_closing(const Bank& bank, const DramPlace& p, Column c, Clock now, Clock from);
+    void close_if_unused(Bank& bank, const DramPlace& p, Clock now);
     Clock close_row(Bank& bank, const DramPlace& p, Clock now, Row& row);
     Sent open_row(const DramPlace& place, Column c, Clock now, Clock from);
     void send(const DramPlace& place, Column c, const Sent& s, bool last);
@@ -75,6 +78,7 @@ private:
     DramSlots slots_;
     std::uint32_t number_, groups_, banks_per_group_;
     bool closed_page_;
+    Clock page_timeout_; // never: no limit
     std::size_t capacity_, high_, low_;
     std::vector<Bank> banks_;
     std::vector<Write> queue_; // in order of arrival

@@ -6,7 +6,7 @@
 namespace sim {
 
 struct DramCommand {
-    enum class Kind { activate, precharge, precharge_all, refresh, read, write };
+    enum class Kind { activate, precharge, precharge_all, refresh, refresh_bank, read, write };
     Kind kind;
     Clock at;
     std::uint32_t channel, rank, group, bank;

@@ -82,7 +82,7 @@ void Memory::set_log(std::vector<DramCommand>* log) {
 
 std::uint64_t Memory::shortest_read(const Config& config) {
     const MemoryConfig& c = config.memory;
-    integer clocks = c.tCL + c.burst_length / 2;
+    integer clocks = c.tCL + c.burst_clocks();
     return wide(c.controller_cycles + clocks * c.clock_ps / config.chip.clock_ps);
 }
 

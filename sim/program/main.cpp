@@ -4,6 +4,7 @@
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
 #include "sim/machine/machine.h"
+#include "sim/program/dram_table.h"
 #include "sim/program/run_command.h"
 
 #include <fmt/format.h>
@@ -30,9 +31,13 @@ int main(int argc, char** argv) {
     CLI::App& print =
         *app.add_subcommand("print-config", "print a machine's complete, resolved configuration");
     machine.add_to(print);
+    sim::DramTable dram;
+    dram.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
-            return print.parsed() ? print_config(machine) : run.run();
+            if (print.parsed())
+                return print_config(machine);
+            return app.got_subcommand("dram") ? dram.run() : run.run();
         } catch (const sim::ConfigError& e) {
             throw razor::UserError(e.what());
         } catch (const std::bad_alloc&) {

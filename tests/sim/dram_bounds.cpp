@@ -35,7 +35,7 @@ double idle_latency(const Config& c, double gap) {
     const MemoryConfig& m = c.memory;
     double banks = d(m.channels * m.ranks * m.bank_groups * m.banks);
     double line = d(m.tRCD + m.tCL) + std::max(64 / d(m.bus_bytes * m.burst_length) - 1, 0.0) * d(m.tCCD_L) +
-                  d(m.burst_length) / 2;
+                  d(m.burst_clocks());
     double used = (1 - std::exp(-(d(m.tREFI - m.tRFC)) / gap / banks)) / (d(m.tREFI - m.tRFC) / gap / banks);
     double open = (1 - used) * awake(c);
     // Also waits what comes too late to be read before the refresh: tRC, or its own commands.
@@ -112,7 +112,7 @@ TEST(DramBounds, RowConflictsOfOneBankAreTheRowCycleApart) {
         c.l1.line_bytes = c.l2.line_bytes;
         Outcome r = closed_loop(c, 8, 1000, rows_of_one_bank(c, 1));
         double row_cycle = d(std::max(c.memory.tRC, c.memory.tRCD + c.memory.tRTP + c.memory.tRP));
-        EXPECT_EQ(r.clocks, 999 * row_cycle + d(c.memory.tRCD + c.memory.tCL + c.memory.burst_length / 2));
+        EXPECT_EQ(r.clocks, 999 * row_cycle + d(c.memory.tRCD + c.memory.tCL + c.memory.burst_clocks()));
         EXPECT_EQ(r.counters.row_conflicts, 999U);
     }
 }
@@ -120,8 +120,7 @@ TEST(DramBounds, RowConflictsOfOneBankAreTheRowCycleApart) {
 TEST(DramBounds, OneBankGroupIsLimitedByItsColumns) {
     Config c = memory_of("ddr4-2400r", no_refresh);
     Outcome r = closed_loop(c, 16, 120, stream(64 * 4)); // one row
-    EXPECT_EQ(r.clocks,
-              119 * d(c.memory.tCCD_L) + d(c.memory.tRCD + c.memory.tCL + c.memory.burst_length / 2));
+    EXPECT_EQ(r.clocks, 119 * d(c.memory.tCCD_L) + d(c.memory.tRCD + c.memory.tCL + c.memory.burst_clocks()));
 }
 
 // Two ranks in turn, row hits: each burst pays the switch.

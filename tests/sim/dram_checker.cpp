@@ -55,21 +55,28 @@ private:
             columns(a, b, gap);
         if (a.kind == Kind::activate && b.kind == Kind::activate)
             rule(a.group == b.group ? "tRRD_L" : "tRRD_S", gap >= (a.group == b.group ? c.tRRD_L : c.tRRD_S));
-        if (a.kind == Kind::refresh && b.kind != Kind::refresh)
+        bool same = a.group == b.group && a.bank == b.bank;
+        if (a.kind == Kind::refresh)
             rule("tRFC", gap >= c.tRFC);
+        if (a.kind == Kind::refresh_bank && same)
+            rule("tRFCpb", gap >= c.tRFCpb);
+        if (a.kind == Kind::refresh_bank && !same &&
+            (b.kind == Kind::activate || b.kind == Kind::refresh_bank))
+            rule("tRREFD", gap >= c.tRREFD);
+        if (a.kind == Kind::activate && b.kind == Kind::refresh_bank && !same)
+            rule("tRRD before refresh", gap >= (a.group == b.group ? c.tRRD_L : c.tRRD_S));
         if (b.kind == Kind::refresh) {
             if (closes(a))
                 rule("tRP", gap >= c.tRP);
             if (a.kind == Kind::activate)
                 rule("tRC", gap >= c.tRC);
         }
-        if ((a.group == b.group && a.bank == b.bank) || a.kind == Kind::precharge_all ||
-            b.kind == Kind::precharge_all)
+        if (same || a.kind == Kind::precharge_all || b.kind == Kind::precharge_all)
             same_bank(a, b, gap);
     }
 
     void buses(const DramCommand& a, const DramCommand& b) {
-        integer idle = data(b) - data(a) - c.burst_length / 2;
+        integer idle = data(b) - data(a) - c.burst_clocks();
         rule("data bus", idle >= 0);
         if (a.rank != b.rank)
             rule("tRTRS", idle >= c.tRTRS);
@@ -83,7 +90,7 @@ private:
             rule(near ? "tCCD_L" : "tCCD_S", gap >= (near ? c.tCCD_L : c.tCCD_S));
         if (a.kind == Kind::write && b.kind == Kind::read)
             rule(near ? "tWTR_L" : "tWTR_S",
-                 time(b) >= data(a) + c.burst_length / 2 + (near ? c.tWTR_L : c.tWTR_S));
+                 time(b) >= data(a) + c.burst_clocks() + (near ? c.tWTR_L : c.tWTR_S));
     }
 
     void same_bank(const DramCommand& a, const DramCommand& b, integer gap) {
@@ -94,13 +101,17 @@ private:
                 rule("tRCD", gap >= c.tRCD);
             if (closes(b))
                 rule("tRAS", gap >= c.tRAS);
+            if (b.kind == Kind::refresh_bank)
+                rule("tRC", gap >= c.tRC);
         }
+        if (closes(a) && b.kind == Kind::refresh_bank)
+            rule("tRP", gap >= c.tRP);
         if (closes(a) && b.kind == Kind::activate)
             rule("tRP", gap >= c.tRP);
         if (a.kind == Kind::read && closes(b))
             rule("tRTP", gap >= c.tRTP);
         if (a.kind == Kind::write && closes(b))
-            rule("tWR", time(b) >= data(a) + c.burst_length / 2 + c.tWR);
+            rule("tWR", time(b) >= data(a) + c.burst_clocks() + c.tWR);
     }
 
     /// Which row each bank has open.
@@ -120,6 +131,9 @@ private:
         case Kind::refresh:
             rule("state", open.lower_bound(first) == open.lower_bound(end));
             break;
+        case Kind::refresh_bank:
+            rule("state", open.count(bank) == 0);
+            break;
         case Kind::read:
         case Kind::write:
             rule("state", open.count(bank) == 1 && open.at(bank) == x.row);
@@ -138,12 +152,16 @@ private:
     }
 
     void refreshes(const DramCommand& x) {
-        if (x.kind != Kind::refresh)
+        if (x.kind != Kind::refresh && x.kind != Kind::refresh_bank)
             return;
-        integer& last = refreshed[{x.channel, x.rank}];
-        integer due = last == 0 ? c.tREFI + c.tREFI * static_cast<integer>(x.rank) / c.ranks : last + c.tREFI;
-        rule("refresh time", time(x) == due);
-        last = time(x);
+        integer turns = x.kind == Kind::refresh ? 1 : c.bank_groups * c.banks;
+        integer number = refreshed[{x.channel, x.rank}]++;
+        if (x.kind == Kind::refresh_bank)
+            rule("refresh order", x.group * c.banks + x.bank == number % turns);
+        integer due = c.tREFI + c.tREFI * (number * c.ranks + x.rank) / (turns * c.ranks);
+        // One that is put off may meet other ranks' commands on the bus.
+        integer latest = c.refresh_postponed == 0 ? due : due + c.refresh_postponed * c.tREFI + 2 * c.ranks;
+        rule("refresh time", time(x) >= due && time(x) <= latest);
     }
 
     const MemoryConfig& c;

@@ -1,7 +1,9 @@
 // Every command of random traffic keeps every rule of the data sheet, and the checker that says so notices
 // each rule when it is broken.
+#include "sim/memory/dram_load.h"
 #include "tests/sim/dram_checker.h"
 #include "tests/sim/dram_traffic.h"
+#include "tests/sim/machines.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +14,7 @@ using M = MemoryConfig;
 constexpr std::uint64_t far = std::uint64_t{1} << 24; // lines
 
 /// Random and sequential parts, few rows and many, bursts of writes.
-Source mixed(unsigned seed) {
+DramStream mixed(unsigned seed) {
     return [random = std::mt19937_64(seed), next = std::uint64_t{0}, left = 0U, kind = 0U,
             spread = far]() mutable {
         if (left == 0) {
@@ -23,7 +25,7 @@ Source mixed(unsigned seed) {
         }
         --left;
         next = kind < 2 ? next + 1 : random() % spread;
-        return Request{next * 64, kind == 0 || kind == 3 || (kind == 4 && random() % 2 == 0)};
+        return DramRequest{next * 64, kind == 0 || kind == 3 || (kind == 4 && random() % 2 == 0)};
     };
 }
 
@@ -39,7 +41,8 @@ Config variant(const std::string& preset, unsigned seed) {
     return memory_of(preset, [&](M& m) {
         m.channels = integer{1} << random() % 3;
         m.ranks = integer{1} << random() % 3;
-        m.page_policy = random() % 2 == 0 ? "open" : "closed";
+        m.page_policy = std::array{"open", "closed", "timeout"}[random() % 3];
+        m.page_timeout = 1 + random() % 300;
         m.bank_xor = random() % 2 == 0 ? "on" : "off";
         m.write_queue = 4 + random() % 60;
         m.write_high = 1 + random() % static_cast<unsigned>(m.write_queue);
@@ -69,6 +72,55 @@ TEST(DramRules, RandomTrafficKeepsThem) {
             EXPECT_EQ(bursts, r.counters.read_bursts + r.counters.write_bursts);
             EXPECT_EQ(activates, r.counters.activates);
         }
+}
+
+/// What only the controller with queues heeds.
+Config queued_variant(const std::string& preset, unsigned seed) {
+    Config c = variant(preset, seed);
+    std::mt19937 random(seed + 1000);
+    MemoryConfig& m = c.memory;
+    m.scheduler = random() % 4 == 0 ? "fcfs" : "fr-fcfs";
+    m.age_cap = random() % 2 == 0 ? 0 : 50 + random() % 500;
+    m.read_queue = 2 + random() % 64;
+    m.refresh = random() % 3 == 0 ? "per-bank" : "all-bank";
+    m.refresh_postponed = m.refresh == "per-bank" ? 0 : random() % 9;
+    m.tRREFD = 1 + random() % 20;
+    check_consistency(c, "test");
+    return c;
+}
+
+TEST(DramRules, RandomTrafficKeepsThemWithQueues) {
+    std::uint64_t refreshes = 0, of_banks = 0, postponed = 0;
+    for (const char* preset : {"ddr3-1600k", "ddr4-2400r", "hbm2"})
+        for (unsigned seed = 0; seed < 30; ++seed) {
+            Config c = queued_variant(preset, seed);
+            DramLoad load{seed % 3 == 0 ? 20.0 : 0.0, std::uint64_t{1} << seed % 9, 8000, seed};
+            DramOutcome r = run_dram_queued(c, mixed(seed), load, true);
+            auto broken = broken_rules(c.memory, r.log);
+            EXPECT_TRUE(broken.empty()) << preset << " " << seed << ": " << names(broken);
+            std::uint64_t bursts = 0, activates = 0;
+            for (const DramCommand& x : r.log) {
+                bursts += x.kind == DramCommand::Kind::read || x.kind == DramCommand::Kind::write ? 1 : 0;
+                activates += x.kind == DramCommand::Kind::activate ? 1 : 0;
+                refreshes += x.kind == DramCommand::Kind::refresh ? 1 : 0;
+                of_banks += x.kind == DramCommand::Kind::refresh_bank ? 1 : 0;
+                postponed += x.kind == DramCommand::Kind::refresh &&
+                                     x.at % u(c.memory.tREFI) != u(c.memory.tREFI * x.rank / c.memory.ranks)
+                                 ? 1
+                                 : 0;
+            }
+            const MemoryCounters& n = r.counters;
+            EXPECT_EQ(bursts, n.read_bursts + n.write_bursts);
+            EXPECT_EQ(activates, n.activates);
+            EXPECT_EQ(n.row_hits + n.row_empties + n.row_conflicts, bursts);
+            EXPECT_EQ(activates, n.row_empties + n.row_conflicts + n.reopened);
+            EXPECT_EQ((n.reads + n.writes) * 64,
+                      (bursts + n.forwarded + n.merged) * u(c.memory.bus_bytes * c.memory.burst_length));
+            EXPECT_EQ(n.reads, r.reads);
+        }
+    EXPECT_GT(refreshes, 100U);
+    EXPECT_GT(of_banks, 100U);
+    EXPECT_GT(postponed, 20U);
 }
 
 // A memory that takes a shorter time than the data sheet says is caught under the name of that time.

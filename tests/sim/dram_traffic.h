@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/config/memory_presets.h"
+#include "sim/memory/dram_streams.h"
 #include "sim/memory/memory.h"
 
 #include <functional>
@@ -22,11 +23,8 @@ inline Config memory_of(const std::string& preset, const std::function<void(Memo
     return c;
 }
 
-struct Request {
-    std::uint64_t address;
-    bool write = false;
-};
-using Source = std::function<Request()>;
+using Request = DramRequest;
+using Source = DramStream;
 
 /// Lines anywhere in the memory.
 inline Source random_lines(std::uint64_t lines, double writes = 0, unsigned seed = 1) {
@@ -57,7 +55,7 @@ struct Outcome {
     }
 };
 inline double peak(const Config& c) { // bytes a clock
-    return static_cast<double>(c.memory.channels * c.memory.bus_bytes * 2);
+    return static_cast<double>(c.memory.channels * c.memory.bus_bytes * c.memory.transfers_per_clock);
 }
 /// The part of the time in which a rank is not refreshed.
 inline double awake(const Config& c) {

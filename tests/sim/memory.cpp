@@ -12,7 +12,7 @@ constexpr integer line = 64;
 
 /// Core cycles of an idle memory read whose row is closed, as the L2 sees it; clocks chosen equal.
 cycle idle_read(const Config& c) {
-    return u(c.memory.controller_cycles + c.memory.tRCD + c.memory.tCL + c.memory.burst_length / 2);
+    return u(c.memory.controller_cycles + c.memory.tRCD + c.memory.tCL + c.memory.burst_clocks());
 }
 Config equal_clocks() {
     Config c = simple();

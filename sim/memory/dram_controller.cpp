@@ -1,0 +1,440 @@
+#include "sim/memory/dram_controller.h"
+
+#include <algorithm>
+
+namespace sim {
+
+DramController::DramController(std::uint32_t number, const MemoryConfig& c, const DramTiming& timing)
+    : t_(timing), number_(number), ranks_(static_cast<std::uint32_t>(c.ranks)),
+      groups_(static_cast<std::uint32_t>(c.bank_groups)),
+      banks_per_rank_(static_cast<std::uint32_t>(c.bank_groups * c.banks)),
+      column_bus_(c.command_buses == 1 ? 0 : 1), first_ready_(c.scheduler == "fr-fcfs"),
+      closed_page_(c.page_policy == "closed"), timeout_page_(c.page_policy == "timeout"),
+      per_bank_(c.refresh == "per-bank"), high_(static_cast<std::size_t>(c.write_high)),
+      low_(static_cast<std::size_t>(c.write_low)), age_cap_(static_cast<Clock>(c.age_cap)),
+      page_timeout_(static_cast<Clock>(c.page_timeout)),
+      postponable_(static_cast<Clock>(c.refresh_postponed * c.tREFI)),
+      entries_(static_cast<std::size_t>(c.read_queue + c.write_queue)), banks_(ranks_ * banks_per_rank_),
+      ranks_state_(ranks_), activate_from_(ranks_ * groups_), counters_(ranks_) {
+    queue_[0].capacity = static_cast<std::size_t>(c.read_queue);
+    queue_[1].capacity = static_cast<std::size_t>(c.write_queue);
+    for (auto& from : column_from_)
+        from.resize(ranks_ * groups_);
+    for (Index i = 0; i < entries_.size(); ++i)
+        entries_[i].next = i + 1 < entries_.size() ? i + 1 : none;
+    free_ = 0;
+    for (Index i = 0; i < banks_.size(); ++i) {
+        Bank& b = banks_[i];
+        b.rank = i / banks_per_rank_;
+        b.group = i % banks_per_rank_ / static_cast<Index>(c.banks);
+        b.bank = i % static_cast<Index>(c.banks);
+    }
+    if (t_.tREFI == 0)
+        return;
+    for (Index rank = 0; rank < ranks_; ++rank)
+        schedule_refresh(ranks_state_[rank], rank);
+}
+
+void DramController::log(DramCommand::Kind kind, Clock at, const Bank& b, std::uint64_t row, bool automatic) {
+    if (log_ != nullptr) [[unlikely]]
+        log_->push_back({kind, at, number_, b.rank, b.group, b.bank, row, automatic});
+}
+
+// ---- queues
+
+bool DramController::enqueue(Column kind, const DramPlace& p, std::uint64_t burst, std::uint64_t id,
+                             Clock t) {
+    advance_to(t);
+    Index number = (p.rank * groups_ + p.group) * (banks_per_rank_ / groups_) + p.bank;
+    Bank& b = banks_[number];
+    MemoryCounters& n = counters_[p.rank];
+    for (Index i = b.oldest[1]; i != none; i = entries_[i].bank_next)
+        if (entries_[i].burst == burst) {
+            if (kind == Column::read) {
+                ++n.forwarded;
+                done_.push_back({id, t});
+            } else {
+                ++n.merged;
+            }
+            return true;
+        }
+    std::size_t k = at(kind);
+    Queue& q = queue_[k];
+    if (q.size == q.capacity)
+        return false;
+    Index i = free_;
+    Entry& e = entries_[i];
+    free_ = e.next;
+    e = {burst, id, p.row, arrivals_++, t, number, none, b.youngest[k], none, q.youngest, Row::hit};
+    (q.youngest == none ? q.oldest : entries_[q.youngest].next) = i;
+    q.youngest = i;
+    ++q.size;
+    if (b.youngest[k] == none) {
+        b.oldest[k] = i;
+        b.place[k] = static_cast<Index>(q.banks.size());
+        q.banks.push_back(number);
+    } else {
+        entries_[b.youngest[k]].bank_next = i;
+    }
+    b.youngest[k] = i;
+    if (b.open && b.row == p.row && b.hit[k] == none)
+        b.hit[k] = i;
+    ++ranks_state_[p.rank].queued;
+    choose_direction();
+    planned_ = false;
+    return true;
+}
+
+void DramController::remove(Index i, std::size_t k) {
+    Entry& e = entries_[i];
+    Bank& b = banks_[e.bank];
+    Queue& q = queue_[k];
+    (e.before == none ? q.oldest : entries_[e.before].next) = e.next;
+    (e.next == none ? q.youngest : entries_[e.next].before) = e.before;
+    (e.bank_before == none ? b.oldest[k] : entries_[e.bank_before].bank_next) = e.bank_next;
+    (e.bank_next == none ? b.youngest[k] : entries_[e.bank_next].bank_before) = e.bank_before;
+    if (b.oldest[k] == none) {
+        q.banks[b.place[k]] = q.banks.back();
+        banks_[q.banks.back()].place[k] = b.place[k];
+        q.banks.pop_back();
+    }
+    --q.size;
+    --ranks_state_[b.rank].queued;
+    e.next = free_;
+    free_ = i;
+}
+
+void DramController::flush() {
+    flushing_ = true;
+    choose_direction();
+    planned_ = false;
+}
+
+void DramController::choose_direction() {
+    std::size_t reads = queue_[0].size, writes = queue_[1].size, least = flushing_ ? 0 : low_;
+    if (writing_ && (writes <= least || (!draining_ && reads != 0)))
+        writing_ = draining_ = false;
+    if (!writing_ && (writes >= high_ || (reads == 0 && writes > least))) {
+        writing_ = true;
+        ++counters_[0].batches;
+    }
+    draining_ = writing_ && (draining_ || writes >= high_);
+}
+
+void DramController::find_hits(Bank& b) {
+    for (std::size_t k = 0; k < 2; ++k) {
+        b.hit[k] = none;
+        if (b.open)
+            for (Index i = b.oldest[k]; i != none && b.hit[k] == none; i = entries_[i].bank_next)
+                if (entries_[i].row == b.row)
+                    b.hit[k] = i;
+    }
+}
+
+// ---- what comes next
+
+/// What its bank would do next for the queue that is served; `only_oldest`: not for a younger burst.
+DramController::Step DramController::candidate(const Bank& b, Index number, Clock from,
+                                               bool only_oldest) const {
+    std::size_t k = at(direction());
+    Index oldest = b.oldest[k], hit = b.hit[k];
+    if (only_oldest && hit != oldest)
+        hit = none;
+    Step s;
+    s.of = number;
+    if (b.open && hit != none) {
+        s.kind = Step::column;
+        s.number = entries_[hit].number;
+        s.at = std::max({from, b.column_from, column_from_[k][set(b)], bus_from_[column_bus_]});
+        if (b.refresh != never && s.at + t_.precharge[k] + t_.tRP > b.refresh)
+            s.at = never;
+        return s;
+    }
+    s.number = entries_[oldest].number;
+    if (b.open) {
+        s.kind = Step::precharge;
+        s.at = std::max({from, b.precharge_from, bus_from_[0]});
+        if (b.refresh != never && s.at + t_.tRP > b.refresh)
+            s.at = never;
+        return s;
+    }
+    s.kind = Step::activate;
+    s.at = std::max({from, b.activate_from, activate_from_[set(b)], bus_from_[0]});
+    if (b.refresh != never && s.at + std::max(t_.tRC, t_.tRCD + t_.precharge[k] + t_.tRP) > b.refresh)
+        s.at = never;
+    else if (per_bank_ && s.at + t_.activate[at(Near::group)] > ranks_state_[b.rank].refresh)
+        s.at = never; // after the refresh of another bank
+    return s;
+}
+
+/// Whether the urgent command would have to wait for `s`.
+bool DramController::delays(const Step& s, const Step& urgent) const {
+    const Bank &a = banks_[s.of], &b = banks_[urgent.of];
+    if (s.kind == Step::column && urgent.kind == Step::column) {
+        std::size_t k = at(direction());
+        Near near = a.rank != b.rank ? Near::channel : a.group != b.group ? Near::rank : Near::group;
+        return s.at + t_.column[k][k][at(near)] > urgent.at;
+    }
+    if (s.kind == Step::activate && urgent.kind == Step::activate && a.rank == b.rank)
+        return true;
+    return s.at == urgent.at &&
+           (s.kind == Step::column) * column_bus_ == (urgent.kind == Step::column) * column_bus_;
+}
+
+void DramController::make_plan() {
+    planned_ = true;
+    const Queue& q = queue_[at(direction())];
+    Clock from = now_;
+    for (bool again = true; again;) {
+        again = false;
+        step_ = {};
+        plan_refreshes(from);
+        if (timeout_page_)
+            plan_idle_banks(from);
+        if (q.size == 0)
+            return;
+        // From the clock at which the oldest burst has waited too long it goes before others.
+        Clock patience = age_cap_ == 0 ? never : entries_[q.oldest].arrival + age_cap_;
+        Step urgent;
+        if (patience <= from) {
+            Index number = entries_[q.oldest].bank;
+            urgent = candidate(banks_[number], number, from, true);
+            if (urgent.before(step_))
+                step_ = urgent;
+        }
+        for (Index number : q.banks) {
+            if (urgent.at != never && number == urgent.of)
+                continue;
+            Step s = candidate(banks_[number], number, from, !first_ready_);
+            if (s.before(step_) && (urgent.at == never || !delays(s, urgent)))
+                step_ = s;
+        }
+        if (patience > from && step_.at > patience) {
+            from = patience;
+            again = true;
+        }
+    }
+}
+
+void DramController::plan_refreshes(Clock from) {
+    if (t_.tREFI == 0)
+        return;
+    for (Index rank = 0; rank < ranks_; ++rank) {
+        const Rank& r = ranks_state_[rank];
+        Step s;
+        s.of = rank;
+        bool open =
+            per_bank_ ? banks_[rank * banks_per_rank_ + r.refreshes % banks_per_rank_].open : r.open != 0;
+        if (postponable_ != 0 && !r.postponed && r.refresh == r.due && r.queued != 0 &&
+            r.refresh >= t_.around_refresh() + from) {
+            s.kind = Step::decide;
+            s.at = r.refresh - t_.around_refresh();
+        } else if (open) {
+            s.kind = Step::close_for_refresh;
+            s.at = std::max(r.refresh - t_.tRP, bus_from_[0]);
+        } else {
+            s.kind = Step::refresh;
+            s.at = std::max({r.refresh, r.closed_from, bus_from_[0]});
+        }
+        if (s.before(step_))
+            step_ = s;
+    }
+}
+
+/// Rows that nobody has wanted for some time.
+void DramController::plan_idle_banks(Clock from) {
+    for (Index number = 0; number < banks_.size(); ++number) {
+        const Bank& b = banks_[number];
+        if (!b.open || b.hit[0] != none || b.hit[1] != none)
+            continue;
+        Step s;
+        s.kind = Step::close_idle;
+        s.of = number;
+        s.number = never;
+        s.at = std::max({from, b.precharge_from, b.used + page_timeout_, bus_from_[0]});
+        if ((b.refresh == never || s.at + t_.tRP <= b.refresh) && s.before(step_))
+            step_ = s;
+    }
+}
+
+// ---- commands
+
+void DramController::issue() {
+    planned_ = false;
+    now_ = step_.at;
+    switch (step_.kind) {
+    case Step::decide: {
+        Rank& r = ranks_state_[step_.of];
+        r.postponed = true;
+        set_refresh(r, step_.of, r.due + postponable_);
+        return;
+    }
+    case Step::refresh:
+        return refresh(step_.of);
+    case Step::close_for_refresh: {
+        bus_from_[0] = now_ + 1;
+        ranks_state_[step_.of].closed_from = now_ + t_.tRP;
+        Index first = step_.of * banks_per_rank_;
+        if (per_bank_) {
+            Bank& b = banks_[first + ranks_state_[step_.of].refreshes % banks_per_rank_];
+            log(DramCommand::Kind::precharge, now_, b, b.row);
+            ++counters_[b.rank].precharges;
+            return close(b, now_);
+        }
+        DramCommand all{DramCommand::Kind::precharge_all, now_, number_, step_.of, 0, 0, 0};
+        if (log_ != nullptr)
+            log_->push_back(all);
+        for (Index i = first; i < first + banks_per_rank_; ++i)
+            if (banks_[i].open)
+                close(banks_[i], now_);
+        return;
+    }
+    case Step::column:
+        return issue_column(banks_[step_.of]);
+    case Step::activate:
+        return issue_activate(banks_[step_.of]);
+    case Step::precharge:
+    case Step::close_idle: {
+        Bank& b = banks_[step_.of];
+        bus_from_[0] = now_ + 1;
+        log(DramCommand::Kind::precharge, now_, b, b.row);
+        ++counters_[b.rank].precharges;
+        close(b, now_);
+        b.conflict = step_.kind == Step::precharge;
+        return;
+    }
+    }
+}
+
+void DramController::close(Bank& b, Clock at) {
+    b.open = b.conflict = false;
+    b.hit = {none, none};
+    b.activate_from = std::max(b.activate_from, at + t_.tRP);
+    --ranks_state_[b.rank].open;
+}
+
+void DramController::issue_activate(Bank& b) {
+    Entry& e = entries_[b.oldest[at(direction())]];
+    Rank& r = ranks_state_[b.rank];
+    MemoryCounters& n = counters_[b.rank];
+    bus_from_[0] = now_ + 1;
+    log(DramCommand::Kind::activate, now_, b, e.row);
+    ++n.activates;
+    if (e.found == Row::hit)
+        e.found = b.conflict ? Row::conflict : Row::empty;
+    else
+        ++n.reopened;
+    b.open = true;
+    b.row = e.row;
+    b.used = now_;
+    b.column_from = now_ + t_.tRCD;
+    b.precharge_from = now_ + t_.tRAS;
+    b.activate_from = now_ + t_.tRC;
+    find_hits(b);
+    ++r.open;
+    r.activates[r.activated++ % 4] = now_;
+    Clock four = r.activated < 4 ? 0 : r.activates[r.activated % 4] + t_.tFAW;
+    for (Index g = 0; g < groups_; ++g) {
+        Clock& from = activate_from_[b.rank * groups_ + g];
+        from = std::max({from, four, now_ + t_.activate[at(g == b.group ? Near::group : Near::rank)]});
+    }
+}
+
+void DramController::issue_column(Bank& b) {
+    Column c = direction();
+    std::size_t k = at(c);
+    Index i = b.hit[k];
+    const Entry e = entries_[i];
+    MemoryCounters& n = counters_[b.rank];
+    bus_from_[column_bus_] = now_ + 1;
+    log(c == Column::read ? DramCommand::Kind::read : DramCommand::Kind::write, now_, b, e.row);
+    Clock end = now_ + t_.data[k] + t_.burst;
+    ++(e.found == Row::hit ? n.row_hits : e.found == Row::empty ? n.row_empties : n.row_conflicts);
+    n.busy_clocks += t_.burst;
+    n.last_clock = std::max(n.last_clock, end);
+    if (c == Column::read) {
+        Clock own = t_.data[0] + t_.burst + (e.found == Row::hit ? 0 : t_.tRCD) +
+                    (e.found == Row::conflict ? t_.tRP : 0);
+        ++n.read_bursts;
+        n.read_clocks += end - e.arrival;
+        n.queue_clocks += end - e.arrival - std::min(end - e.arrival, own);
+        done_.push_back({e.id, end});
+    } else {
+        ++n.write_bursts;
+    }
+    counters_[0].turnarounds += any_ && last_write_ != writing_ ? 1 : 0;
+    counters_[0].rank_switches += any_ && last_rank_ != b.rank ? 1 : 0;
+    any_ = true;
+    last_write_ = writing_;
+    last_rank_ = b.rank;
+
+    for (std::size_t next = 0; next < 2; ++next)
+        for (Index rank = 0, s = 0; rank < ranks_; ++rank)
+            for (Index g = 0; g < groups_; ++g, ++s) {
+                Near near = rank != b.rank ? Near::channel : g != b.group ? Near::rank : Near::group;
+                column_from_[next][s] = std::max(column_from_[next][s], now_ + t_.column[k][next][at(near)]);
+            }
+    b.precharge_from = std::max(b.precharge_from, now_ + t_.precharge[k]);
+    b.used = now_;
+    remove(i, k);
+    b.hit[k] = e.bank_next;
+    while (b.hit[k] != none && entries_[b.hit[k]].row != b.row)
+        b.hit[k] = entries_[b.hit[k]].bank_next;
+    if (closed_page_ && b.hit[0] == none && b.hit[1] == none) {
+        log(DramCommand::Kind::precharge, b.precharge_from, b, b.row, true);
+        ++n.precharges;
+        close(b, b.precharge_from);
+    }
+    Rank& r = ranks_state_[b.rank];
+    if (r.postponed && r.queued == 0)
+        set_refresh(r, b.rank, std::min(r.refresh, now_ + t_.around_refresh()));
+    choose_direction();
+}
+
+// ---- refreshes
+
+/// When refresh `number` of a rank is due: ranks, and the banks of each, take turns.
+Clock DramController::due(Index rank, std::uint64_t number) const {
+    std::uint64_t turns = per_bank_ ? banks_per_rank_ : 1;
+    return t_.tREFI + t_.tREFI * (number * ranks_ + rank) / (turns * ranks_);
+}
+
+void DramController::set_refresh(Rank& r, Index rank, Clock at) {
+    r.refresh = at;
+    Index first = rank * banks_per_rank_;
+    if (per_bank_)
+        for (Index i = 0; i < banks_per_rank_; ++i)
+            banks_[first + (r.refreshes + i) % banks_per_rank_].refresh = due(rank, r.refreshes + i);
+    else
+        for (Index i = 0; i < banks_per_rank_; ++i)
+            banks_[first + i].refresh = at;
+}
+
+/// The next one at its time, or, where that is past, at once if the rank has nothing to do.
+void DramController::schedule_refresh(Rank& r, Index rank) {
+    r.due = due(rank, r.refreshes);
+    r.postponed = r.due < now_ + t_.tRFC && r.refreshes != 0 && postponable_ != 0;
+    set_refresh(r, rank,
+                !r.postponed    ? r.due
+                : r.queued == 0 ? std::max(r.due, now_ + t_.tRFC)
+                                : r.due + postponable_);
+}
+
+void DramController::refresh(Index rank) {
+    Rank& r = ranks_state_[rank];
+    bus_from_[0] = now_ + 1;
+    Index first = rank * banks_per_rank_;
+    Bank& b = banks_[first + (per_bank_ ? r.refreshes % banks_per_rank_ : 0)];
+    if (per_bank_)
+        b.activate_from = std::max(b.activate_from, now_ + t_.tRFCpb);
+    for (Index g = 0; g < groups_; ++g) {
+        Clock& from = activate_from_[rank * groups_ + g];
+        from = std::max(from, now_ + (per_bank_ ? t_.tRREFD : t_.tRFC));
+    }
+    log(per_bank_ ? DramCommand::Kind::refresh_bank : DramCommand::Kind::refresh, now_, b, 0);
+    ++counters_[rank].refreshes;
+    ++r.refreshes;
+    schedule_refresh(r, rank);
+}
+
+} // namespace sim
