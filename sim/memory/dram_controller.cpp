@@ -15,7 +15,8 @@ DramController::DramController(std::uint32_t number, const MemoryConfig& c, cons
       page_timeout_(static_cast<Clock>(c.page_timeout)),
       postponable_(static_cast<Clock>(c.refresh_postponed * c.tREFI)),
       entries_(static_cast<std::size_t>(c.read_queue + c.write_queue)), banks_(ranks_ * banks_per_rank_),
-      ranks_state_(ranks_), activate_from_(ranks_ * groups_), counters_(ranks_) {
+      ranks_state_(ranks_), activate_from_(ranks_ * groups_), shared_(shared_kinds * ranks_ * groups_),
+      counters_(ranks_) {
     queue_[0].capacity = static_cast<std::size_t>(c.read_queue);
     queue_[1].capacity = static_cast<std::size_t>(c.write_queue);
     for (auto& from : column_from_)
@@ -72,7 +73,6 @@ bool DramController::enqueue(Column kind, const DramPlace& p, std::uint64_t burs
     if (b.youngest[k] == none) {
         b.oldest[k] = i;
         b.place[k] = static_cast<Index>(q.banks.size());
-        q.banks.push_back(number);
     } else {
         entries_[b.youngest[k]].bank_next = i;
     }
@@ -80,8 +80,17 @@ bool DramController::enqueue(Column kind, const DramPlace& p, std::uint64_t burs
     if (b.open && b.row == p.row && b.hit[k] == none)
         b.hit[k] = i;
     ++ranks_state_[p.rank].queued;
+    if (b.oldest[k] == i)
+        q.banks.emplace_back();
+    renew(number);
+    bool was_writing = writing_;
     choose_direction();
-    planned_ = false;
+    // Usually the plan stays, or the burst's bank comes before it.
+    if (timeout_page_ || postponable_ != 0 || writing_ != was_writing || q.size == 1 || step_.of == number ||
+        patience(queue_[at(direction())]) <= step_.at)
+        planned_ = false;
+    else if (planned_ && k == at(direction()))
+        consider(q.banks[b.place[k]], now_, nullptr);
     return true;
 }
 
@@ -95,7 +104,7 @@ void DramController::remove(Index i, std::size_t k) {
     (e.bank_next == none ? b.youngest[k] : entries_[e.bank_next].bank_before) = e.bank_before;
     if (b.oldest[k] == none) {
         q.banks[b.place[k]] = q.banks.back();
-        banks_[q.banks.back()].place[k] = b.place[k];
+        banks_[q.banks.back().bank].place[k] = b.place[k];
         q.banks.pop_back();
     }
     --q.size;
@@ -133,57 +142,82 @@ void DramController::find_hits(Bank& b) {
 
 // ---- what comes next
 
-/// What its bank would do next for the queue that is served; `only_oldest`: not for a younger burst.
-DramController::Step DramController::candidate(const Bank& b, Index number, Clock from,
-                                               bool only_oldest) const {
-    std::size_t k = at(direction());
-    Index oldest = b.oldest[k], hit = b.hit[k];
-    if (only_oldest && hit != oldest)
-        hit = none;
+/// `only_oldest`: not for a younger burst.
+DramController::Wish DramController::wish(const Bank& b, Index number, std::size_t k,
+                                          bool only_oldest) const {
+    Index oldest = b.oldest[k], hit = b.hit[k], own = static_cast<Index>(set(b)), sets = ranks_ * groups_;
+    Wish w;
+    w.bank = number;
+    Clock after; // that a refresh may come
+    if (b.open && hit != none && (!only_oldest || hit == oldest)) {
+        w.urgency = entries_[hit].number;
+        w.from = b.column_from;
+        w.shared = shared_column * sets + own;
+        after = t_.precharge[k] + t_.tRP;
+    } else if (b.open) {
+        w.urgency = entries_[oldest].number | row_command;
+        w.from = b.precharge_from;
+        w.shared = shared_precharge * sets + own;
+        after = t_.tRP;
+    } else {
+        w.urgency = entries_[oldest].number | row_command;
+        w.from = b.activate_from;
+        w.shared = shared_activate * sets + own;
+        after = std::max(t_.tRC, t_.tRCD + t_.precharge[k] + t_.tRP);
+    }
+    w.until = b.refresh == never ? never : b.refresh - std::min(b.refresh, after);
+    if (per_bank_ && !b.open && b.refresh != never) { // or waits for the refresh of another bank
+        Clock other = ranks_state_[b.rank].refresh;
+        w.until = std::min(w.until, other - std::min(other, t_.activate[at(Near::group)]));
+    }
+    return w;
+}
+
+void DramController::renew_shared() {
+    Index sets = ranks_ * groups_;
+    const std::vector<Clock>& columns = column_from_[at(direction())];
+    for (Index i = 0; i < sets; ++i) {
+        shared_[shared_column * sets + i] = std::max(columns[i], bus_from_[column_bus_]);
+        shared_[shared_activate * sets + i] = std::max(activate_from_[i], bus_from_[0]);
+        shared_[shared_precharge * sets + i] = bus_from_[0];
+    }
+}
+
+/// Takes a wish for the next step if it comes before it and does not hold up what is urgent.
+void DramController::consider(const Wish& w, Clock from, const Step* urgent) {
+    Clock t = std::max({from, w.from, shared_[w.shared]});
+    if (t > w.until || t > step_.at || (t == step_.at && w.urgency >= step_.urgency))
+        return;
     Step s;
-    s.of = number;
-    if (b.open && hit != none) {
-        s.kind = Step::column;
-        s.number = entries_[hit].number;
-        s.at = std::max({from, b.column_from, column_from_[k][set(b)], bus_from_[column_bus_]});
-        if (b.refresh != never && s.at + t_.precharge[k] + t_.tRP > b.refresh)
-            s.at = never;
-        return s;
-    }
-    s.number = entries_[oldest].number;
-    if (b.open) {
-        s.kind = Step::precharge;
-        s.at = std::max({from, b.precharge_from, bus_from_[0]});
-        if (b.refresh != never && s.at + t_.tRP > b.refresh)
-            s.at = never;
-        return s;
-    }
-    s.kind = Step::activate;
-    s.at = std::max({from, b.activate_from, activate_from_[set(b)], bus_from_[0]});
-    if (b.refresh != never && s.at + std::max(t_.tRC, t_.tRCD + t_.precharge[k] + t_.tRP) > b.refresh)
-        s.at = never;
-    else if (per_bank_ && s.at + t_.activate[at(Near::group)] > ranks_state_[b.rank].refresh)
-        s.at = never; // after the refresh of another bank
-    return s;
+    s.at = t;
+    s.urgency = w.urgency;
+    s.of = w.bank;
+    Index kind = w.shared / (ranks_ * groups_);
+    s.kind = kind == shared_column     ? Step::column
+             : kind == shared_activate ? Step::activate
+                                       : Step::precharge;
+    if (urgent == nullptr || !delays(s, *urgent))
+        step_ = s;
 }
 
 /// Whether the urgent command would have to wait for `s`.
 bool DramController::delays(const Step& s, const Step& urgent) const {
     const Bank &a = banks_[s.of], &b = banks_[urgent.of];
-    if (s.kind == Step::column && urgent.kind == Step::column) {
+    bool column = s.kind == Step::column, urgent_column = urgent.kind == Step::column;
+    if (column && urgent_column) {
         std::size_t k = at(direction());
         Near near = a.rank != b.rank ? Near::channel : a.group != b.group ? Near::rank : Near::group;
         return s.at + t_.column[k][k][at(near)] > urgent.at;
     }
     if (s.kind == Step::activate && urgent.kind == Step::activate && a.rank == b.rank)
         return true;
-    return s.at == urgent.at &&
-           (s.kind == Step::column) * column_bus_ == (urgent.kind == Step::column) * column_bus_;
+    return s.at == urgent.at && (column_bus_ == 0 || column == urgent_column);
 }
 
 void DramController::make_plan() {
     planned_ = true;
     const Queue& q = queue_[at(direction())];
+    renew_shared();
     Clock from = now_;
     for (bool again = true; again;) {
         again = false;
@@ -194,26 +228,44 @@ void DramController::make_plan() {
         if (q.size == 0)
             return;
         // From the clock at which the oldest burst has waited too long it goes before others.
-        Clock patience = age_cap_ == 0 ? never : entries_[q.oldest].arrival + age_cap_;
-        Step urgent;
-        if (patience <= from) {
-            Index number = entries_[q.oldest].bank;
-            urgent = candidate(banks_[number], number, from, true);
-            if (urgent.before(step_))
-                step_ = urgent;
+        Clock end = patience(q);
+        if (end <= from) {
+            plan_urgent(q, from);
+            return;
         }
-        for (Index number : q.banks) {
-            if (urgent.at != never && number == urgent.of)
-                continue;
-            Step s = candidate(banks_[number], number, from, !first_ready_);
-            if (s.before(step_) && (urgent.at == never || !delays(s, urgent)))
-                step_ = s;
+        Clock best = step_.at;
+        std::uint64_t urgency = step_.urgency;
+        const Wish* chosen = nullptr;
+        for (const Wish& w : q.banks) { // without branches: none of these is foreseeable
+            Clock t = std::max({from, w.from, shared_[w.shared]});
+            t = t > w.until ? never : t;
+            bool better = (t < best) | ((t == best) & (w.urgency < urgency));
+            best = better ? t : best;
+            urgency = better ? w.urgency : urgency;
+            chosen = better ? &w : chosen;
         }
-        if (patience > from && step_.at > patience) {
-            from = patience;
+        if (chosen != nullptr)
+            consider(*chosen, from, nullptr);
+        if (step_.at > end) {
+            from = end;
             again = true;
         }
     }
+}
+
+void DramController::plan_urgent(const Queue& q, Clock from) {
+    Index number = entries_[q.oldest].bank;
+    Step others = step_; // refreshes
+    step_ = {};
+    consider(wish(banks_[number], number, at(direction()), true), from, nullptr);
+    Step urgent = step_;
+    if (others.before(step_))
+        step_ = others;
+    for (const Wish& w : q.banks)
+        if (urgent.at == never)
+            consider(w, from, nullptr);
+        else if (w.bank != number)
+            consider(w, from, &urgent);
 }
 
 void DramController::plan_refreshes(Clock from) {
@@ -223,12 +275,17 @@ void DramController::plan_refreshes(Clock from) {
         const Rank& r = ranks_state_[rank];
         Step s;
         s.of = rank;
+        s.urgency = 0;
         bool open =
             per_bank_ ? banks_[rank * banks_per_rank_ + r.refreshes % banks_per_rank_].open : r.open != 0;
-        if (postponable_ != 0 && !r.postponed && r.refresh == r.due && r.queued != 0 &&
-            r.refresh >= t_.around_refresh() + from) {
+        Clock before = r.refresh - t_.around_refresh();
+        if (postponable_ != 0 && !r.postponed && r.refresh == r.due && before >= from && busy(r, before)) {
             s.kind = Step::decide;
-            s.at = r.refresh - t_.around_refresh();
+            s.at = before;
+        } else if (Clock idle = std::max(from, r.used + t_.around_refresh());
+                   r.postponed && r.queued == 0 && made_up(r, idle) < r.refresh) {
+            s.kind = Step::decide;
+            s.at = idle;
         } else if (open) {
             s.kind = Step::close_for_refresh;
             s.at = std::max(r.refresh - t_.tRP, bus_from_[0]);
@@ -250,7 +307,7 @@ void DramController::plan_idle_banks(Clock from) {
         Step s;
         s.kind = Step::close_idle;
         s.of = number;
-        s.number = never;
+        s.urgency = idle_row;
         s.at = std::max({from, b.precharge_from, b.used + page_timeout_, bus_from_[0]});
         if ((b.refresh == never || s.at + t_.tRP <= b.refresh) && s.before(step_))
             step_ = s;
@@ -265,8 +322,8 @@ void DramController::issue() {
     switch (step_.kind) {
     case Step::decide: {
         Rank& r = ranks_state_[step_.of];
+        set_refresh(r, step_.of, r.postponed ? made_up(r, now_) : r.due + postponable_);
         r.postponed = true;
-        set_refresh(r, step_.of, r.due + postponable_);
         return;
     }
     case Step::refresh:
@@ -311,6 +368,7 @@ void DramController::close(Bank& b, Clock at) {
     b.hit = {none, none};
     b.activate_from = std::max(b.activate_from, at + t_.tRP);
     --ranks_state_[b.rank].open;
+    renew(number_of(b));
 }
 
 void DramController::issue_activate(Bank& b) {
@@ -331,6 +389,7 @@ void DramController::issue_activate(Bank& b) {
     b.precharge_from = now_ + t_.tRAS;
     b.activate_from = now_ + t_.tRC;
     find_hits(b);
+    renew(number_of(b));
     ++r.open;
     r.activates[r.activated++ % 4] = now_;
     Clock four = r.activated < 4 ? 0 : r.activates[r.activated % 4] + t_.tFAW;
@@ -384,10 +443,11 @@ void DramController::issue_column(Bank& b) {
         log(DramCommand::Kind::precharge, b.precharge_from, b, b.row, true);
         ++n.precharges;
         close(b, b.precharge_from);
+    } else {
+        renew(number_of(b));
     }
     Rank& r = ranks_state_[b.rank];
-    if (r.postponed && r.queued == 0)
-        set_refresh(r, b.rank, std::min(r.refresh, now_ + t_.around_refresh()));
+    r.used = now_;
     choose_direction();
 }
 
@@ -408,6 +468,8 @@ void DramController::set_refresh(Rank& r, Index rank, Clock at) {
     else
         for (Index i = 0; i < banks_per_rank_; ++i)
             banks_[first + i].refresh = at;
+    for (Index i = 0; i < banks_per_rank_; ++i)
+        renew(first + i);
 }
 
 /// The next one at its time, or, where that is past, at once if the rank has nothing to do.
@@ -416,8 +478,8 @@ void DramController::schedule_refresh(Rank& r, Index rank) {
     r.postponed = r.due < now_ + t_.tRFC && r.refreshes != 0 && postponable_ != 0;
     set_refresh(r, rank,
                 !r.postponed    ? r.due
-                : r.queued == 0 ? std::max(r.due, now_ + t_.tRFC)
-                                : r.due + postponable_);
+                : busy(r, now_) ? r.due + postponable_
+                                : std::max(r.due, now_ + t_.tRFC));
 }
 
 void DramController::refresh(Index rank) {
@@ -434,6 +496,7 @@ void DramController::refresh(Index rank) {
     log(per_bank_ ? DramCommand::Kind::refresh_bank : DramCommand::Kind::refresh, now_, b, 0);
     ++counters_[rank].refreshes;
     ++r.refreshes;
+    r.refreshed = now_;
     schedule_refresh(r, rank);
 }
 

@@ -17,6 +17,7 @@
 #include "sim/memory/dram_mapping.h"
 #include "sim/memory/dram_timing.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -75,10 +76,17 @@ private:
         Index bank, bank_next, bank_before, next, before; // neighbours of its bank and in its queue
         Row found;
     };
+    /// What a bank would do next for a queue, as far as the bank alone says.
+    struct Wish {
+        Clock from, until;     // until: the last clock that leaves time before a refresh
+        std::uint64_t urgency; // the less the sooner: columns before rows, then in order of arrival
+        Index shared;          // where shared_ says from when the others allow it
+        Index bank;
+    };
     struct Queue {
         std::size_t size = 0, capacity = 0;
         Index oldest = none, youngest = none;
-        std::vector<Index> banks; // that have bursts queued, in no order that matters
+        std::vector<Wish> banks; // that have bursts queued, in no order that matters
     };
     struct Bank {
         std::uint64_t row = 0;
@@ -92,6 +100,8 @@ private:
     };
     struct Rank {
         Clock refresh = never, due = 0; // the next, and when it should be
+        Clock used = 0;                 // the last column command
+        Clock refreshed = 0;            // the last refresh
         Clock closed_from = 0;          // of the last closing for a refresh
         std::uint64_t refreshes = 0;
         std::array<Clock, 4> activates{};
@@ -101,28 +111,31 @@ private:
     };
     struct Step {
         enum Kind : std::uint8_t {
-            decide,
-            refresh,
-            close_for_refresh,
             column,
             activate,
             precharge,
-            close_idle
+            close_idle,
+            decide,
+            refresh,
+            close_for_refresh
         };
         Clock at = never;
+        std::uint64_t urgency = never;
         Kind kind = decide;
-        Index of = none;          // bank, or rank of what comes with refreshes
-        std::uint64_t number = 0; // of the burst it is for
-        unsigned order() const { return kind <= close_for_refresh ? 0U : kind == column ? 1U : 2U; }
-        bool before(const Step& s) const {
-            if (at != s.at)
-                return at < s.at;
-            if (order() != s.order())
-                return order() < s.order();
-            return number != s.number ? number < s.number : of < s.of;
-        }
+        Index of = none; // bank, or rank of what comes with refreshes
+        bool before(const Step& s) const { return at != s.at ? at < s.at : urgency < s.urgency; }
     };
+    /// In shared_: from when a column command to a group, an activate, a precharge may come.
+    enum Shared : Index { shared_column, shared_activate, shared_precharge, shared_kinds };
+    static constexpr std::uint64_t row_command = std::uint64_t{1} << 62, idle_row = row_command << 1;
 
+    /// The first clock at which a rank without requests may make up for a refresh, once that is decided at
+    /// `t`.
+    Clock made_up(const Rank& r, Clock t) const {
+        return std::max({t + t_.around_refresh(), r.due, r.refreshed + t_.tRFC});
+    }
+    /// Whether a rank has requests, or had some not long before `t`: then its refreshes may wait.
+    bool busy(const Rank& r, Clock t) const { return r.queued != 0 || r.used + t_.around_refresh() > t; }
     Column direction() const { return writing_ ? Column::write : Column::read; }
     std::size_t set(const Bank& b) const { return b.rank * groups_ + b.group; }
     void plan() {
@@ -130,9 +143,23 @@ private:
             make_plan();
     }
     void make_plan();
+    void plan_urgent(const Queue& q, Clock from);
     void plan_refreshes(Clock from);
     void plan_idle_banks(Clock from);
-    Step candidate(const Bank& b, Index number, Clock from, bool only_oldest) const;
+    Wish wish(const Bank& b, Index number, std::size_t kind, bool only_oldest) const;
+    Index number_of(const Bank& b) const { return static_cast<Index>(&b - banks_.data()); }
+    /// After a change of what the bank has queued or of its state.
+    void renew(Index number) {
+        for (std::size_t k = 0; k < 2; ++k)
+            if (banks_[number].oldest[k] != none)
+                queue_[k].banks[banks_[number].place[k]] = wish(banks_[number], number, k, !first_ready_);
+    }
+    void renew_shared();
+    /// The clock at which the oldest burst has waited too long.
+    Clock patience(const Queue& q) const {
+        return age_cap_ == 0 || q.size == 0 ? never : entries_[q.oldest].arrival + age_cap_;
+    }
+    void consider(const Wish& w, Clock from, const Step* urgent);
     bool delays(const Step& s, const Step& urgent) const;
     void issue();
     void issue_column(Bank& b);
@@ -160,6 +187,7 @@ private:
     std::vector<Clock> activate_from_;              // by rank and group
     std::array<std::vector<Clock>, 2> column_from_; // by Column, rank and group
     std::array<Clock, 2> bus_from_{};               // of rows, of columns
+    std::vector<Clock> shared_; // for the direction that is served, with the bus; by Shared, rank, group
     bool writing_ = false, draining_ = false, flushing_ = false, planned_ = false;
     Clock now_ = 0;
     Step step_;
