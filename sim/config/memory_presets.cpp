@@ -99,6 +99,132 @@ MemoryConfig ddr4_2400r() {
     return c;
 }
 
+/// The same with two ranks.
+MemoryConfig ddr4_2400r_2() {
+    MemoryConfig c = ddr4_2400r();
+    c.preset = "ddr4-2400r-2r";
+    c.ranks = 2;
+    return c;
+}
+
+/// One module of DDR5-4800B (40-39-39), JESD79-5: two channels of 32 bits, each one rank of four 16 Gbit x8
+/// devices. Not modelled: the longer distance of writes to one bank group (tCCD_L_WR), refresh of the same
+/// bank of every group.
+MemoryConfig ddr5_4800b() {
+    MemoryConfig c = controller();
+    c.preset = "ddr5-4800b";
+    c.clock_ps = 416; // speed bin: tCK
+    c.channels = 2;
+    c.ranks = 1;
+    c.bank_groups = 8;
+    c.banks = 4;
+    c.rows = 65536;     // 16 Gbit x8: 16 row bits
+    c.row_bytes = 4096; // page of 1 KiB a device
+    c.bus_bytes = 4;
+    c.burst_length = 16;
+    c.tRCD = 39; // speed bin
+    c.tRP = 39;  // speed bin
+    c.tRAS = 77; // speed bin: 32 ns
+    c.tRC = 116; // tRAS + tRP
+    c.tCL = 40;  // speed bin
+    c.tCWL = 38; // CL - 2
+    c.tCCD_S = 8;
+    c.tCCD_L = 12; // max(8 clocks, 5 ns)
+    c.tRRD_S = 8;
+    c.tRRD_L = 12;  // max(8 clocks, 5 ns)
+    c.tFAW = 32;    // 32 clocks, page of 1 KiB
+    c.tRTP = 18;    // max(12 clocks, 7.5 ns)
+    c.tWR = 72;     // 30 ns
+    c.tWTR_S = 6;   // max(4 clocks, 2.5 ns)
+    c.tWTR_L = 24;  // max(16 clocks, 10 ns)
+    c.tRTW = 2;     // read to write: CL + BL/2 + 2 - CWL
+    c.tRTRS = 2;    // of the board; Ramulator 2.1's value
+    c.tREFI = 9375; // 3.9 us
+    c.tRFC = 710;   // 295 ns, 16 Gbit
+    c.tRFCpb = 710; // unused
+    c.tRREFD = 12;  // unused
+    c.mapping = "row:rank:bank:column:group:channel";
+    return c;
+}
+
+/// A board of 256 bits of GDDR5 at 4 Gb/s a pin: four channels of two 1 Gbit devices of 32 bits each. Timing
+/// as in gem5's GDDR5_4000_2x32, which cites the data sheet of SK Hynix H5GQ1H24AFR; that gives neither tCL
+/// (gem5 assumes tRCD), nor the write latency and the refresh interval (assumed here).
+MemoryConfig gddr5_4000() {
+    MemoryConfig c = controller();
+    c.preset = "gddr5-4000";
+    c.clock_ps = 1000; // CK; data at four times its rate
+    c.channels = 4;
+    c.ranks = 1;
+    c.bank_groups = 4;
+    c.banks = 4;
+    c.rows = 4096;      // 1 Gbit: 16 banks of 4096 rows of 2 KiB
+    c.row_bytes = 4096; // of two devices
+    c.bus_bytes = 8;
+    c.burst_length = 8;
+    c.transfers_per_clock = 4;
+    c.tRCD = 12; // 12 ns
+    c.tRP = 12;  // 12 ns
+    c.tRAS = 28; // 28 ns
+    c.tRC = 40;  // tRAS + tRP
+    c.tCL = 12;  // assumed: tRCD
+    c.tCWL = 4;  // assumed
+    c.tCCD_S = 2;
+    c.tCCD_L = 3;
+    c.tRRD_S = c.tRRD_L = 6; // 5.5 ns
+    c.tFAW = 23;             // 23 ns
+    c.tRTP = 2;
+    c.tWR = 12;              // 12 ns
+    c.tWTR_S = c.tWTR_L = 5; // 5 ns, mean of both in gem5
+    c.tRTW = 2;
+    c.tRTRS = 1;    // one rank: unused
+    c.tREFI = 3900; // assumed: 3.9 us
+    c.tRFC = 65;    // 65 ns
+    c.tRFCpb = 65;  // unused
+    c.tRREFD = 6;   // unused
+    c.mapping = "row:rank:bank:column:group:channel";
+    return c;
+}
+
+/// A board of 256 bits of GDDR6 at 14 Gb/s a pin: eight 8 Gbit devices of two channels of 16 bits. Timing as
+/// in Ramulator 2.1's GDDR6_14000_1350mV_double.
+MemoryConfig gddr6_14000() {
+    MemoryConfig c = controller();
+    c.preset = "gddr6-14000";
+    c.clock_ps = 571; // CK; data at eight times its rate
+    c.channels = 16;
+    c.ranks = 1;
+    c.bank_groups = 4;
+    c.banks = 4;
+    c.rows = 16384;
+    c.row_bytes = 2048;
+    c.bus_bytes = 2;
+    c.burst_length = 16;
+    c.transfers_per_clock = 8;
+    c.tRCD = 27; // of reads; 16 for writes is not modelled
+    c.tRP = 27;
+    c.tRAS = 53;
+    c.tRC = 80; // tRAS + tRP
+    c.tCL = 24;
+    c.tCWL = 6;
+    c.tCCD_S = 2;
+    c.tCCD_L = 4;
+    c.tRRD_S = c.tRRD_L = 8;
+    c.tFAW = 29;
+    c.tRTP = 4;
+    c.tWR = 27;
+    c.tWTR_S = 9;
+    c.tWTR_L = 11;
+    c.tRTW = 5;     // read to write: CL + 1
+    c.tRTRS = 1;    // one rank: unused
+    c.tREFI = 3333; // 1.9 us
+    c.tRFC = 211;   // 120 ns
+    c.tRFCpb = 106; // 60 ns
+    c.tRREFD = 15;
+    c.mapping = "row:rank:bank:column:group:channel:column.1";
+    return c;
+}
+
 /// One stack of HBM2 at 2 Gb/s a pin: 8 channels of two pseudo channels, each 64 bits wide, four bank groups
 /// of four banks; 4 Gbit a channel. Timing as in Ramulator 2.1's HBM2_2000Mbps, refresh of all banks after
 /// JESD235A (260 ns for 4 Gbit). JESD235 leaves most of these to the vendor. DRAMsim3's HBM2 differs in tFAW
@@ -134,8 +260,50 @@ MemoryConfig hbm2() {
     c.tRTRS = 1;    // one rank: unused
     c.tREFI = 3900; // 3.9 us
     c.tRFC = 260;   // 260 ns
-    c.tRFCpb = 160; // 160 ns; DRAMsim3's tRFCb of HBM2 at 4 Gbit
+    c.tRFCpb = 160; // 160 ns, up to 8 Gbit
     c.tRREFD = 8;   // 8 ns
+    c.mapping = "row:rank:bank:column:group:channel:column.1";
+    return c;
+}
+
+/// One stack of HBM3 at 6.4 Gb/s a pin: 16 channels of two pseudo channels, each 32 bits wide, four bank
+/// groups of four banks; one stack id, 4 Gbit a channel. Timing as in Ramulator 2.1's HBM3_6400Mbps; refresh
+/// after JESD238.
+MemoryConfig hbm3() {
+    MemoryConfig c = controller();
+    c.preset = "hbm3-6400";
+    c.clock_ps = 625; // CK; data at four times its rate
+    c.channels = 32;  // pseudo channels
+    c.ranks = 1;
+    c.bank_groups = 4;
+    c.banks = 4;
+    c.rows = 16384;
+    c.row_bytes = 1024; // of a pseudo channel
+    c.bus_bytes = 4;
+    c.burst_length = 8;
+    c.transfers_per_clock = 4;
+    c.command_buses = 2; // rows and columns
+    c.tRCD = 31;         // of reads; 15 for writes is not modelled
+    c.tRP = 26;
+    c.tRAS = 45;
+    c.tRC = 72;
+    c.tCL = 20;
+    c.tCWL = 10;
+    c.tCCD_S = 2;
+    c.tCCD_L = 4;
+    c.tRRD_S = 4;
+    c.tRRD_L = 5;
+    c.tFAW = 24;
+    c.tRTP = 9;
+    c.tWR = 33;
+    c.tWTR_S = 7;
+    c.tWTR_L = 10;
+    c.tRTW = 8;     // read to write: 20
+    c.tRTRS = 1;    // one rank: unused
+    c.tREFI = 6240; // 3.9 us
+    c.tRFC = 416;   // 260 ns, 4 Gbit a channel
+    c.tRFCpb = 320; // 200 ns
+    c.tRREFD = 13;  // 8 ns
     c.mapping = "row:rank:bank:column:group:channel:column.1";
     return c;
 }
@@ -143,7 +311,9 @@ MemoryConfig hbm2() {
 } // namespace
 
 const std::vector<MemoryConfig>& memory_presets() {
-    static const std::vector<MemoryConfig> presets = {ddr3_1600k(), ddr4_2400r(), hbm2()};
+    static const std::vector<MemoryConfig> presets = {ddr3_1600k(), ddr4_2400r(), ddr4_2400r_2(),
+                                                      ddr5_4800b(), gddr5_4000(), gddr6_14000(),
+                                                      hbm2(),       hbm3()};
     return presets;
 }
 

@@ -65,13 +65,17 @@ TEST(DramQueued, SaturatedStreamsReachTheClosedForms) {
             auto compare = [&](const char* stream, integer channels, std::uint64_t requests,
                                std::uint64_t in_flight) {
                 Config c = memory_of(preset.preset, [&](M& m) {
-                    m.tREFI *= refresh, m.channels = channels;
+                    m.tREFI *= refresh, m.channels = channels, m.age_cap = 0;
                     m.read_queue = static_cast<integer>(in_flight);
                 });
                 DramBound bound = dram_bandwidth_bound(c, stream);
                 DramOutcome o = saturated(c, stream, requests * u(channels), in_flight);
-                EXPECT_TRUE(close(o.bytes_per_clock, bound.bytes_per_clock, 0.02))
+                // Where every clock of tRRD counts, an activate that meets a column command on the one
+                // command bus is late.
+                bool late = bound.by.find("tRRD") != std::string::npos && c.memory.command_buses == 1;
+                EXPECT_TRUE(close(o.bytes_per_clock, bound.bytes_per_clock, late ? 0.1 : 0.02))
                     << preset.preset << " " << stream << " " << bound.by;
+                EXPECT_LE(o.bytes_per_clock, bound.bytes_per_clock * 1.01) << preset.preset << " " << stream;
             };
             compare("sequential", preset.channels, 20000, 64);
             compare("random", 1, 50000, 512); // so many that hardly a bank is ever without
@@ -94,7 +98,7 @@ TEST(DramQueued, RandomReadsOfOneAndTwoRanks) {
 TEST(DramQueued, IdleRandomRead) {
     for (const MemoryConfig& preset : memory_presets()) {
         Config c = memory_of(preset.preset);
-        for (double gap : {1000.0, 4000.0}) {
+        for (double gap : {2000.0, 8000.0}) {
             double each = gap / d(c.memory.channels);
             DramOutcome o =
                 run_dram_queued(c, make_dram_stream("random", c, gibibyte, 0, 1), {each, 1000, 100000, 1});
@@ -108,8 +112,9 @@ TEST(DramQueued, SequentialIsNoSlowerThanRandom) {
         for (integer ranks : {1, 2})
             for (std::uint64_t in_flight : {1U, 4U, 16U, 64U}) {
                 Config c = memory_of(preset.preset, [&](M& m) { m.ranks = ranks; });
+                // A stream waits for the refresh of its rank, random reads go to another.
                 EXPECT_GE(saturated(c, "sequential", 20000, in_flight).bytes_per_clock,
-                          saturated(c, "random", 20000, in_flight).bytes_per_clock)
+                          saturated(c, "random", 20000, in_flight).bytes_per_clock * (ranks == 1 ? 1 : 0.99))
                     << preset.preset << " " << ranks << " " << in_flight;
             }
 }
@@ -120,8 +125,14 @@ TEST(DramQueued, RefreshTakesItsShare) {
         Config c = memory_of(preset.preset), without = memory_of(preset.preset, [](M&m) { m.tREFI = 0; });
         DramOutcome with = saturated(c, "sequential", 200000),
                     none = saturated(without, "sequential", 200000);
-        for (const MemoryCounters& rank : with.by_rank)
-            EXPECT_EQ(rank.refreshes, (rank.last_clock - 1) / u(c.memory.tREFI)) << preset.preset;
+        for (std::size_t i = 0; i < with.by_rank.size(); ++i) {
+            std::uint64_t ranks = u(c.memory.ranks), rank = i % ranks, last = 0;
+            for (std::size_t r = 0; r < ranks; ++r)
+                last = std::max(last, with.by_rank[i - rank + r].last_clock);
+            EXPECT_EQ(with.by_rank[i].refreshes,
+                      (last - 1 - u(c.memory.tREFI) * rank / ranks) / u(c.memory.tREFI))
+                << preset.preset;
+        }
         EXPECT_EQ(none.counters.refreshes, 0U);
         double lost = with.clocks - none.clocks, refreshes = static_cast<double>(with.by_rank[0].refreshes);
         EXPECT_GE(lost, refreshes * d(c.memory.tRFC) * 0.98) << preset.preset;

@@ -100,7 +100,12 @@ TEST(DramPresets, SetWhatTheirLayerDoesNot) {
 TEST(DramPresets, PeaksAreTheDataSheets) {
     EXPECT_NEAR(peak(memory_of("ddr3-1600k")) / 1.25, 12.8, 0.01);
     EXPECT_NEAR(peak(memory_of("ddr4-2400r")) / 0.833, 19.2, 0.01);
+    EXPECT_NEAR(peak(memory_of("ddr4-2400r-2r")) / 0.833, 19.2, 0.01);
+    EXPECT_NEAR(peak(memory_of("ddr5-4800b")) / 0.416, 38.4, 0.1);
+    EXPECT_NEAR(peak(memory_of("gddr5-4000")), 128.0, 0.01);
+    EXPECT_NEAR(peak(memory_of("gddr6-14000")) / 0.571, 448.0, 0.5);
     EXPECT_NEAR(peak(memory_of("hbm2")), 256.0, 0.01);
+    EXPECT_NEAR(peak(memory_of("hbm3-6400")) / 0.625, 819.2, 0.01);
 }
 
 TEST(DramWrites, WaitForTheWatermark) {
