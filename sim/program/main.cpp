@@ -3,8 +3,11 @@
 #include "razor/scene/error.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
+#include "sim/machine/describe.h"
 #include "sim/machine/machine.h"
 #include "sim/program/dram_table.h"
+#include "sim/program/explain_command.h"
+#include "sim/program/provenance.h"
 #include "sim/program/run_command.h"
 
 #include <fmt/format.h>
@@ -15,6 +18,12 @@ namespace {
 
 int print_config(const sim::MachineOptions& options) {
     fmt::print("{}", sim::print_machine(sim::describe_machine(options.file, options.settings)));
+    return 0;
+}
+
+int describe(const sim::MachineOptions& options) {
+    const sim::MachineDescription machine = sim::describe_machine(options.file, options.settings);
+    fmt::print("{}\n{}", sim::provenance_text(machine), sim::chip_text(machine.config));
     return 0;
 }
 
@@ -31,13 +40,21 @@ int main(int argc, char** argv) {
     CLI::App& print =
         *app.add_subcommand("print-config", "print a machine's complete, resolved configuration");
     machine.add_to(print);
+    sim::MachineOptions described;
+    CLI::App& describing =
+        *app.add_subcommand("describe", "print a chip: its parts, and what they can do at most");
+    described.add_to(describing);
+    sim::ExplainCommand explain;
+    explain.add_to(app);
     sim::DramTable dram;
     dram.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
-            if (print.parsed())
-                return print_config(machine);
-            return app.got_subcommand("dram") ? dram.run() : run.run();
+            return print.parsed()               ? print_config(machine)
+                   : describing.parsed()        ? describe(described)
+                   : explain.parsed()           ? explain.run()
+                   : app.got_subcommand("dram") ? dram.run()
+                                                : run.run();
         } catch (const sim::ConfigError& e) {
             throw razor::UserError(e.what());
         } catch (const std::bad_alloc&) {

@@ -1,0 +1,105 @@
+#include "sim/machine/describe.h"
+
+#include "sim/core/pairing.h"
+#include "sim/machine/windows.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+double real(integer x) {
+    return static_cast<double>(x);
+}
+
+std::string size(double bytes) {
+    const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    std::size_t unit = 0;
+    for (; bytes >= 1024 && unit + 1 < std::size(units); ++unit)
+        bytes /= 1024;
+    return fmt::format("{:.4g} {}", bytes, units[unit]);
+}
+
+std::string rate(double per_second, const char* what) {
+    const double giga = per_second * 1e-9;
+    return giga < 1e4 ? fmt::format("{:.4g} {}", giga, what) : fmt::format("{:.0f} {}", giga, what);
+}
+
+} // namespace
+
+ChipFigures chip_figures(const Config& c) {
+    ChipFigures f;
+    const double cycle_ns = real(c.chip.clock_ps) * 1e-3;
+    const double cycles_per_second = 1e9 / cycle_ns;
+    const double cores = real(c.all_cores());
+    f.instructions_per_second = cores * real(c.core.issue_width) * cycles_per_second;
+    const auto fused = static_cast<std::size_t>(isa::timing::operation::fused);
+    // A class whose unit is not pipelined has one unit; others have as many as instructions issue.
+    const double fused_a_cycle =
+        c.interval[fused] > 1 ? 1 / real(c.interval[fused]) : real(c.core.issue_width);
+    f.flops_per_second = cores * fused_a_cycle * 2 * real(c.core.lanes) * cycles_per_second;
+    f.l1_bytes = cores * real(c.l1.size_bytes);
+    f.l2_bytes = real(c.chip.tiles * c.l2.size_bytes);
+    f.l1_bytes_per_second = cores * real(c.l1.ports * c.l1.port_bytes) * cycles_per_second;
+    const integer bank_cycles = (c.l1.line_bytes + c.l2.bank_bytes - 1) / c.l2.bank_bytes;
+    f.l2_bytes_per_second =
+        real(c.chip.tiles * c.l2.banks * c.l1.line_bytes) / real(bank_cycles) * cycles_per_second;
+    f.memory_bytes_per_second = real(c.memory.channels * c.memory.bus_bytes * c.memory.transfers_per_clock) *
+                                1e12 / real(c.memory.clock_ps);
+    f.l1_ns = real(c.l1.latency) * cycle_ns;
+    f.l2_ns = f.l1_ns + real(c.l2.latency) * cycle_ns;
+    const integer bursts =
+        std::max<integer>(1, c.l2.line_bytes / (c.memory.bus_bytes * c.memory.burst_length));
+    const integer data = c.memory.tCL + bursts * c.memory.burst_clocks();
+    const double there = f.l2_ns + real(c.memory.controller_cycles) * cycle_ns;
+    f.memory_open_ns = there + real(data * c.memory.clock_ps) * 1e-3;
+    f.memory_closed_ns = there + real((c.memory.tRCD + data) * c.memory.clock_ps) * 1e-3;
+    f.miss_bytes_per_second =
+        real(c.chip.tiles * c.l2.mshrs * c.l2.line_bytes) / ((f.memory_closed_ns - f.l2_ns) * 1e-9);
+    return f;
+}
+
+std::string chip_text(const Config& c) {
+    const ChipFigures f = chip_figures(c);
+    std::string out;
+    const auto line = [&out](const char* what, const std::string& text) {
+        out += fmt::format("{:<23}{}\n", what, text);
+    };
+    line("chip", fmt::format("{} tile{} of {} core{} of {} thread{}: {} cores, {} threads at {:.4g} GHz",
+                             c.chip.tiles, c.chip.tiles == 1 ? "" : "s", c.chip.cores,
+                             c.chip.cores == 1 ? "" : "s", c.chip.threads, c.chip.threads == 1 ? "" : "s",
+                             c.all_cores(), c.all_threads(), 1e3 / real(c.chip.clock_ps)));
+    line("a core", fmt::format("{} instruction{} a cycle ({}), {} lanes, issue window {}, {} predictor",
+                               c.core.issue_width, c.core.issue_width == 1 ? "" : "s", c.core.pairing,
+                               c.core.lanes, c.core.window, c.core.predictor));
+    line("instructions", rate(f.instructions_per_second, "G/s at most"));
+    line("arithmetic", rate(f.flops_per_second, "GFLOP/s at most, fused"));
+    line("L1", fmt::format("{} a core, {} ways, lines of {} bytes; {} in all; {}; {:.3g} ns",
+                           size(real(c.l1.size_bytes)), c.l1.ways, c.l1.line_bytes, size(f.l1_bytes),
+                           rate(f.l1_bytes_per_second, "GB/s"), f.l1_ns));
+    line("L2", fmt::format("{} a tile, {} ways, lines of {} bytes; {} in all; {}; {:.3g} ns",
+                           size(real(c.l2.size_bytes)), c.l2.ways, c.l2.line_bytes, size(f.l2_bytes),
+                           rate(f.l2_bytes_per_second, "GB/s"), f.l2_ns));
+    line("memory",
+         fmt::format(
+             "{} ({} channels of {} bytes at {:.4g} MT/s, {} rank{} each); {}; a read {:.3g} ns from an open "
+             "row, {:.3g} ns from none",
+             c.memory.preset, c.memory.channels, c.memory.bus_bytes,
+             1e6 * real(c.memory.transfers_per_clock) / real(c.memory.clock_ps), c.memory.ranks,
+             c.memory.ranks == 1 ? "" : "s", rate(f.memory_bytes_per_second, "GB/s"), f.memory_open_ns,
+             f.memory_closed_ns));
+    line("misses under way", fmt::format("{} lines: {} from closed rows, {:.3g} of what memory moves",
+                                         c.chip.tiles * c.l2.mshrs, rate(f.miss_bytes_per_second, "GB/s"),
+                                         f.miss_bytes_per_second / f.memory_bytes_per_second));
+    line("balance",
+         fmt::format("{:.3g} bytes of memory, {:.3g} of L2 and {:.3g} of L1 a FLOP",
+                     f.memory_bytes_per_second / f.flops_per_second,
+                     f.l2_bytes_per_second / f.flops_per_second, f.l1_bytes_per_second / f.flops_per_second));
+    line("simulated", fmt::format("in windows of {} cycles; threads of a tile run ahead by {} at most",
+                                  window_cycles(c), c.sim.quantum));
+    return out;
+}
+
+} // namespace sim

@@ -1,0 +1,141 @@
+#include "sim/machine/explain.h"
+
+#include "sim/config/parameters.h"
+#include "sim/machine/report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+using Explanations = std::vector<Explanation>;
+
+template <class Rows> void add_counters(Explanations& out, const std::string& object, const Rows& rows) {
+    for (const auto& row : rows)
+        out.push_back({fmt::format("{}.{}", object, row.name), "", row.meaning});
+}
+
+void add_stack(Explanations& out, const std::string& object, const char* whose) {
+    for (const CauseName& c : causes)
+        out.push_back(
+            {fmt::format("{}.{}", object, c.name), "cycles", fmt::format("{}: {}", whose, c.meaning)});
+}
+
+/// A sum and the same by part.
+template <class Rows>
+void add_level(Explanations& out, const std::string& level, const std::string& parts, const Rows& rows) {
+    add_counters(out, level, rows);
+    add_counters(out, parts + "[]", rows);
+}
+
+Explanations make() {
+    Explanations out;
+    for (const Parameter& p : parameters())
+        out.push_back({"machine." + p.key, p.unit, p.meaning});
+    const auto add = [&out](const char* path, const char* unit, const char* meaning) {
+        out.push_back({path, unit, meaning});
+    };
+    add("workers", "", "workers, each on a hardware thread of its own");
+    add("cycles", "cycles", "until the last worker had returned and its last result was there");
+    add("drained_cycles", "cycles", "until memory was quiet as well");
+    add("window_cycles", "cycles", "in which tiles run by themselves");
+    add("seconds", "s", "simulated time: cycles times chip.clock_ps");
+    add("coherence_of_plain_data", "", "whether stores to words that are not shared invalidate other copies");
+    add_counters(out, "core", core_counters);
+    add_stack(out, "stack", "all threads");
+    add("cores[].core", "", "number through all tiles");
+    add("cores[].instructions", "", "machine instructions of its threads");
+    add_stack(out, "cores[].stack", "the core's threads");
+    add("cores[].port_instructions[]", "", "what each port of core.pairing took; absent where any takes all");
+    add("shared_unit_cycles[]", "cycles",
+        "taken of each unit of core.shared_classes; absent where none is shared");
+    add("phases[].phase", "", "of the frame");
+    add("phases[].vops", "", "vocabulary operations in it");
+    add("phases[].instructions", "", "machine instructions in it");
+    add("kinds[].kind", "", "of work: none, or the kind of ray that asked for it");
+    add("kinds[].vops", "", "vocabulary operations for it");
+    add("kinds[].instructions", "", "machine instructions for it");
+    add_stack(out, "kinds[].stack", "all threads, for it");
+    add_level(out, "l1", "l1_by_core", cache_counters);
+    add_level(out, "l2", "l2_by_tile", cache_counters);
+    add_level(out, "memory", "memory_by_rank", memory_counters);
+    add("memory.last_clock", "memory clocks", "in which the last burst ended");
+    add("bandwidth.*.achieved_gb_s", "GB/s", "moved by all of the level's parts, over the run");
+    add("bandwidth.*.peak_gb_s", "GB/s", "what they can move at most");
+    add("bandwidth.*.utilisation", "", "achieved over peak");
+    add("limits[].resource", "", "of which the busiest instance alone bounds the run from below");
+    add("limits[].cycles", "cycles", "that it takes at the least for this work: no run is shorter");
+    add("limits[].share", "", "of the drained cycles");
+    add("binding", "", "the resource with the largest bound");
+    add("limiter", "", "what bounds the run, or what it waits for if no resource is busy for most of it");
+    add("traffic[].structure", "", "of data, as its arena is named; spill: registers");
+    add("traffic[].level", "", "of detail of what lies there; null where none is known");
+    add("traffic[].kind", "", "of work that caused it");
+    add("traffic[].phase", "", "that caused it");
+    add_counters(out, "traffic[]", traffic_columns);
+    add("touched_lines[].structure", "", "of data");
+    add("touched_lines[].lines", "", "different lines accessed by just these kinds and phases");
+    add("touched_lines[].by.*[]", "", "a kind's phases that accessed them");
+    add("threads[].tile", "", "its tile");
+    add("threads[].core", "", "its core, numbered through all tiles");
+    add("threads[].thread", "", "its number in the core");
+    add("threads[].worker", "", "that ran on it; -1: none");
+    add("threads[].finish", "cycles", "when its last result was there");
+    add("threads[].instructions", "", "machine instructions");
+    add_stack(out, "threads[].stack_of_all_phases", "the thread");
+    add_stack(out, "threads[].stack.*", "the thread, in a phase");
+    add("host.seconds", "s", "of the host, for the simulation");
+    add("host.processor_seconds", "s", "that the host's processor worked, all threads together");
+    add("host.threads", "", "of the host that tiles ran on");
+    add("host.vops_per_second", "1/s", "vocabulary operations a second of processor time");
+    add("host.instructions_per_second", "1/s", "machine instructions a second of processor time");
+    return out;
+}
+
+/// The part of a path up to the next dot, cut off.
+std::string_view cut_name(std::string_view& path) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    const std::string_view name = path.substr(0, dot);
+    path.remove_prefix(std::min(dot + 1, path.size()));
+    return name;
+}
+
+/// Without the marks of arrays.
+std::string plain(std::string_view path) {
+    std::string out(path);
+    for (std::size_t at = out.find("[]"); at != std::string::npos; at = out.find("[]"))
+        out.erase(at, 2);
+    return out;
+}
+
+} // namespace
+
+const std::vector<Explanation>& explanations() {
+    static const Explanations all = make();
+    return all;
+}
+
+bool explains(const Explanation& e, std::string_view path) {
+    std::string_view pattern = e.path;
+    while (!pattern.empty() && !path.empty()) {
+        const std::string_view wanted = cut_name(pattern);
+        const std::string_view name = cut_name(path);
+        const bool any = wanted == "*" || (wanted == "*[]" && name.ends_with("[]"));
+        if (!any && wanted != name)
+            return false;
+    }
+    return pattern.empty() && path.empty();
+}
+
+std::vector<const Explanation*> find_explanations(std::string_view words) {
+    const std::string wanted = fmt::format(".{}.", plain(words));
+    std::vector<const Explanation*> out;
+    for (const Explanation& e : explanations())
+        if (fmt::format(".{}.", plain(e.path)).find(wanted) != std::string::npos)
+            out.push_back(&e);
+    return out;
+}
+
+} // namespace sim

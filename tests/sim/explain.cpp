@@ -1,0 +1,73 @@
+// Every figure of a report is explained, and nothing is explained that no report has.
+#include "sim/machine/explain.h"
+#include "tests/sim/kernels.h"
+#include "tests/sim/machines.h"
+
+#include <nlohmann/json.hpp>
+
+#include <set>
+
+namespace sim::test {
+namespace {
+
+void collect(const nlohmann::json& node, const std::string& path, std::set<std::string>& out) {
+    if (node.is_object())
+        for (const auto& [name, value] : node.items())
+            collect(value, path.empty() ? name : path + "." + name, out);
+    else if (node.is_array())
+        for (const nlohmann::json& value : node)
+            collect(value, path + "[]", out);
+    else
+        out.insert(path);
+}
+
+/// The figures of a machine that has everything there is to report.
+std::set<std::string> figures() {
+    Config c;
+    c.chip.tiles = 2;
+    c.core.issue_width = 2;
+    c.core.pairing = "any | any";
+    c.core.shared_classes = "divide";
+    Memory memory;
+    const Report r = Machine(c).run(memory.space, 4, {{"work", "more"}, {"none", "some"}}, [&](int w) {
+        set_phase(w % 2);
+        note_level(memory.more, 64, 1);
+        mixed_work(reinterpret_cast<std::int32_t*>(memory.more),
+                   reinterpret_cast<isa::shared<std::int32_t>*>(memory.data), w, 3);
+    });
+    std::set<std::string> out;
+    collect(nlohmann::json::parse(print_json(r)), "", out);
+    return out;
+}
+
+TEST(Explain, EveryFigureOnceAndNothingElse) {
+    const std::set<std::string> all = figures();
+    EXPECT_GT(all.size(), 300U);
+    std::set<const Explanation*> used;
+    for (const std::string& path : all) {
+        int found = 0;
+        for (const Explanation& e : explanations())
+            if (explains(e, path)) {
+                ++found;
+                used.insert(&e);
+            }
+        EXPECT_EQ(found, 1) << path;
+    }
+    for (const Explanation& e : explanations()) {
+        EXPECT_TRUE(used.count(&e) == 1) << e.path << " is in no report";
+        EXPECT_FALSE(e.meaning.empty()) << e.path;
+    }
+}
+
+TEST(Explain, FindsByAnyPartOfAPath) {
+    ASSERT_EQ(find_explanations("core.mispredicts").size(), 1U);
+    EXPECT_EQ(find_explanations("core.mispredicts")[0]->path, "core.mispredicts");
+    EXPECT_EQ(find_explanations("l1.hits").size(), 1U);
+    EXPECT_EQ(find_explanations("l1_by_core.hits").size(), 1U);
+    EXPECT_GE(find_explanations("busy").size(), 4U);
+    EXPECT_TRUE(find_explanations("mispredict").empty()) << "whole names only";
+    EXPECT_TRUE(find_explanations("hits.l1").empty());
+}
+
+} // namespace
+} // namespace sim::test
