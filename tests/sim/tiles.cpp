@@ -227,7 +227,8 @@ struct NoPages : isa::page_service {
     void make_page(std::int32_t, std::int32_t, std::int32_t) override {}
 };
 
-// With words shared by all tiles, pages, levels and kinds.
+// With words shared by all tiles, pages, levels and kinds; in long windows, as each takes a busy host some
+// switches.
 TEST(Tiles, ReportsDoNotDependOnHostThreads) {
     for (integer quantum : {0, 1000})
         for (bool sharing : {false, true}) {
@@ -236,6 +237,7 @@ TEST(Tiles, ReportsDoNotDependOnHostThreads) {
                 Config c = tiled(5, 2, 2);
                 c.core.window = 8;
                 c.sim.quantum = quantum;
+                c.sim.window = 1000;
                 Shared s;
                 NoPages pages;
                 Report r = Machine(c).run(
