@@ -64,6 +64,10 @@ void Engine::settle_loads(Hart& h) {
 inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from,
                           Data& data) {
     std::uint64_t high = address + bytes - 1;
+    if (address >> line_shift_ == high >> line_shift_) [[likely]] {
+        touch_line(h, address >> line_shift_, write, 1, slots_of(bytes), from, data);
+        return;
+    }
     for (std::uint64_t line = address >> line_shift_; line <= high >> line_shift_; ++line)
         touch_line(h, line, write, 1, slots_in(line, address, high), from, data);
 }
@@ -74,7 +78,7 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
                          Data& data) {
     std::uint32_t bytes = piece_lanes_ * 4;
     if (lanes == all_lanes && address % bytes == 0 && bytes <= line_bytes_) [[likely]] {
-        std::uint32_t slots = (bytes + port_bytes_ - 1) / port_bytes_;
+        std::uint32_t slots = slots_of(bytes);
         std::uint64_t end = address + width * 4;
         while (address < end) {
             std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);

@@ -164,11 +164,14 @@ private:
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                        bool write, cycle from, Data& data);
+    std::uint32_t slots_of(std::uint32_t bytes) const {
+        return (bytes + (1U << port_byte_shift_) - 1) >> port_byte_shift_;
+    }
     /// Slots of a port that what lies of the bytes [low, high] in a line takes.
     std::uint32_t slots_in(std::uint64_t line, std::uint64_t low, std::uint64_t high) const {
         std::uint64_t first = std::max(low, line << line_shift_);
         std::uint64_t last = std::min(high, (line << line_shift_) + line_bytes_ - 1);
-        return (static_cast<std::uint32_t>(last - first) + port_bytes_) / port_bytes_;
+        return slots_of(static_cast<std::uint32_t>(last - first) + 1);
     }
     std::uint32_t span_of(std::size_t kind, std::uint32_t instructions) const;
     std::uint32_t masked_instructions(std::uint64_t lanes) const;
@@ -232,8 +235,8 @@ private:
     std::uint32_t pieces_;      // machine instructions of a vector operation
     std::uint32_t piece_lanes_; // logical lanes of one of them
     unsigned issue_shift_, port_shift_;
-    std::uint32_t issue_width_, port_bytes_, line_bytes_;
-    unsigned line_shift_;
+    std::uint32_t issue_width_, line_bytes_;
+    unsigned line_shift_, port_byte_shift_;
     std::uint64_t l1_latency_;
     // by kind of instruction (pairing.h)
     std::array<std::uint32_t, issue_kinds> latency_{}, interval_{};

@@ -61,9 +61,11 @@ void stacks_of(std::string& out, const char* what, const std::vector<Stack>& sta
             sorted[i].push_back(s[i]);
         std::sort(sorted[i].begin(), sorted[i].end());
     }
-    for (auto [name, place] :
-         {std::pair{"least", std::size_t{0}}, {"median", stacks.size() / 2}, {"most", stacks.size() - 1}})
-        row(fmt::format("{} of {}", name, stacks.size()), [&](std::size_t i) { return sorted[i][place]; });
+    const std::array<std::pair<const char*, std::size_t>, 3> places = {
+        {{"least", 0}, {"median", stacks.size() / 2}, {"most", stacks.size() - 1}}};
+    for (const auto& p : places)
+        row(fmt::format("{} of {}", p.first, stacks.size()),
+            [&](std::size_t i) { return sorted[i][p.second]; });
 }
 
 void stack(std::string& out, const Report& r) {
