@@ -35,18 +35,22 @@ QueuedMemory::QueuedMemory(const Config& config)
     channels_.reserve(wide(c.channels));
     for (std::uint32_t i = 0; i < wide(c.channels); ++i)
         channels_.emplace_back(i, c, timing_);
+    for (DramController& channel : channels_)
+        next_.push_back(channel.next_event());
 }
 
 bool QueuedMemory::has_room(Column kind, std::uint64_t burst) const {
-    if (parts_ == 1)
-        return channels_[mapping_.locate(burst << burst_shift_).channel].has_room(kind, 1);
-    for (const DramController& c : channels_) { // no channel gets more bursts of a line than all
-        if (c.has_room(kind, parts_))
+    auto channel = [&](std::uint32_t part) {
+        return mapping_.locate((burst + part) << burst_shift_).channel;
+    };
+    for (std::uint32_t i = 0; i < parts_; ++i) {
+        std::uint32_t c = channel(i);
+        if (channels_[c].has_room(kind, parts_))
             continue;
-        std::size_t bursts = 0;
-        for (std::uint32_t i = 0; i < parts_; ++i)
-            bursts += &channels_[mapping_.locate((burst + i) << burst_shift_).channel] == &c ? 1 : 0;
-        if (!c.has_room(kind, bursts))
+        std::size_t bursts = 0; // of the line, for this channel
+        for (std::uint32_t j = 0; j < parts_; ++j)
+            bursts += channel(j) == c ? 1 : 0;
+        if (!channels_[c].has_room(kind, bursts))
             return false;
     }
     return true;
@@ -62,6 +66,7 @@ void QueuedMemory::send(Column kind, std::uint64_t address, std::uint64_t id, cy
         }
         channels_[p.channel].enqueue(kind, p, burst + i, id, arrival(t));
         collect(channels_[p.channel]);
+        next_[p.channel] = channels_[p.channel].next_event();
     }
 }
 
@@ -105,10 +110,12 @@ void QueuedMemory::collect(DramController& c) {
 }
 
 void QueuedMemory::advance_clock(Clock t) {
-    for (DramController& c : channels_) {
-        c.advance_to(t);
-        collect(c);
-    }
+    for (std::size_t i = 0; i < next_.size(); ++i)
+        if (next_[i] < t) {
+            channels_[i].advance_to(t);
+            collect(channels_[i]);
+            next_[i] = channels_[i].next_event();
+        }
     deliver();
 }
 
@@ -127,9 +134,7 @@ void QueuedMemory::advance_to(cycle t) {
 }
 
 cycle QueuedMemory::next_event() {
-    Clock next = DramController::never;
-    for (DramController& c : channels_)
-        next = std::min(next, c.next_event());
+    Clock next = *std::min_element(next_.begin(), next_.end());
     if (next == DramController::never)
         return never;
     // arrival(t) > next
@@ -138,8 +143,10 @@ cycle QueuedMemory::next_event() {
 }
 
 void QueuedMemory::flush() {
-    for (DramController& c : channels_)
-        c.flush();
+    for (std::size_t i = 0; i < next_.size(); ++i) {
+        channels_[i].flush();
+        next_[i] = channels_[i].next_event();
+    }
 }
 
 void QueuedMemory::finish() {
@@ -150,6 +157,7 @@ void QueuedMemory::finish() {
         for (const MemoryCounters& n : c.counters())
             c.advance_to(n.last_clock);
         collect(c);
+        next_[static_cast<std::size_t>(&c - channels_.data())] = c.next_event();
     }
     deliver();
 }

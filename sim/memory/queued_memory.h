@@ -71,6 +71,7 @@ private:
     DramMapping mapping_;
     DramTiming timing_;
     std::vector<DramController> channels_;
+    std::vector<Clock> next_; // their next events
     std::vector<Line> reading_;
     std::uint32_t free_ = ~std::uint32_t{0};
     std::uint64_t number_ = 0;

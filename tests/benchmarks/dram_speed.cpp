@@ -1,6 +1,8 @@
 // Host nanoseconds (of processor time) that a request to the memory takes, by preset, traffic and requests in
-// flight a channel; those of the generator alone are taken off. And what the memory reached.
+// flight a channel, for the controller that answers when a request comes (those of the generator alone are
+// taken off) and for the one with queues (with its driver). And what the memory reached.
 //   dram_speed [REQUESTS]
+#include "sim/memory/dram_load.h"
 #include "tests/sim/dram_traffic.h"
 
 #include <fmt/core.h>
@@ -37,8 +39,8 @@ double generator_seconds(std::uint64_t in_flight, std::uint64_t count, const Sou
 int main(int argc, char** argv) {
     std::uint64_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
     constexpr std::uint64_t lines = std::uint64_t{1} << 24;
-    fmt::print("{:<12} {:<22} {:>9} {:>11} {:>9} {:>9}\n", "preset", "traffic", "in flight", "ns/request",
-               "GB/s", "of peak");
+    fmt::print("{:<14} {:<22} {:>9} {:<10} {:>11} {:>9} {:>9} {:>9}\n", "preset", "traffic", "in flight",
+               "controller", "ns/request", "M req/s", "GB/s", "of peak");
     for (const MemoryConfig& preset : memory_presets())
         for (std::uint64_t in_flight : {1U, 8U, 64U})
             for (int traffic = 0; traffic < 3; ++traffic) {
@@ -49,8 +51,15 @@ int main(int argc, char** argv) {
                 Outcome o = closed_loop(c, all, count, source());
                 double own = seconds(begin) - generator_seconds(all, count, source());
                 const char* const names[] = {"random reads", "random, 25 % writes", "sequential reads"};
-                fmt::print("{:<12} {:<22} {:>9} {:>11.0f} {:>9.2f} {:>7.1f} %\n", preset.preset,
-                           names[traffic], all, 1e9 * own / o.lines, o.bandwidth(c),
-                           100 * o.bytes_per_clock() / peak(c));
+                auto print = [&](const char* controller, double ns, double bytes_per_clock) {
+                    fmt::print("{:<14} {:<22} {:>9} {:<10} {:>11.0f} {:>9.2f} {:>9.2f} {:>7.1f} %\n",
+                               preset.preset, names[traffic], all, controller, ns, 1e3 / ns,
+                               bytes_per_clock * 1e3 / static_cast<double>(c.memory.clock_ps),
+                               100 * bytes_per_clock / peak(c));
+                };
+                print("immediate", 1e9 * own / o.lines, o.bytes_per_clock());
+                begin = std::clock();
+                DramOutcome q = run_dram_queued(c, source(), {0, all, count, 1});
+                print("queued", 1e9 * seconds(begin) / static_cast<double>(count), q.bytes_per_clock);
             }
 }
