@@ -40,7 +40,8 @@ extern const std::array<const char*, class_count> class_names;
 struct CacheConfig {
     integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, mshrs = 0, write_back_buffer = 0;
     integer banks = 0, bank_bytes = 0; // but of an L1
-    std::string replacement;
+    std::string replacement, write_policy, write_miss, prefetcher;
+    integer prefetch_degree = 0, prefetch_sites = 0;
 };
 struct L1Config : CacheConfig {
     integer ports = 0, port_bytes = 0;
@@ -71,6 +72,7 @@ struct KdTreeConfig {
 };
 
 struct SimulationConfig {
+    std::string miss_causes;
     integer quantum = 0, window = 0, stack_kib = 0;
 };
 

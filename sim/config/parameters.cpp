@@ -142,8 +142,21 @@ void add_classes(Table& t) {
                     "a sub-vector keeps the core's one unit of this class; 1: pipelined, as many as issue");
 }
 
-template <class Section> void add_replacement(Table& t, std::string key, Section Config::*section) {
-    t.add(std::move(key), section, &CacheConfig::replacement, {"lru", "plru", "srrip", "random"},
+/// What all caches have, whatever their place.
+template <class Section> void add_policies(Table& t, const std::string& level, Section Config::*section) {
+    using C = CacheConfig;
+    t.add(level + ".write_policy", section, &C::write_policy, {"back", "through"},
+          "back: a written line stays until it makes room; through: every write goes on to the level below");
+    t.add(level + ".write_miss", section, &C::write_miss, {"allocate", "around"},
+          "allocate: a write that misses brings the line; around: it goes on to the level below instead");
+    t.add(level + ".prefetcher", section, &C::prefetcher, {"none", "next", "stride"},
+          "next: lines after one that missed or was prefetched; stride: by site of the program, at its "
+          "accesses' distance");
+    t.add(level + ".prefetch_degree", section, &C::prefetch_degree, "lines", 1, 1, 64,
+          "that the prefetcher asks for at once");
+    t.add(level + ".prefetch_sites", section, &C::prefetch_sites, "sites", 64, 1, 65536,
+          "that the stride prefetcher tells apart");
+    t.add(level + ".replacement", section, &C::replacement, {"lru", "plru", "srrip", "random"},
           "who makes room: the least recently used; what a tree of bits leads to; the farthest of two-bit "
           "predictions of the next use; any, by a fixed sequence");
 }
@@ -154,8 +167,7 @@ void add_caches(Table& t) {
     t.add("l1.size_bytes", a, &A::size_bytes, "bytes", 8 * kibi, 16, 64 * kibi * kibi,
           "data cache of a core");
     t.add("l1.ways", a, &A::ways, "", 4, 1, 64, "associativity");
-    t.add("l1.line_bytes", a, &A::line_bytes, "bytes", 64, 16, 1024, "line; write-back, write-allocate",
-          true);
+    t.add("l1.line_bytes", a, &A::line_bytes, "bytes", 64, 16, 1024, "line", true);
     t.add("l1.latency", a, &A::latency, "cycles", 2, 1, 1000,
           "from access to data, and to the request of a miss");
     t.add("l1.ports", a, &A::ports, "accesses/cycle", 1, 1, 16, "accesses that start in a cycle");
@@ -164,14 +176,13 @@ void add_caches(Table& t) {
     t.add("l1.mshrs", a, &A::mshrs, "lines", 8, 1, 1024, "misses outstanding");
     t.add("l1.write_back_buffer", a, &A::write_back_buffer, "lines", 4, 1, 1024,
           "evicted dirty lines on their way");
-    add_replacement(t, "l1.replacement", a);
+    add_policies(t, "l1", a);
     using B = CacheConfig;
     auto b = &Config::l2;
     t.add("l2.size_bytes", b, &B::size_bytes, "bytes", 128 * kibi, 64, kibi * kibi * kibi,
           "cache shared by the cores");
     t.add("l2.ways", b, &B::ways, "", 8, 1, 64, "associativity");
-    t.add("l2.line_bytes", b, &B::line_bytes, "bytes", 64, 16, 1024, "line; write-back, write-allocate",
-          true);
+    t.add("l2.line_bytes", b, &B::line_bytes, "bytes", 64, 16, 1024, "line", true);
     t.add("l2.latency", b, &B::latency, "cycles", 12, 1, 1000,
           "from access to data, and to the request of a miss");
     t.add("l2.banks", b, &B::banks, "", 4, 1, 256, "banks, interleaved by line", true);
@@ -180,7 +191,7 @@ void add_caches(Table& t) {
     t.add("l2.mshrs", b, &B::mshrs, "lines", 16, 1, 4096, "misses outstanding");
     t.add("l2.write_back_buffer", b, &B::write_back_buffer, "lines", 8, 1, 4096,
           "evicted dirty lines on their way");
-    add_replacement(t, "l2.replacement", b);
+    add_policies(t, "l2", b);
     using C = CoherenceConfig;
     auto c = &Config::coherence;
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,
@@ -302,6 +313,8 @@ void add_simulation(Table& t) {
         "sim.window", s, &C::window, "cycles", 0, 0, 100000,
         "tiles and memory meet at the ends of windows this long; 0: as long as changes nothing, the shortest "
         "way to memory and back");
+    t.add("sim.miss_causes", s, &C::miss_causes, {"off", "on"},
+          "on: misses are told apart by cause, with a fully associative cache beside each; takes host time");
     t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 64, 65536, "host stack of a simulated thread");
 }
 

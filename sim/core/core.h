@@ -21,11 +21,11 @@ struct SharedUnit {
 };
 
 struct Core {
-    Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, Cache& below,
-         Tickets& tickets, Attribution& attribution)
+    Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, const SiteAtHand& site,
+         Cache& below, Tickets& tickets, Attribution& attribution)
         : issue("issue slots", earliest, static_cast<unsigned>(config.core.issue_width)),
           ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)), predictor(config.core),
-          l1(config.l1, 0, false, earliest, below, tickets, attribution) {
+          l1(config, 0, false, earliest, site, below, tickets, attribution) {
         for (std::size_t i = 0; i < units.size(); ++i)
             if (config.interval[i] > 1)
                 units[i].emplace("unit", earliest);

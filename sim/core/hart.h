@@ -6,6 +6,7 @@
 #include "sim/core/stalls.h"
 #include "sim/core/store_buffer.h"
 #include "sim/machine/report.h"
+#include "sim/memory/prefetcher.h"
 
 #include <vector>
 
@@ -52,6 +53,7 @@ struct Hart {
     std::uint32_t history = 0;  // of branches
     std::uint32_t overhead = 0; // 1/1024 instructions not yet charged
 
+    SiteAtHand site;        // of the operation at hand, for prefetchers by stride
     std::size_t column = 0; // of its kind of work and phase
     std::vector<Stack> stacks;
     Stack* stack = &stacks[0]; // of the column, and so are ...

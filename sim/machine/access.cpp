@@ -216,6 +216,7 @@ void Engine::stored(Hart& h, const Data& data) {
 void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span) {
     std::uint64_t place = h.spill_base + value % wide(config_.core.spill_slots) * (width * 4);
     Due now = begin(h);
+    h.site = {};
     if (unstored) {
         ++h.counters.spill_stores;
         Issued at = issue(h, vector_kind(store_kind), pieces_, now);
@@ -387,46 +388,53 @@ constexpr std::size_t vector_store = sim::vector_kind(sim::store_kind);
 
 } // namespace
 
-stamp load(site, const void* p, std::uint32_t bytes, const stamp& address) {
+stamp load(site where, const void* p, std::uint32_t bytes, const stamp& address) {
     Next n;
     n.address(address);
+    n.engine.note_site(n.hart, where);
     return n.engine.load(n.hart, p, bytes, n.ready, false);
 }
-stamp load_broadcast(site, const void* p, std::uint32_t bytes, const stamp& address) {
+stamp load_broadcast(site where, const void* p, std::uint32_t bytes, const stamp& address) {
     Next n;
     n.address(address);
+    n.engine.note_site(n.hart, where);
     return n.engine.load(n.hart, p, bytes, n.ready, true);
 }
-stamp load_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& mask) {
+stamp load_vector(site where, const void* p, std::uint64_t lanes, const stamp& address, const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_load, lanes);
     n.address(address).lanes(mask, span);
+    n.engine.note_site(n.hart, where);
     return n.engine.load_vector(n.hart, p, lanes, n.ready);
 }
-stamp gather(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
+stamp gather(site where, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_load, lanes);
     n.address(address).lanes(indices, span).lanes(mask, span);
+    n.engine.note_site(n.hart, where);
     return n.engine.gather(n.hart, p, index, lanes, n.ready);
 }
-void store(site, const void* p, std::uint32_t bytes, const stamp& address, const stamp& data) {
+void store(site where, const void* p, std::uint32_t bytes, const stamp& address, const stamp& data) {
     Next n;
     n.address(address).scalar(data);
+    n.engine.note_site(n.hart, where);
     n.engine.store(n.hart, p, bytes, n.ready);
 }
-void store_vector(site, const void* p, std::uint64_t lanes, const stamp& address, const stamp& data,
+void store_vector(site where, const void* p, std::uint64_t lanes, const stamp& address, const stamp& data,
                   const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_store, lanes);
     n.address(address).lanes(data, span).lanes(mask, span);
+    n.engine.note_site(n.hart, where);
     n.engine.store_vector(n.hart, p, lanes, n.ready);
 }
-void scatter(site, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
+void scatter(site where, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& data, const stamp& mask) {
     Next n;
     std::uint32_t span = n.engine.span(vector_store, lanes);
     n.address(address).lanes(indices, span).lanes(data, span).lanes(mask, span);
+    n.engine.note_site(n.hart, where);
     n.engine.scatter(n.hart, p, index, lanes, n.ready);
 }
 void prefetch(site, const void* p, const stamp& address) {

@@ -44,10 +44,11 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       line_shift_(log2(config.l1.line_bytes)), port_byte_shift_(log2(config.l1.port_bytes)),
       l1_latency_(wide(config.l1.latency)), pairing_(config.core.pairing),
       overhead_(static_cast<std::uint32_t>(config.core.scalar_overhead * 1024.0 + 0.5)),
-      registers_(config.core.vector_registers > 0), lane_gather_(config.core.gather == "lane"),
-      skip_idle_(config.core.skip_idle == "on"), folding_(config.core.address_folding == "on"),
-      buffered_(config.core.store_buffer > 0), hold_policy_(config.core.switch_policy == "stall"),
-      in_order_(config.core.window == 1 || hold_policy_),
+      registers_(config.core.vector_registers > 0),
+      strides_(config.l1.prefetcher == "stride" || config.l2.prefetcher == "stride"),
+      lane_gather_(config.core.gather == "lane"), skip_idle_(config.core.skip_idle == "on"),
+      folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
+      hold_policy_(config.core.switch_policy == "stall"), in_order_(config.core.window == 1 || hold_policy_),
       prediction_(config.core.predictor == "none"        ? Prediction::none
                   : config.core.predictor == "perfect"   ? Prediction::perfect
                   : config.core.predictor == "taken"     ? Prediction::taken
@@ -66,7 +67,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     for (integer t = 0; t < config.chip.tiles; ++t) {
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
         for (integer c = 0; c < config.chip.cores; ++c) {
-            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.l2,
+            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, tile.l2,
                                                  tile.tickets, tile.attribution);
             if (shares && c % config.core.shared_cores == 0)
                 tile.shared_units.emplace_back(tile.earliest);

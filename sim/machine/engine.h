@@ -59,6 +59,12 @@ public:
     /// Returns when the ticket is answered.
     Answered await(Hart& h, cycle ticket);
 
+    /// The operation at hand stands there in the program.
+    void note_site(Hart& h, site where) const {
+        if (strides_) [[unlikely]]
+            h.site = {h.tile->load_sites.number(where), true};
+    }
+
     // --- operands (rules 1 and 3): each makes `ready` no earlier than the operand, or notes that its time is
     // open. `span`: in how many cycles the operation can issue at the least
     Due begin(Hart& h) const { return later(h.bound, h.window[h.position]); }
@@ -247,7 +253,7 @@ private:
     std::array<bool, issue_kinds> shared_{};
     Pairing pairing_;
     std::uint32_t overhead_; // 1/1024 instructions
-    bool registers_, lane_gather_, skip_idle_, folding_, buffered_, hold_policy_;
+    bool registers_, strides_, lane_gather_, skip_idle_, folding_, buffered_, hold_policy_;
     bool in_order_; // operations act when they are ready, not when the issue window reaches them
     enum class Prediction { counters, taken, not_taken, none, perfect } prediction_;
 

@@ -100,6 +100,10 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
     cycle at = s.first >> port_shift_;
     if (at > from + port_backlog) [[unlikely]]
         data.granted = std::max(data.granted, at - port_backlog);
+    if (strides_) [[unlikely]] {
+        h.tile->site = h.site;
+        h.site.first = false;
+    }
     Answer a = core.l1.access(line, write, accesses, at, h.column);
     while (a.retry != 0)
         [[unlikely]] {

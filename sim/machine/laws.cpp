@@ -46,15 +46,17 @@ void check_traffic(const Report& r, const CacheCounters& l1, const CacheCounters
           total(r, &Traffic::memory_writes));
 }
 
-/// Lines were touched where there were accesses, one each at the least, and each came from the L2.
+/// Lines were touched where there were accesses, one each at the least, and each came from the L2, or was
+/// written around the L1.
 void check_touched(const Report& r) {
+    const bool around = r.config.l1.write_miss == "around";
     for (std::size_t s = 0; s + 1 < r.structures.size(); ++s) {
         std::vector<std::uint64_t> accesses(r.labels.columns()), lines(r.labels.columns());
         std::uint64_t fetched = 0, all = 0;
         for (const TrafficRow& row : r.traffic)
             if (row.structure == s) {
                 accesses[row.column] += row.traffic.l1_reads + row.traffic.l1_writes;
-                fetched += row.traffic.l2_reads;
+                fetched += row.traffic.l2_reads + (around ? row.traffic.l2_writes : 0);
             }
         for (const TouchedLines& t : r.touched)
             if (t.structure == s) {
@@ -128,13 +130,25 @@ void check_memory(const Report& r) {
 void check_levels(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
     equal("L1 hits + misses = accesses", l1.hits + l1.misses, l1.reads + l1.writes);
     equal("L2 hits + misses = accesses", l2.hits + l2.misses, l2.reads + l2.writes);
-    equal("L1 fills = misses + prefetches", l1.fills, l1.misses + l1.prefetches);
+    equal("L1 fills + writes around = misses + prefetches", l1.fills + l1.written_around,
+          l1.misses + l1.prefetches + l1.hardware_prefetches);
     equal("L2 reads = L1 fills + read-modify-writes", l2.reads, l1.fills + r.core.modifications);
-    equal("L2 writes = L1 write-backs + releases", l2.writes, l1.write_backs + r.core.releases);
+    equal("L2 writes = L1 write-backs + writes through + releases", l2.writes,
+          l1.write_backs + l1.written_through + r.core.releases);
     equal("memory reads = L2 fills", r.memory.reads, l2.fills);
-    equal("memory writes = L2 write-backs", r.memory.writes, l2.write_backs);
-    at_most("L2 fills <= misses", l2.fills, l2.misses);
-    at_most("L1 hits in flight <= hits", l1.hits_in_flight, l1.hits);
+    equal("memory writes = L2 write-backs + writes through", r.memory.writes,
+          l2.write_backs + l2.written_through);
+    at_most("L2 fills <= misses + prefetches", l2.fills + l2.written_around,
+            l2.misses + l2.hardware_prefetches);
+    for (const CacheCounters* c : {&l1, &l2}) {
+        at_most("hits in flight <= hits", c->hits_in_flight, c->hits);
+        at_most("writes around <= writes through", c->written_around, c->written_through);
+        equal("hardware prefetches = useful + useless", c->hardware_prefetches,
+              c->prefetches_useful + c->prefetches_useless);
+        at_most("late prefetches <= useful", c->prefetches_late, c->prefetches_useful);
+        equal("misses = sum over causes", r.config.sim.miss_causes == "on" ? c->misses : 0,
+              c->compulsory + c->capacity + c->conflict + c->coherence);
+    }
     check_memory(r);
 }
 

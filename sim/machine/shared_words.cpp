@@ -41,6 +41,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
+        h.tile->site = {};
         Answer line = h.tile->l2.modify({a, line_bytes_, at.last + l1_latency_, h.column});
         auto [ready_at, behind] =
             h.tile->queues.enter(a, line.ready, wide(config_.coherence.atomic_cycles), h.tile->tickets);
@@ -123,6 +124,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         check_visible(h, a, t, ready); // before the access can let others run
         Data data;
         cycle from = t;
+        h.site = {};
         touch_line(h, a >> line_shift_, false, 1, 1, from, data);
         ready.later(Due(data.last, data.from));
         if (data.open != 0) {

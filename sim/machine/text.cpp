@@ -86,6 +86,16 @@ void stack(std::string& out, const Report& r) {
 void level(std::string& out, const char* name, const CacheCounters& c) {
     out += fmt::format("  {:<8} {:>12} {:>12} {:>12} {:>12} {:>8.2f} % {:>12}\n", name, c.reads, c.writes,
                        c.hits, c.misses, 100 * ratio(c.misses, c.reads + c.writes), c.write_backs);
+    if (c.compulsory + c.capacity + c.conflict + c.coherence != 0)
+        out += fmt::format("           misses: {} compulsory, {} capacity, {} conflict, {} coherence\n",
+                           c.compulsory, c.capacity, c.conflict, c.coherence);
+    if (c.written_through != 0)
+        out += fmt::format("           written through: {}, of which {} missed and brought no line\n",
+                           c.written_through, c.written_around);
+    if (c.hardware_prefetches + c.prefetches_dropped != 0)
+        out +=
+            fmt::format("           hardware prefetches: {}, of which {} useful ({} late), {} useless\n",
+                        c.hardware_prefetches, c.prefetches_useful, c.prefetches_late, c.prefetches_useless);
 }
 
 void memory(std::string& out, const Report& r) {

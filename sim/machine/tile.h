@@ -19,7 +19,7 @@ struct Tile {
     Tile(const Config& config, std::uint32_t number, std::uint64_t window, LineMap& lines,
          std::size_t columns)
         : number(number), attribution(lines, number, columns), exit(number, tickets, attribution),
-          l2(config.l2, 1, true, earliest, exit, tickets, attribution),
+          l2(config, 1, true, earliest, site, exit, tickets, attribution),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
                     static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
 
@@ -39,6 +39,8 @@ struct Tile {
     cycle earliest = 0; // no operation from now on acts before
     Attribution attribution;
     Tickets tickets;
+    SiteAtHand site; // for prefetchers by stride
+    Sites load_sites;
     TileExit exit;
     Cache l2;
     std::deque<SharedUnit> shared_units;

@@ -33,6 +33,7 @@ public:
     void note_level_of(std::uint64_t address, std::uint64_t bytes, std::uint64_t other) {
         map_.note_level_of(address, bytes, other, tile_, notes_);
     }
+    std::uint64_t spill_begin() const { return map_.spill_begin(); }
     /// Between windows.
     void publish_notes() { LineMap::publish(notes_); }
 

@@ -30,6 +30,7 @@ struct Access {
     bool whole =
         false; // of a write: all bytes that move are written, so that a line of them need not be read
     bool followed = false; // of a write: the read of what takes its place follows at once
+    bool modify = false;   // a read that changes what it reads
     bool forced = false;   // happens at once, whatever is busy
 };
 

@@ -1,6 +1,7 @@
 #include "sim/memory/cache.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -11,40 +12,59 @@ std::uint64_t wide(integer x) {
 unsigned log2(integer x) {
     return static_cast<unsigned>(std::countr_zero(wide(x)));
 }
+const CacheConfig& of_level(const Config& machine, unsigned level) {
+    return level == 0 ? machine.l1 : machine.l2;
+}
+std::size_t sets(const CacheConfig& c) {
+    return wide(c.size_bytes / (c.ways * c.line_bytes));
+}
 
 } // namespace
 
-Cache::Cache(const CacheConfig& config, unsigned level, bool last, const cycle& earliest, Below& below,
-             Tickets& tickets, Attribution& attribution)
-    : line_shift_(log2(config.line_bytes)), bank_shift_(level == 0 ? 0 : log2(config.bank_bytes)),
-      latency_(wide(config.latency)), bank_mask_(level == 0 ? 0 : wide(config.banks) - 1), last_(last),
+Cache::Cache(const Config& machine, unsigned level, bool last, const cycle& earliest, const SiteAtHand& site,
+             Below& below, Tickets& tickets, Attribution& attribution)
+    : Cache(machine, of_level(machine, level), level, last, earliest, site, below, tickets, attribution) {}
+
+Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, bool last,
+             const cycle& earliest, const SiteAtHand& site, Below& below, Tickets& tickets,
+             Attribution& attribution)
+    : level_(level), line_shift_(log2(config.line_bytes)),
+      bank_shift_(level == 0 ? 0 : log2(config.bank_bytes)),
+      port_bytes_(static_cast<std::uint32_t>(machine.l1.port_bytes)), latency_(wide(config.latency)),
+      bank_mask_(level == 0 ? 0 : wide(config.banks) - 1), last_(last),
+      through_(config.write_policy == "through"), around_(config.write_miss == "around"),
       cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), traffic_(traffic_of_level[level]),
-      array_(wide(config.size_bytes / (config.ways * config.line_bytes)), wide(config.ways),
-             replacement_of(config.replacement)),
+      array_(sets(config), wide(config.ways), replacement_of(config.replacement)),
       banks_(level == 0 ? 0 : wide(config.banks), Calendar("cache bank", earliest)),
       mshrs_(wide(config.mshrs), tickets), write_backs_(wide(config.write_back_buffer), tickets),
-      tickets_(tickets), below_(below), attribution_(attribution) {
+      prefetcher_(config.prefetcher, static_cast<std::uint32_t>(config.prefetch_degree),
+                  wide(config.prefetch_sites)),
+      tickets_(tickets), below_(below), site_(site), attribution_(attribution) {
     if (last)
         mshrs_.lift_limit();
+    if (machine.sim.miss_causes == "on")
+        causes_ = std::make_unique<MissCauses>(wide(config.size_bytes / config.line_bytes));
+    special_ = through_ || around_ || causes_ || prefetcher_.kind() != Prefetcher::Kind::none;
 }
 
-/// An access that found its line on its way there.
+/// An access that found its line on its way there, or prefetched and not used yet.
 Answer Cache::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present) {
     Pool::Hold* hold = mshrs_.find(line);
-    if (hold == nullptr) {
+    bool waits = hold != nullptr && (is_ticket(hold->until) || hold->until > present.ready);
+    if (array_.prefetched(entry)) {
+        array_.set_prefetched(entry, false);
+        used_prefetched_ = true;
+        ++counters_.prefetches_useful;
+        counters_.prefetches_late += waits ? 1 : 0;
+    }
+    if (!waits) {
         array_.set_in_flight(entry, false);
         return present;
     }
-    if (is_ticket(hold->until)) { // the line may be there before the access
-        ++counters_.hits_in_flight;
+    ++counters_.hits_in_flight;
+    if (is_ticket(hold->until)) // the line may be there before the access
         return {tickets_.no_earlier(hold->until, present.ready, present.from), hold->cause};
-    }
-    if (hold->until > present.ready) {
-        ++counters_.hits_in_flight;
-        return {hold->until, hold->cause};
-    }
-    array_.set_in_flight(entry, false);
-    return present;
+    return {hold->until, hold->cause};
 }
 
 /// Sends a dirty line on its way, from the buffer that it has entered at `t`. Returns 0, or when to try
@@ -82,6 +102,7 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column) 
         return below;
     ++counters_.fills;
     mshrs_.hold({line, t, below.ready, below.from});
+    count_useless(entry);
     array_.fill(entry, line);
     array_.set_in_flight(entry, true);
     return below;
@@ -91,10 +112,30 @@ void Cache::prefetch(std::uint64_t address, cycle t, std::size_t column) {
     std::uint64_t line = address >> line_shift_;
     if (array_.find(line) != CacheArray::none)
         return;
-    if (fill(line, t, t + latency_, column).retry != 0)
+    if (fill(line, t, t + latency_, column).retry != 0) {
         ++counters_.prefetches_dropped;
-    else
-        ++counters_.prefetches;
+        return;
+    }
+    ++counters_.prefetches;
+    if (causes_)
+        causes_->use(line, true);
+}
+
+/// An access to an L1 that does more than the least.
+Answer Cache::special_access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t,
+                             std::size_t column) {
+    std::uint64_t address = line << line_shift_;
+    bool hit = false;
+    Answer answer =
+        perform({address, std::min(std::uint32_t{1} << line_shift_, accesses * port_bytes_), t, column}, line,
+                write, t + latency_, hit);
+    if (answer.retry != 0)
+        return answer;
+    counters_.hits += hit ? accesses : accesses - 1;
+    Traffic& cell = attribution_.touch(address, column);
+    (write ? counters_.writes : counters_.reads) += accesses;
+    cell.*(write ? traffic_.writes : traffic_.reads) += accesses;
+    return answer;
 }
 
 Answer Cache::serve(const Access& a, bool write) {
@@ -102,20 +143,11 @@ Answer Cache::serve(const Access& a, bool write) {
     std::uint32_t slots = (a.bytes + (1U << bank_shift_) - 1) >> bank_shift_;
     Calendar& bank = banks_[line & bank_mask_];
     cycle start = bank.find_run(a.at, slots);
-    Answer answer{start + latency_, cause_};
-    CacheArray::Entry entry = array_.find(line);
-    if (entry != CacheArray::none) {
-        ++counters_.hits;
-        array_.touch(entry);
-        if (write)
-            array_.set_dirty(entry, true);
-        if (array_.in_flight(entry)) [[unlikely]]
-            answer = in_flight(entry, line, answer);
-    } else {
-        answer = miss(a, line, write, answer.ready);
-        if (answer.retry != 0)
-            return answer;
-    }
+    bool hit = false;
+    Answer answer = perform(a, line, write, start + latency_, hit);
+    if (answer.retry != 0)
+        return answer;
+    counters_.hits += hit ? 1 : 0;
     bank.mark_run(start, slots);
     quiet_ = std::max(quiet_, start + slots);
     Traffic& cell = attribution_.cell(a.address, a.column);
@@ -125,31 +157,123 @@ Answer Cache::serve(const Access& a, bool write) {
     return answer;
 }
 
-Answer Cache::miss(const Access& a, std::uint64_t line, bool write, cycle done) {
+/// What an access does to lines here and below; what hits is there at `done`.
+Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle done, bool& hit) {
+    CacheArray::Entry entry = array_.find(line);
+    hit = entry != CacheArray::none;
+    bool brings = !hit && !(write && around_);
+    bool changes = write || a.modify;
+    bool goes_on = (changes && through_) || (write && !hit && around_);
+    if (goes_on && !last_ && !a.forced)
+        if (cycle room = write_backs_.take(a.at); room != a.at)
+            return Answer::later(room);
+    Answer answer{done, cause_};
+    if (hit) {
+        array_.touch(entry);
+        if (changes && !through_)
+            array_.set_dirty(entry, true);
+        if (array_.in_flight(entry)) [[unlikely]]
+            answer = in_flight(entry, line, answer);
+    } else if (brings) {
+        answer = allocate(a, line, write, done);
+        if (answer.retry != 0)
+            return answer;
+    }
+    if (goes_on) {
+        Answer accepted = send_on(a, done);
+        answer = write ? accepted : answer;
+    }
+    if (!hit) {
+        ++counters_.misses;
+        ++(attribution_.cell(a.address, a.column).*traffic_.misses);
+        counters_.written_around += brings ? 0 : 1;
+        count_cause(line);
+    }
+    if (causes_)
+        causes_->use(line, !(write && around_));
+    if (prefetcher_.kind() != Prefetcher::Kind::none)
+        prefetch_after(a, line, brings || std::exchange(used_prefetched_, false), done);
+    return answer;
+}
+
+/// The line of an access that missed comes, and makes room for itself.
+Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle done) {
     Answer answer{done, cause_};
     if (write && a.whole && a.bytes >> line_shift_ != 0) { // all of the line comes from above
         CacheArray::Entry entry = array_.victim(line);
         if (array_.dirty(entry))
-            write_back(entry, done, done, a.column, false, a.forced);
+            if (cycle retry = write_back(entry, done, done, a.column, false, a.forced); retry != 0)
+                return Answer::later(retry);
+        count_useless(entry);
         array_.fill(entry, line);
     } else {
         answer = fill(line, a.at, done, a.column);
         if (answer.retry != 0)
             return answer;
     }
-    array_.set_dirty(array_.find(line), write);
-    ++counters_.misses;
-    ++(attribution_.cell(a.address, a.column).*traffic_.misses);
+    if ((write || a.modify) && !through_)
+        array_.set_dirty(array_.find(line), true);
     return answer;
 }
 
+/// A write goes on to the level below.
+Answer Cache::send_on(const Access& a, cycle down) {
+    Answer accepted = below_.write({a.address, a.bytes, down, a.column, a.whole, false, true});
+    ++counters_.written_through;
+    if (!last_)
+        write_backs_.hold({a.address >> line_shift_, a.at, accepted.ready, Cause::mshrs});
+    return accepted;
+}
+
+void Cache::count_cause(std::uint64_t line) {
+    if (!causes_)
+        return;
+    switch (causes_->of(line)) {
+    case MissCause::compulsory:
+        ++counters_.compulsory;
+        break;
+    case MissCause::capacity:
+        ++counters_.capacity;
+        break;
+    case MissCause::conflict:
+        ++counters_.conflict;
+        break;
+    case MissCause::coherence:
+        ++counters_.coherence;
+        break;
+    }
+}
+
+/// Prefetches stay on their access's side of the end of frame memory.
+void Cache::prefetch_after(const Access& a, std::uint64_t line, bool first, cycle down) {
+    if (prefetcher_.kind() == Prefetcher::Kind::stride && level_ == 0 && !site_.first)
+        return;
+    std::uint64_t end = attribution_.spill_begin() >> line_shift_;
+    prefetcher_.after(line, first, site_.number, [&](std::uint64_t wanted) {
+        if ((wanted < end) != (line < end) || array_.find(wanted) != CacheArray::none)
+            return;
+        if (fill(wanted, a.at, down, a.column).retry != 0) {
+            ++counters_.prefetches_dropped;
+            return;
+        }
+        array_.set_prefetched(array_.find(wanted), true);
+        ++counters_.hardware_prefetches;
+        if (causes_)
+            causes_->use(wanted, true);
+    });
+}
+
 void Cache::invalidate(std::uint64_t address, cycle t, std::size_t column) {
-    CacheArray::Entry entry = array_.find(address >> line_shift_);
+    std::uint64_t line = address >> line_shift_;
+    CacheArray::Entry entry = array_.find(line);
+    if (causes_)
+        causes_->invalidate(line, entry != CacheArray::none);
     if (entry == CacheArray::none)
         return;
     ++counters_.invalidations;
     if (array_.dirty(entry))
         write_back(entry, t, t, column, false, true);
+    count_useless(entry);
     array_.drop(entry);
 }
 

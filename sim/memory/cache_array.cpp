@@ -36,7 +36,7 @@ CacheArray::CacheArray(std::size_t sets, std::size_t ways, Replacement replaceme
     : mask_(sets - 1), ways_(static_cast<std::uint32_t>(ways)), replacement_(replacement),
       order_at_((ways + (replacement == Replacement::srrip ? 1 : 0) + 3) / 4 * 16),
       flags_at_((order_at_ + state_bytes(replacement, ways) + 7) / 8 * 8),
-      stride_((flags_at_ + 16 + 15) / 16 * 16), bytes_(sets * stride_ + 64) {
+      stride_((flags_at_ + 24 + 15) / 16 * 16), bytes_(sets * stride_ + 64) {
     while ((std::size_t{1} << set_bits_) < sets)
         ++set_bits_;
     std::size_t misaligned = reinterpret_cast<std::uintptr_t>(bytes_.data()) % 64;

@@ -1,4 +1,4 @@
-// Tags of a set-associative cache, replacement, and two flags a line. Knows nothing of time or data. A set
+// Tags of a set-associative cache, replacement, and three flags a line. Knows nothing of time or data. A set
 // lies in consecutive memory of the host, 64 bytes for eight ways: the tags, filled up to groups of four;
 // what replacement remembers; the flags. Replacement remembers
 // * lru: the ways, last used first, a byte each;
@@ -100,12 +100,14 @@ public:
         set_tag(e, tag(line));
         set_dirty(e, false);
         set_in_flight(e, false);
+        set_prefetched(e, false);
     }
     void drop(Entry e) {
         std::byte* set = base_ + (e >> 6U) * stride_;
         set_tag(e, empty);
         set_dirty(e, false);
         set_in_flight(e, false);
+        set_prefetched(e, false);
         if (replacement_ != Replacement::lru)
             return;
         // Oldest from now on.
@@ -120,7 +122,9 @@ public:
 
     bool dirty(Entry e) const { return flag(e, 0); }
     bool in_flight(Entry e) const { return flag(e, 8); }
+    bool prefetched(Entry e) const { return flag(e, 16); }
     void set_dirty(Entry e, bool on) { set_flag(e, 0, on); }
+    void set_prefetched(Entry e, bool on) { set_flag(e, 16, on); }
     void set_in_flight(Entry e, bool on) { set_flag(e, 8, on); }
 
     /// Calls f(entry) for every line that is there.

@@ -16,8 +16,11 @@ struct CacheCounters {
     std::uint64_t reads = 0, writes = 0, hits = 0, hits_in_flight = 0, misses = 0, fills = 0, write_backs = 0;
     std::uint64_t invalidations = 0, discarded = 0, prefetches = 0, prefetches_dropped = 0, busy_cycles = 0,
                   dropped = 0;
+    std::uint64_t written_through = 0, written_around = 0;
+    std::uint64_t hardware_prefetches = 0, prefetches_useful = 0, prefetches_late = 0, prefetches_useless = 0;
+    std::uint64_t compulsory = 0, capacity = 0, conflict = 0, coherence = 0;
 };
-inline constexpr std::array<CounterRow<CacheCounters>, 13> cache_counters = {{
+inline constexpr std::array<CounterRow<CacheCounters>, 23> cache_counters = {{
     {"reads", &CacheCounters::reads, "read accesses"},
     {"writes", &CacheCounters::writes, "write accesses"},
     {"hits", &CacheCounters::hits, "accesses that found their line, on its way or there"},
@@ -31,9 +34,22 @@ inline constexpr std::array<CounterRow<CacheCounters>, 13> cache_counters = {{
     {"discarded", &CacheCounters::discarded, "dirty lines made clean because their contents were dead"},
     {"prefetches", &CacheCounters::prefetches, "fills begun by prefetch operations"},
     {"prefetches_dropped", &CacheCounters::prefetches_dropped,
-     "prefetches dropped because every MSHR was busy"},
+     "prefetches, also of hardware, dropped because every MSHR was busy"},
     {"busy_cycles", &CacheCounters::busy_cycles, "port or bank cycles taken"},
     {"dropped", &CacheCounters::dropped, "dirty lines of data that died with the frame, never written back"},
+    {"written_through", &CacheCounters::written_through,
+     "writes sent to the level below, those around included"},
+    {"written_around", &CacheCounters::written_around, "of these, writes that missed and brought no line"},
+    {"hardware_prefetches", &CacheCounters::hardware_prefetches, "fills begun by the cache's prefetcher"},
+    {"prefetches_useful", &CacheCounters::prefetches_useful, "of these, lines that were accessed"},
+    {"prefetches_late", &CacheCounters::prefetches_late,
+     "of these, on their way when they were first accessed"},
+    {"prefetches_useless", &CacheCounters::prefetches_useless,
+     "hardware prefetches of lines that left, or the frame ended, before they were accessed"},
+    {"compulsory", &CacheCounters::compulsory, "misses of lines never asked for before (sim.miss_causes)"},
+    {"capacity", &CacheCounters::capacity, "misses that a fully associative cache has too"},
+    {"conflict", &CacheCounters::conflict, "misses that a fully associative cache does not have"},
+    {"coherence", &CacheCounters::coherence, "misses of lines invalidated since they were last used"},
 }};
 
 struct MemoryCounters {

@@ -38,8 +38,9 @@ class Hierarchy {
 public:
     explicit Hierarchy(const Config& c)
         : line_shift_(static_cast<unsigned>(std::countr_zero(u(c.l1.line_bytes)))), space_(1 << 20),
-          lines_(space_, line_shift_), attribution_(lines_, 0, 1), l2(c.l2, 1, true, now_, memory, tickets_, attribution_),
-          l1(c.l1, 0, false, now_, l2, tickets_, attribution_) {}
+          lines_(space_, line_shift_), attribution_(lines_, 0, 1),
+          l2(c, 1, true, now_, site_, memory, tickets_, attribution_),
+          l1(c, 0, false, now_, site_, l2, tickets_, attribution_) {}
 
     void access(const Reference& r) {
         for (std::uint64_t line = r.address >> line_shift_; line <= (r.address + r.bytes - 1) >> line_shift_;
@@ -56,6 +57,7 @@ private:
     cycle now_ = 0;
     isa::address_space space_;
     Tickets tickets_;
+    SiteAtHand site_;
     LineMap lines_;
     Attribution attribution_;
 
@@ -64,7 +66,13 @@ public:
 };
 
 CacheOracle::Kind kind(const CacheConfig& c) {
-    return {u(c.size_bytes), u(c.ways), u(c.line_bytes), c.replacement};
+    return {u(c.size_bytes),
+            u(c.ways),
+            u(c.line_bytes),
+            c.replacement,
+            c.write_policy == "through",
+            c.write_miss == "around",
+            c.prefetcher == "next" ? u(c.prefetch_degree) : 0};
 }
 
 void expect_equal(const CacheCounters& c, const CacheOracle& o) {
@@ -73,6 +81,18 @@ void expect_equal(const CacheCounters& c, const CacheOracle& o) {
     EXPECT_EQ(c.misses, o.misses);
     EXPECT_EQ(c.fills, o.fills);
     EXPECT_EQ(c.write_backs, o.write_backs);
+    EXPECT_EQ(c.written_through, o.written_through);
+    EXPECT_EQ(c.written_around, o.written_around);
+    EXPECT_EQ(c.hardware_prefetches, o.prefetches);
+    EXPECT_EQ(c.prefetches_useful, o.used);
+    EXPECT_EQ(c.compulsory, o.compulsory);
+    EXPECT_EQ(c.capacity, o.capacity);
+    EXPECT_EQ(c.conflict, o.conflict);
+    EXPECT_EQ(c.coherence, 0U);
+}
+
+std::uint32_t u32(integer x) {
+    return static_cast<std::uint32_t>(x);
 }
 
 void compare(const Config& c, const std::vector<Reference>& stream) {
@@ -83,9 +103,9 @@ void compare(const Config& c, const std::vector<Reference>& stream) {
     const std::uint64_t line = u(c.l1.line_bytes);
     for (const Reference& r : stream)
         for (std::uint64_t a = r.address / line * line; a < r.address + r.bytes; a += line)
-            l1.access(a, r.write);
+            l1.access(a, r.write, u32(c.l1.port_bytes));
     for (const OracleRequest& r : l1.out)
-        l2.access(r.address, r.write, r.write && r.bytes == u(c.l2.line_bytes));
+        l2.access(r.address, r.write, r.bytes);
     expect_equal(h.l1.counters(), l1);
     expect_equal(h.l2.counters(), l2);
     EXPECT_TRUE(h.memory.asked == l2.out);
@@ -116,11 +136,31 @@ Config machine(integer size, integer ways, integer line, integer l2_size, intege
     c.l2.ways = l2_ways;
     c.l2.line_bytes = l2_line;
     c.l1.replacement = c.l2.replacement = replacement;
+    c.l1.port_bytes = 8;
+    c.l2.mshrs = c.l1.mshrs = 64; // so that no prefetch is dropped
+    c.sim.miss_causes = "on";
     return c;
 }
 
 std::vector<Config> machines() {
     std::vector<Config> out;
+    struct Writes {
+        const char *l1_policy, *l1_miss, *l2_policy, *l2_miss;
+        integer ahead;
+    };
+    for (const Writes& w : {Writes{"through", "around", "back", "allocate", 0},
+                            {"through", "allocate", "through", "around", 1},
+                            {"back", "around", "back", "around", 4},
+                            {"back", "allocate", "back", "allocate", 2}}) {
+        Config c = machine(8192, 4, 16, 98304, 12, 64, "lru"); // lines and ways as of Niagara
+        c.l1.write_policy = w.l1_policy;
+        c.l1.write_miss = w.l1_miss;
+        c.l2.write_policy = w.l2_policy;
+        c.l2.write_miss = w.l2_miss;
+        c.l1.prefetcher = c.l2.prefetcher = w.ahead == 0 ? "none" : "next";
+        c.l1.prefetch_degree = c.l2.prefetch_degree = std::max<integer>(1, w.ahead);
+        out.push_back(c);
+    }
     for (const char* replacement : {"lru", "plru", "srrip", "random"}) {
         out.push_back(machine(8192, 4, 64, 131072, 8, 64, replacement));
         out.push_back(machine(4096, 1, 16, 65536, 16, 64, replacement));
@@ -135,7 +175,8 @@ TEST(CacheOracle, SyntheticStream) {
     const char* text = std::getenv("RAZOR_CACHE_REFERENCES");
     const std::vector<Reference> stream = synthetic(text != nullptr ? std::stoull(text) : 200000);
     for (const Config& c : machines()) {
-        SCOPED_TRACE(c.l1.replacement + " " + std::to_string(c.l1.ways));
+        SCOPED_TRACE(c.l1.replacement + " " + std::to_string(c.l1.ways) + " " + c.l1.write_policy + " " +
+                     c.l1.write_miss);
         compare(c, stream);
     }
 }
@@ -167,7 +208,8 @@ TEST(CacheOracle, RecordedTrace) {
     const std::vector<Reference> stream = read_trace(file);
     ASSERT_EQ(stream.size(), 31507U + 12338U);
     for (const Config& c : machines()) {
-        SCOPED_TRACE(c.l1.replacement + " " + std::to_string(c.l1.ways));
+        SCOPED_TRACE(c.l1.replacement + " " + std::to_string(c.l1.ways) + " " + c.l1.write_policy + " " +
+                     c.l1.write_miss);
         compare(c, stream);
     }
 }

@@ -1,9 +1,7 @@
-// Closed forms of the memory system, and caches against a model of their own.
+// Closed forms of the memory system; caches.cpp compares what they hold.
 #include "tests/sim/machines.h"
 
 #include <algorithm>
-#include <list>
-#include <random>
 
 namespace sim::test {
 namespace {
@@ -247,73 +245,99 @@ TEST(Caches, PrefetchHidesTheMiss) {
     EXPECT_EQ(r.l1[0].misses, 0U);
 }
 
-/// Least recently used, written for this test alone: a list a set.
-class Oracle {
-public:
-    Oracle(std::size_t sets, std::size_t ways) : sets_(sets), ways_(ways) {}
-    std::uint64_t misses = 0, write_backs = 0;
-    std::vector<std::pair<std::uint64_t, bool>> out; // what it asks of the next level: (line, write)
-
-    void access(std::uint64_t number, bool write) {
-        auto& set = sets_[number % sets_.size()];
-        auto found = std::find_if(set.begin(), set.end(), [&](const auto& e) { return e.first == number; });
-        if (found != set.end()) {
-            set.splice(set.begin(), set, found);
-            set.front().second |= write;
-            return;
-        }
-        ++misses;
-        if (set.size() == ways_) {
-            if (set.back().second) {
-                ++write_backs;
-                out.emplace_back(set.back().first, true);
-            }
-            set.pop_back();
-        }
-        out.emplace_back(number, false);
-        set.emplace_front(number, write);
-    }
-
-private:
-    std::vector<std::list<std::pair<std::uint64_t, bool>>> sets_;
-    std::size_t ways_;
-};
-
-TEST(Caches, EqualASimpleModel) {
-    std::mt19937 random(7);
-    for (auto [size, ways, l2_size, l2_ways] : {std::array<integer, 4>{1024, 1, 4096, 1},
-                                                {1024, 2, 8192, 4},
-                                                {4096, 4, 16384, 8},
-                                                {1536, 3, 12288, 6},
-                                                {512, 8, 131072, 16}}) {
+// Independent stores that all go through: an entry of the buffer each, until the L2's bank has taken it.
+TEST(Caches, WritesThroughWaitForTheBuffer) {
+    for (integer entries : {1, 2, 4}) {
         Config c = equal_clocks();
-        c.l1.size_bytes = size;
-        c.l1.ways = ways;
-        c.l2.size_bytes = l2_size;
-        c.l2.ways = l2_ways;
-        std::vector<std::pair<std::uint32_t, bool>> stream;
-        for (int i = 0; i < 100000; ++i) {
-            std::uint32_t span = random() % 4 == 0 ? 4096 : 64; // lines: most are near
-            stream.emplace_back(random() % (span * 16) * 4, random() % 3 == 0);
-        }
-        Report r = run_on(c, [&](std::byte* base, int) {
-            for (auto [offset, write] : stream)
-                if (write)
-                    isa::timing::store(here, base + offset, 4, stamp{}, stamp{});
-                else
-                    load(here, base + offset, 4, stamp{});
-        });
-        Oracle l1(u(size / (ways * line)), u(ways)), l2(u(l2_size / (l2_ways * line)), u(l2_ways));
-        for (auto [offset, write] : stream)
-            l1.access(offset / u(line), write);
-        for (auto [number, write] : l1.out)
-            l2.access(number, write);
-        EXPECT_EQ(r.l1[0].misses, l1.misses);
-        EXPECT_EQ(r.l1[0].write_backs, l1.write_backs);
-        EXPECT_EQ(r.l2_total().reads + r.l2_total().writes, l1.out.size());
-        EXPECT_EQ(r.l2_total().misses, l2.misses);
-        EXPECT_EQ(r.l2_total().write_backs, l2.write_backs);
+        c.l1.write_policy = "through";
+        c.l1.write_back_buffer = entries;
+        c.l2.banks = 16;
+        auto body = [=](int turns) {
+            return run_on(c, [=](std::byte* base, int) {
+                for (int t = 0; t < turns; ++t)
+                    for (int i = 0; i < 64; ++i)
+                        isa::timing::store(here, base + i * line, 4, stamp{}, stamp{});
+            });
+        };
+        Report three = body(3), two = body(2);
+        EXPECT_EQ(three.l1[0].written_through, 3 * 64U);
+        EXPECT_EQ(three.l1[0].write_backs, 0U);
+        EXPECT_EQ((three.cycles - two.cycles) * u(entries), 64 * u(c.l1.latency + c.l2.latency)) << entries;
     }
+}
+
+TEST(Caches, WritesAroundBringNoLine) {
+    Config c = equal_clocks();
+    c.l1.write_miss = "around";
+    Report r = run_on(c, [](std::byte* base, int) {
+        isa::timing::store(here, base, 4, stamp{}, stamp{}); // around
+        stamp s = load(here, base, 4, stamp{1000, 1000});    // comes from the L2
+        isa::timing::store(here, base, 4, stamp{}, s);       // hits
+    });
+    EXPECT_EQ(r.l1[0].written_around, 1U);
+    EXPECT_EQ(r.l1[0].misses, 2U);
+    EXPECT_EQ(r.l1[0].fills, 1U);
+    EXPECT_EQ(r.l2_total().misses, 1U);
+}
+
+// Lines a stride apart, each load waiting for the one before: from the fourth on the L1 has asked before.
+TEST(Caches, StridesAreFollowedBySite) {
+    Config c = equal_clocks();
+    c.l1.prefetcher = "stride";
+    c.l1.prefetch_degree = 8;
+    c.l1.mshrs = c.l2.mshrs = 16;
+    const integer stride = 3 * line;
+    auto body = [&](bool two_sites) {
+        return run_on(c, [=](std::byte* base, int) {
+            const site there{"test", 2};
+            for (int i = 0; i < 20; ++i) {
+                auto at = static_cast<cycle>(1000 * (i + 1));
+                load(here, base + i * stride, 4, stamp{at, at});
+                load(two_sites ? there : here, base + 65536 - i * stride, 4, stamp{at, at});
+            }
+        });
+    };
+    Report r = body(true);
+    EXPECT_EQ(r.l1[0].misses, 2 * 3U);
+    EXPECT_EQ(r.l1[0].prefetches_useful, 2 * 17U);
+    EXPECT_EQ(r.l1[0].prefetches_late, 0U);
+    EXPECT_EQ(r.l1[0].prefetches_useless, 2 * 8U);
+    EXPECT_EQ(body(false).l1[0].misses, 40U);
+}
+
+// The next line is asked for when one misses: it is late by as much as it was asked late.
+TEST(Caches, NextLinesComeLate) {
+    Config c = equal_clocks();
+    c.l1.prefetcher = "next";
+    Report r = run_on(c, [](std::byte* base, int) {
+        load(here, base, 4, stamp{});
+        load(here, base + line, 4, stamp{});
+        load(here, base + 2 * line, 4, stamp{1000, 1000});
+    });
+    EXPECT_EQ(r.l1[0].misses, 1U);
+    EXPECT_EQ(r.l1[0].hardware_prefetches, 3U);
+    EXPECT_EQ(r.l1[0].prefetches_useful, 2U);
+    EXPECT_EQ(r.l1[0].prefetches_late, 1U);
+    EXPECT_EQ(r.l1[0].prefetches_useless, 1U);
+}
+
+TEST(Caches, MissesHaveCauses) {
+    Config c = equal_clocks();
+    c.sim.miss_causes = "on";
+    const integer lines = c.l1.size_bytes / line, sets = lines / c.l1.ways;
+    Report r = run_on(c, [=](std::byte* base, int) {
+        auto pass = [=](integer count, integer step) {
+            for (int i = 0; i < count; ++i)
+                load(here, base + i * step * line, 4, stamp{});
+        };
+        pass(5, sets);      // a line more than the set has ways
+        pass(5, sets);      // all gone, with room elsewhere
+        pass(lines + 1, 1); // of the five, the last has seen as many others as there is room for
+        pass(lines + 1, 1); // a line more than there is room for; only one set misses
+    });
+    EXPECT_EQ(r.l1[0].compulsory, u(lines + 1));
+    EXPECT_EQ(r.l1[0].conflict, 5 + 4U);
+    EXPECT_EQ(r.l1[0].capacity, 1 + 5U);
 }
 
 } // namespace

@@ -55,10 +55,19 @@ Config random_machine(std::mt19937& random) {
         return std::array{"lru", "srrip", "random",
                           std::has_single_bit(u(ways)) ? "plru" : "lru"}[random() % 4];
     };
-    c.l1.replacement = replacement(c.l1.ways);
+    auto policies = [&](CacheConfig& cache) {
+        cache.replacement = replacement(cache.ways);
+        cache.write_policy = pick(0, 1) == 0 ? "back" : "through";
+        cache.write_miss = pick(0, 1) == 0 ? "allocate" : "around";
+        cache.prefetcher = std::array{"none", "next", "stride"}[random() % 3];
+        cache.prefetch_degree = pick(1, 5);
+        cache.prefetch_sites = pick(1, 9);
+    };
+    policies(c.l1);
     c.l2.line_bytes = c.l1.line_bytes * power(0, 2);
     c.l2.ways = pick(1, 16);
-    c.l2.replacement = replacement(c.l2.ways);
+    policies(c.l2);
+    c.sim.miss_causes = pick(0, 1) == 0 ? "on" : "off";
     c.l2.size_bytes = c.l2.line_bytes * c.l2.ways * power(0, 9);
     c.l2.banks = power(0, 4);
     c.l2.bank_bytes = power(0, 7);

@@ -101,7 +101,9 @@ TEST(Sharing, NobodyReadsTheFuture) {
 // A write of a shared word takes its line from all L1s; what was dirty there reaches the L2 first.
 TEST(Sharing, WritesInvalidateOtherCopies) {
     Shared s;
-    Report r = s.run(several(2, 1), 2, [&](int w) {
+    Config c = several(2, 1);
+    c.sim.miss_causes = "on";
+    Report r = s.run(c, 2, [&](int w) {
         auto look = [&](stamp after) {
             before_atomic(here, atomic::load_acquire, s.word(0), after, stamp{});
             return after_atomic(here, atomic::load_acquire, s.word(0), false);
@@ -119,6 +121,8 @@ TEST(Sharing, WritesInvalidateOtherCopies) {
     EXPECT_EQ(r.l1[0].invalidations, 1U);
     EXPECT_EQ(r.l1[0].write_backs, 1U);
     EXPECT_EQ(r.l1[0].misses, 2U);
+    EXPECT_EQ(r.l1[0].compulsory, 1U);
+    EXPECT_EQ(r.l1[0].coherence, 1U);
 }
 
 TEST(Sharing, PublishedDataIsSeen) {
