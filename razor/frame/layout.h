@@ -1,7 +1,7 @@
 // The records that a frame reads and builds, exactly as they lie in frame memory on every target. Plain data,
-// shared by the host code that fills the persistent part and the kernels that read it. Lengths are world
-// units relative to the instance's origin unless stated. Indices are 32 bits and count records
-// of the array they name.
+// shared by the host code that fills the persistent part and the kernels that read it. Lengths are in the
+// frame's unit (razor/frame/unit.h), relative to the instance's origin unless stated. Indices are 32 bits and
+// count records of the array they name.
 //
 // A *patch* is a quadrilateral piece of surface with parameters (u, v) in [0,1]^2: a quad face, one sub-face
 // of an n-gon (corner c to its two edge midpoints and the centre), or a flat triangle. Corner 0 is (0,0), 1
