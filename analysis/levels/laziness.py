@@ -46,7 +46,7 @@ def main():
                 "blocks": figures["counters"]["blocks_made"],
                 "kd_nodes": opened["kd_nodes"]["count"],
                 "first_packet_seconds": statistics.median(m[1]["host"]["first_packet_seconds"] for m in made),
-                "frame_seconds": statistics.median(m[1]["host"]["render_processor_seconds"] for m in made),
+                "frame_seconds": statistics.median(m[1]["host"]["frames"][0]["render_processor_seconds"] for m in made),
                 "built_bytes": built_bytes(figures),
                 "most_bytes": max(m[2].ru_maxrss for m in made) * 1024,
             }

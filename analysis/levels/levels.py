@@ -5,9 +5,10 @@
     analysis/levels/levels.py map.obj --scheme bilinear --up z --from 1300,150,-100 --to 1000,120,-700
 
 Every scheme renders the same samples; the error is the RMSE of the picture beside one of --reference-lod with edges
-shorter by --reference. Times are processor seconds of one thread, everything built on the way: medians of --repeat runs,
-interleaved. Shadow rays: the time with them less that without. made/needed: triangles
-made over twice the pixels covered, over the square of the target edge in pixels.
+shorter by --reference. Times are processor seconds of one thread for a frame, everything built on the way but the
+topology's pages, which an animation makes once: medians of --frames frames after a first, and of --repeat runs,
+interleaved. "first": the first frame's, pages and all. Shadow rays: the time with them less that without. made/needed:
+triangles made over twice the pixels covered, over the square of the target edge in pixels.
 
 Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
 schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
@@ -32,6 +33,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      allow_abbrev=False)
     view.add_options(parser, "512x512", 3)
+    parser.add_argument("--frames", type=int, default=3, help="frames timed a run, after a first")
     parser.add_argument("--reference", type=float, default=8, help="how much shorter edges of the reference are")
     parser.add_argument("--reference-lod", default="camera", help="the reference's scheme")
     parser.add_argument("--schemes", nargs="+", default=SCHEMES)
@@ -48,21 +50,22 @@ def main():
         times = {}
         for _ in range(options.repeat):
             for scheme in options.schemes:
-                lod = level_of_detail(scheme, edge)
+                lod = [*level_of_detail(scheme, edge), "--frames", str(options.frames + 1)]
                 camera = view.render(options, scene, folder, "camera", *lod, *dark)[1]
                 whole = view.render(options, scene, folder, "whole", *lod)[1]
-                times.setdefault(scheme, []).append(tuple(s["host"]["render_processor_seconds"] for s in (camera, whole))
-                                                    + (camera, whole))
+                times.setdefault(scheme, []).append((frame_seconds(camera), frame_seconds(whole), camera, whole))
         for scheme in options.schemes:
             runs = times[scheme]
             camera, whole = runs[0][2:]
-            seconds, total = (statistics.median(r[i] for r in runs) for i in (0, 1))
+            (first_camera, seconds), (first, total) = ([statistics.median(r[i][n] for r in runs) for n in (0, 1)]
+                                                       for i in (0, 1))
             pictures = [view.render(options, scene, folder, f"seed{seed}", "--seed", str(seed),
                                     *level_of_detail(scheme, edge))[0] for seed in (1, 2)]
             error, noise = errors(options, folder, pictures, references)
             counters = whole["counters"]
             needed = 2 * counters["camera_hits"] / options.spp / edge**2  # pixels covered / half a square edge
             rows.append({"scheme": scheme, "rmse": error, "noise": noise, "camera_seconds": seconds, "shadow_seconds": total - seconds,
+                         "first_camera_seconds": first_camera, "first_shadow_seconds": first - first_camera,
                          "triangles": camera["counters"]["triangles_made"],
                          "made_over_needed": camera["counters"]["triangles_made"] / needed,
                          "blended": counters["blended_tests"] / max(counters["block_tests"], 1),
@@ -73,6 +76,12 @@ def main():
         with open(options.json, "w") as file:
             json.dump(rows, file, indent=1)
             file.write("\n")
+
+
+def frame_seconds(figures):
+    """Of the first frame, and of one after it."""
+    first, *later = (frame["render_processor_seconds"] for frame in figures["host"]["frames"])
+    return first, statistics.median(later)
 
 
 def level_of_detail(scheme, edge):
@@ -90,7 +99,7 @@ def compare_with_fixed(rows):
         for low, high in zip(fixed, fixed[1:]):
             if low["rmse"] <= r["rmse"] <= high["rmse"] and low["rmse"] < high["rmse"]:
                 part = math.log(r["rmse"] / low["rmse"]) / math.log(high["rmse"] / low["rmse"])
-                for rays in ("camera", "shadow"):
+                for rays in ("camera", "shadow", "first_camera", "first_shadow"):
                     a, b = (max(f[rays + "_seconds"], 1e-9) for f in (low, high))
                     r[rays + "_over_fixed"] = r[rays + "_seconds"] / (a * (b / a) ** part)
                 break
@@ -116,11 +125,14 @@ def show(rows):
     def ratio(r, rays):
         return f"{r[rays + '_over_fixed']:.2f}" if rays + "_over_fixed" in r else "-"
 
-    print(f"{'scheme':10} {'error':>9} {'noisy':>9} {'camera s':>9} {'/fixed':>6} {'shadow s':>9} {'/fixed':>6} {'triangles':>10} "
+    print(f"{'scheme':10} {'error':>9} {'noisy':>9} {'camera s':>9} {'/fixed':>6} {'shadow s':>9} {'/fixed':>6} "
+          f"{'first s':>8} {'/fixed':>6} {'shadow s':>9} {'/fixed':>6} {'triangles':>10} "
           f"{'made/needed':>11} {'blended':>8} {'grids MB':>9}")
     for r in rows:
         print(f"{r['scheme']:10} {r['rmse']:9.5f} {r['noise']:9.5f} {r['camera_seconds']:9.3f} {ratio(r, 'camera'):>6} "
               f"{r['shadow_seconds']:9.3f} {ratio(r, 'shadow'):>6} "
+              f"{r['first_camera_seconds']:8.3f} {ratio(r, 'first_camera'):>6} "
+              f"{r['first_shadow_seconds']:9.3f} {ratio(r, 'first_shadow'):>6} "
               f"{r['triangles']:10d} {r['made_over_needed']:11.2f} {r['blended']:8.1%} {r['grid_bytes'] / 1e6:9.1f}")
 
 

@@ -67,6 +67,27 @@ void run_workers(Frame& frame, const KernelTable& kernels, const std::function<v
         std::rethrow_exception(failure);
 }
 
+namespace {
+
+FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOptions& options,
+                       const std::function<void(double)>& progress) {
+    FrameTime time;
+    const double pages_before = frame.statistics().page_seconds;
+    const auto begin = Clock::now();
+    const std::clock_t processor_begin = std::clock();
+    if (options.eager) {
+        frame.build_all(kernels);
+        time.eager_seconds = seconds_since(begin);
+    }
+    run_workers(frame, kernels, progress, options.cancel);
+    time.render_seconds = seconds_since(begin);
+    time.render_processor_seconds = static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
+    time.topology_page_seconds = frame.statistics().page_seconds - pages_before;
+    return time;
+}
+
+} // namespace
+
 RenderResult render_native(const Scene& scene, const RenderOptions& options) {
     const KernelTable& kernels = native_target(options.isa);
     RenderResult r;
@@ -81,16 +102,14 @@ RenderResult render_native(const Scene& scene, const RenderOptions& options) {
     r.statistics.load_seconds = seconds_since(begin);
     if (options.eager && frame.statistics().trees > 1)
         throw UserError("--eager builds one kd-tree; leave --share out");
-    begin = Clock::now();
-    const std::clock_t processor_begin = std::clock();
-    if (options.eager) {
-        frame.build_all(kernels);
-        r.statistics.eager_seconds = seconds_since(begin);
+    for (int n = 0; n < options.frames; ++n) {
+        if (n > 0)
+            frame.reset();
+        std::function<void(double)> progress;
+        if (options.progress)
+            progress = [&](double fraction) { options.progress((n + fraction) / options.frames); };
+        r.statistics.times.push_back(render_frame(frame, kernels, options, progress));
     }
-    run_workers(frame, kernels, options.progress, options.cancel);
-    r.statistics.render_seconds = seconds_since(begin);
-    r.statistics.render_processor_seconds =
-        static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
     r.statistics.frame = frame.statistics();
     r.film = frame.film();
     return r;

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace razor {
 
@@ -20,20 +21,29 @@ struct RenderOptions {
     /// To compare with: one thread splits the whole kd-tree, down to the finest blocks that any ray could ask
     /// for, before the first ray. Shading normals stay lazy. There must be one tree.
     bool eager = false;
+    /// The frame is rendered so many times, everything built anew each time but topology pages: what a later
+    /// frame of an animation costs. The film and all figures but the times are those of the last.
+    int frames = 1;
     /// Called now and then with the fraction of tiles begun, from the calling thread.
     std::function<void(double fraction)> progress;
     /// Set to true from anywhere to stop early; render_native then throws Cancelled.
     const std::atomic<bool>* cancel = nullptr;
 };
 
-struct RenderStatistics {
-    FrameStatistics frame;
-    std::string isa;
-    int width_lanes = 0, threads = 0;
-    double load_seconds = 0;             // topology and frame memory
+/// Host time of one frame.
+struct FrameTime {
     double render_seconds = 0;           // refit, builds and rays
     double render_processor_seconds = 0; // the same: processor time of all threads
     double eager_seconds = 0;            // of that: what was built before the first ray
+    double topology_page_seconds = 0;    // of that: topology pages made, which later frames find
+};
+
+struct RenderStatistics {
+    FrameStatistics frame; // the last one
+    std::string isa;
+    int width_lanes = 0, threads = 0;
+    double load_seconds = 0; // topology and frame memory
+    std::vector<FrameTime> times;
 };
 
 /// Counters by name; those of a kind of ray under its name.

@@ -62,12 +62,13 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                         {"blocks_without_normals", c.blocks_made - c.normal_blocks},
                         {"undrawn_faces", f.undrawn_faces}};
     json["host"] = {{"load_seconds", s.load_seconds},
-                    {"render_seconds", s.render_seconds},
-                    {"render_processor_seconds", s.render_processor_seconds},
-                    {"eager_seconds", s.eager_seconds},
                     {"refit_seconds", f.refit_seconds},
-                    {"first_packet_seconds", f.first_packet_seconds},
-                    {"topology_page_seconds", f.page_seconds}};
+                    {"first_packet_seconds", f.first_packet_seconds}};
+    for (const FrameTime& t : s.times)
+        json["host"]["frames"].push_back({{"render_seconds", t.render_seconds},
+                                          {"render_processor_seconds", t.render_processor_seconds},
+                                          {"eager_seconds", t.eager_seconds},
+                                          {"topology_page_seconds", t.topology_page_seconds}});
 }
 
 } // namespace razor

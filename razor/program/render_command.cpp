@@ -20,6 +20,7 @@ namespace razor {
 namespace {
 
 constexpr Range threads_range{1, 1024};
+constexpr Range frames_range{1, 1000000};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
 
 } // namespace
@@ -41,6 +42,11 @@ void RenderCommand::add_to(CLI::App& app) {
         ->type_name("WHO");
     render.add_flag("--eager", eager_,
                     "build all that rays could ask for, but normals, before the first one; to compare with");
+    render
+        .add_option("--frames", frames_,
+                    "render the frame N times and tell the time of each; all but the first find the topology "
+                    "analysed, as in an animation")
+        ->type_name("N");
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
     render.add_flag("--print-config", print_config_, "print the complete scene file and render nothing");
@@ -54,6 +60,7 @@ int RenderCommand::run() const {
     options.isa = isa_words[parse_choice("--isa", isa_, isa_words)];
     options.share = parse_share(share_);
     options.eager = eager_;
+    options.frames = parse_whole("--frames", frames_, frames_range);
     if (!print_config_ && outputs_.empty() && statistics_.empty()) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
     }
@@ -97,7 +104,8 @@ int RenderCommand::run() const {
                                              {{"threads", result.statistics.threads},
                                               {"isa", result.statistics.isa},
                                               {"workers_a_tree", options.share},
-                                              {"eager", options.eager}}},
+                                              {"eager", options.eager},
+                                              {"frames", options.frames}}},
                                             {"scene", config},
                                             {"seconds", seconds},
                                             {"statistics", nlohmann::ordered_json(result.statistics)}};

@@ -21,7 +21,7 @@ public:
 private:
     SceneOptions scene_;
     std::vector<std::string> outputs_;
-    std::string threads_, isa_ = "auto", share_ = "chip", statistics_;
+    std::string threads_, isa_ = "auto", share_ = "chip", frames_ = "1", statistics_;
     bool print_config_ = false, quiet_ = false, eager_ = false;
 };
 

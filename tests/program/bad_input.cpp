@@ -54,6 +54,12 @@ protected:
         return run(quoted_argument(RAZOR_PROGRAM) + " " + arguments, folder_.path());
     }
 
+    /// Those that --stats NAME.json wrote.
+    nlohmann::json statistics(const std::string& name) const {
+        std::ifstream file(folder_ / (name + ".json"));
+        return nlohmann::json::parse(file).at("statistics");
+    }
+
     void expect_refused(const std::string& arguments, const std::string& cause) const {
         SCOPED_TRACE("razor " + arguments);
         const std::size_t before = folder_.count();
@@ -180,10 +186,6 @@ TEST_F(Razor, LoadsOrRefusesEveryOddFile) {
 }
 
 TEST_F(Razor, EagerFramesAreTheSamePicture) {
-    const auto built = [&](const std::string& name) {
-        std::ifstream file(folder_ / (name + ".json"));
-        return nlohmann::json::parse(file).at("statistics");
-    };
     const std::string rest = " --size 20x10 --spp 1 --threads 2 ";
     ASSERT_EQ(razor("render" + rest + "-o lazy.exr --stats lazy.json").code, 0);
     const Outcome eager = razor("render" + rest + "-o eager.exr --stats eager.json --eager");
@@ -191,15 +193,39 @@ TEST_F(Razor, EagerFramesAreTheSamePicture) {
     const Film expected = read_exr(folder_ / "lazy.exr"), film = read_exr(folder_ / "eager.exr");
     for (const Plane& plane : expected.planes)
         EXPECT_EQ(film.find(plane.name)->values, plane.values) << plane.name;
-    EXPECT_GT(built("lazy").at("left_out").at("nodes_never_split"), 0);
-    EXPECT_EQ(built("lazy").at("host").at("eager_seconds"), 0);
-    EXPECT_EQ(built("eager").at("left_out").at("nodes_never_split"), 0);
-    EXPECT_EQ(built("eager").at("left_out").at("patches_never_opened"), 0);
-    EXPECT_GT(built("eager").at("host").at("eager_seconds"), 0);
+    EXPECT_GT(statistics("lazy").at("left_out").at("nodes_never_split"), 0);
+    EXPECT_EQ(statistics("lazy").at("host").at("frames").at(0).at("eager_seconds"), 0);
+    EXPECT_EQ(statistics("eager").at("left_out").at("nodes_never_split"), 0);
+    EXPECT_EQ(statistics("eager").at("left_out").at("patches_never_opened"), 0);
+    EXPECT_GT(statistics("eager").at("host").at("frames").at(0).at("eager_seconds"), 0);
     const Outcome apart = razor("render" + rest + "-o e.exr --eager --share worker");
     EXPECT_EQ(apart.code, 2);
     EXPECT_EQ(apart.err, "razor: --eager builds one kd-tree; leave --share out\n");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "e.exr"));
+}
+
+// All but the topology's pages is built anew for each frame, and the picture stays.
+TEST_F(Razor, LaterFramesFindTheTopologyAnalysed) {
+    const std::string rest = " --size 20x10 --spp 1 --threads 1 ";
+    ASSERT_EQ(razor("render" + rest + "-o once.exr --stats once.json").code, 0);
+    const Outcome thrice = razor("render" + rest + "-o thrice.exr --stats thrice.json --frames 3");
+    ASSERT_EQ(thrice.code, 0) << thrice.err;
+    const Film expected = read_exr(folder_ / "once.exr"), film = read_exr(folder_ / "thrice.exr");
+    for (const Plane& plane : expected.planes)
+        EXPECT_EQ(film.find(plane.name)->values, plane.values) << plane.name;
+    const nlohmann::json once = statistics("once"), last = statistics("thrice");
+    for (const auto& [name, value] : once.at("counters").items())
+        EXPECT_EQ(last.at("counters").at(name), name == "pages_requested" ? nlohmann::json(0) : value)
+            << name;
+    for (const char* name : {"built", "opened", "left_out"})
+        EXPECT_EQ(last.at(name), once.at(name)) << name;
+    EXPECT_GT(once.at("counters").at("pages_requested"), 0);
+    const nlohmann::json& frames = last.at("host").at("frames");
+    ASSERT_EQ(frames.size(), 3U);
+    for (int n = 0; n < 3; ++n) {
+        EXPECT_GT(frames[n].at("render_seconds"), 0) << n;
+        EXPECT_EQ(frames[n].at("topology_page_seconds") > 0, n == 0) << n;
+    }
 }
 
 TEST_F(Razor, WritesPicturesAndStatistics) {
