@@ -32,7 +32,7 @@ NativeRun run_native(const razor::Scene& scene, const razor::Film& simulated,
     const razor::RenderResult result = razor::render_native(scene, options);
     NativeRun run;
     run.isa = result.statistics.isa;
-    run.seconds = result.statistics.render_seconds;
+    run.seconds = result.statistics.times.back().render_seconds;
     run.equal = same_bits(simulated, result.film);
     run.unfused = run.isa == "sse4";
     return run;
