@@ -73,7 +73,7 @@ struct KdTreeConfig {
 
 struct SimulationConfig {
     std::string miss_causes;
-    integer quantum = 0, window = 0, stack_kib = 0;
+    integer quantum = 0, window = 0, jitter = 0, stack_kib = 0;
 };
 
 struct Config {

@@ -315,6 +315,8 @@ void add_simulation(Table& t) {
         "way to memory and back");
     t.add("sim.miss_causes", s, &C::miss_causes, {"off", "on"},
           "on: misses are told apart by cause, with a fully associative cache beside each; takes host time");
+    t.add("sim.jitter", s, &C::jitter, "", 0, 0, (integer{1} << 31) - 1,
+          "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later, by this; 0: none");
     t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 64, 65536, "host stack of a simulated thread");
 }
 

@@ -22,7 +22,7 @@ struct SharedUnit {
 
 struct Core {
     Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, const SiteAtHand& site,
-         Cache& below, Tickets& tickets, Attribution& attribution)
+         Below& below, Tickets& tickets, Attribution& attribution)
         : issue("issue slots", earliest, static_cast<unsigned>(config.core.issue_width)),
           ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)), predictor(config.core),
           l1(config, 0, false, earliest, site, below, tickets, attribution) {

@@ -66,8 +66,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     bool shares = config.core.shared_classes != "none";
     for (integer t = 0; t < config.chip.tiles; ++t) {
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
+        Below& below = config.sim.jitter != 0 ? static_cast<Below&>(tile.jitter) : tile.l2;
         for (integer c = 0; c < config.chip.cores; ++c) {
-            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, tile.l2,
+            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, below,
                                                  tile.tickets, tile.attribution);
             if (shares && c % config.core.shared_cores == 0)
                 tile.shared_units.emplace_back(tile.earliest);
@@ -334,6 +335,8 @@ Report Engine::report() const {
     r.memory_by_rank = beyond_.memory().rank_counters();
     r.work.resize(labels_.columns());
     for (const Tile& tile : tiles_) {
+        r.jitter.lines += tile.jitter.lines();
+        r.jitter.cycles += tile.jitter.cycles();
         r.l2.push_back(tile.l2.counters());
         for (const Core& core : tile.cores) {
             r.l1.push_back(core.l1.counters());

@@ -42,6 +42,9 @@ Explanations make() {
     add("drained_cycles", "cycles", "until memory was quiet as well");
     add("window_cycles", "cycles", "in which tiles run by themselves");
     add("seconds", "s", "simulated time: cycles times chip.clock_ps");
+    add("jitter.seed", "", "of the noise; 0: there was none");
+    add("jitter.lines", "", "lines that L1s asked for, each 0 or 1 cycle later by chance");
+    add("jitter.cycles", "cycles", "that this added, all lines together");
     add("coherence_of_plain_data", "", "whether stores to words that are not shared invalidate other copies");
     add_counters(out, "core", core_counters);
     add_stack(out, "stack", "all threads");

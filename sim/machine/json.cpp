@@ -147,6 +147,7 @@ std::string print_json(const Report& r, bool with_host) {
     out["drained_cycles"] = r.drained;
     out["window_cycles"] = r.window;
     out["seconds"] = r.seconds();
+    out["jitter"] = {{"seed", r.config.sim.jitter}, {"lines", r.jitter.lines}, {"cycles", r.jitter.cycles}};
     out["coherence_of_plain_data"] = "not modelled";
     out["core"] = counters(r.core, core_counters);
     out["stack"] = stack(r.stack());

@@ -152,6 +152,12 @@ void check_levels(const Report& r, const CacheCounters& l1, const CacheCounters&
     check_memory(r);
 }
 
+/// Noise: 0 or 1 cycle for each line that an L1 asks for.
+void check_jitter(const Report& r, const CacheCounters& l1) {
+    equal("lines that may be delayed = L1 fills", r.jitter.lines, r.config.sim.jitter != 0 ? l1.fills : 0);
+    at_most("cycles of delay <= lines", r.jitter.cycles, r.jitter.lines);
+}
+
 /// What store buffers did, where there are any.
 void check_buffers(const Report& r, const CacheCounters& l1) {
     equal("entries of store buffers = L1 writes", r.core.buffered_stores,
@@ -216,6 +222,7 @@ void check_laws(const Report& r) {
     check_use(r, l1);
     check_stacks(r);
     check_buffers(r, l1);
+    check_jitter(r, l1);
     if (exact(r.config))
         equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
 }

@@ -69,6 +69,11 @@ struct Work {
     std::uint64_t vops = 0, instructions = 0;
 };
 
+/// What sim.jitter did: lines that it may have delayed, and the cycles added.
+struct JitterReport {
+    std::uint64_t lines = 0, cycles = 0;
+};
+
 struct ThreadReport {
     int worker = -1;                    // -1: none ran here
     int tile = 0, core = 0, thread = 0; // cores are numbered through all tiles
@@ -93,6 +98,7 @@ struct Report {
     std::vector<std::uint64_t> shared_unit_cycles;             // by unit of core.shared_classes, taken
     std::vector<CacheCounters> l1;                             // by core
     std::vector<CacheCounters> l2;                             // by tile
+    JitterReport jitter;
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<TrafficRow> traffic;            // where there was any

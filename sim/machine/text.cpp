@@ -24,6 +24,11 @@ void overview(std::string& out, const Report& r) {
                            : "cycles by which those of a tile may run ahead of each other");
     out +=
         fmt::format("windows               {:>14}   cycles, after which tiles and memory meet\n", r.window);
+    if (r.config.sim.jitter != 0)
+        out += fmt::format(
+            "jitter                {:>14}   is the seed: 0 or 1 cycle more for {} lines that L1s asked "
+            "for, {} in all\n",
+            r.config.sim.jitter, r.jitter.lines, r.jitter.cycles);
     out += fmt::format("instructions          {:>14}   {:.3f} a cycle and core\n", r.core.instructions,
                        ratio(r.core.instructions, r.cycles * cores));
     for (const auto& row : core_counters)

@@ -8,6 +8,7 @@
 #include "sim/machine/published.h"
 #include "sim/machine/scheduler.h"
 #include "sim/machine/word_queues.h"
+#include "sim/memory/jitter.h"
 #include "sim/memory/tile_exit.h"
 
 #include <deque>
@@ -19,7 +20,7 @@ struct Tile {
     Tile(const Config& config, std::uint32_t number, std::uint64_t window, LineMap& lines,
          std::size_t columns)
         : number(number), attribution(lines, number, columns), exit(number, tickets, attribution),
-          l2(config, 1, true, earliest, site, exit, tickets, attribution),
+          l2(config, 1, true, earliest, site, exit, tickets, attribution), jitter(config, number, l2),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
                     static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
 
@@ -43,6 +44,7 @@ struct Tile {
     Sites load_sites;
     TileExit exit;
     Cache l2;
+    Jitter jitter; // between the L1s and the L2, if wanted
     std::deque<SharedUnit> shared_units;
     std::deque<Core> cores;
     std::vector<Hart*> harts;

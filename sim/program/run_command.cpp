@@ -154,6 +154,11 @@ void RunCommand::add_to(CLI::App& app) {
            "who shares a kd-tree: chip (all), tile, core, worker (nobody), or N neighbouring workers; "
            "without it, as the machine file says (kdtree.share)")
         ->type_name("WHO");
+    run.add_option("--jitter", jitter_,
+                   "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later; runs that "
+                   "differ in the seed alone say how far results must lie apart to mean anything; 0: none; "
+                   "without it, as the machine file says (sim.jitter)")
+        ->type_name("SEED");
     run.add_option(
            "--host-threads", host_threads_,
            "threads of the host that tiles run on, which changes no digit of the report; without it, 1")
@@ -172,6 +177,9 @@ int RunCommand::run() const {
             throw ConfigError("--share: " + wrong);
         settings.push_back("kdtree.share=" + share_);
     }
+    if (!jitter_.empty())
+        settings.push_back(
+            fmt::format("sim.jitter={}", razor::parse_whole("--jitter", jitter_, {0, 2147483647})));
     const MachineDescription machine_description = describe_machine(machine_.file, settings);
     const Config& config = machine_description.config;
     const Machine machine(config);

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 
 namespace razor {
 namespace {
@@ -200,6 +201,111 @@ TEST_F(Simulator, RunsCopernicus) {
     EXPECT_EQ(report("b.json"), report("a.json"));
 }
 
+// Noise moves cycles, never the picture, and not the work of one worker, whom nobody else's timing reaches.
+TEST_F(Simulator, NoiseMovesCyclesAlone) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start =
+        std::string("run --quiet --scene s.toml --size 24x24 --spp 1 --sky-samples 1 "
+                    "--light-samples 0 --edge-pixels 4 --no-native -o a.exr --json a.json --machine ") +
+        tiny + " ";
+    for (const char* workers : {"--workers 1", "--workers 8"}) {
+        std::optional<Film> picture;
+        std::set<std::uint64_t> cycles, vops;
+        for (const char* seed : {"", "--jitter 1", "--jitter 2"}) {
+            SCOPED_TRACE(seed);
+            const Outcome result = simulator(start + workers + " " + seed);
+            ASSERT_EQ(result.code, 0) << result.err;
+            const nlohmann::json a = report("a.json");
+            EXPECT_EQ(a.at("jitter").at("seed") != 0, *seed != 0);
+            EXPECT_EQ(result.out.find("\njitter ") != std::string::npos, *seed != 0);
+            cycles.insert(a.at("cycles").get<std::uint64_t>());
+            vops.insert(a.at("core").at("vops").get<std::uint64_t>());
+            const Film film = read_exr(folder_ / "a.exr");
+            if (!picture)
+                picture = film;
+            for (const Plane& plane : picture->planes)
+                EXPECT_EQ(film.find(plane.name)->values, plane.values) << plane.name;
+        }
+        EXPECT_EQ(cycles.size(), 3U) << workers;
+        if (std::string(workers) == "--workers 1") {
+            EXPECT_EQ(vops.size(), 1U);
+        }
+    }
+    // The option is the setting by another name.
+    ASSERT_EQ(simulator(start + "--workers 8 --jitter 7").code, 0);
+    const nlohmann::json option = report("a.json");
+    ASSERT_EQ(simulator(start + "--workers 8 -g sim.jitter=7 --host-threads 2").code, 0);
+    EXPECT_EQ(report("a.json"), option);
+}
+
+// A memory by itself: beside its closed forms, and what it refuses.
+TEST_F(Simulator, TriesMemories) {
+    const std::string few = "dram --preset ddr4-2400r --requests 20000 --json d.json ";
+    const Outcome result = simulator(few + "--stream random --load 0.1 --load 0.5");
+    ASSERT_EQ(result.code, 0) << result.err;
+    // Four bursts of 64 bytes in tFAW, 26 clocks of 833 ps, but for refreshes.
+    EXPECT_NE(result.out.find("random: no more than 11.29 GB/s by the four activates (tFAW)"),
+              std::string::npos)
+        << result.out;
+    const nlohmann::json all = report("d.json");
+    EXPECT_EQ(all.at("preset"), "ddr4-2400r");
+    EXPECT_NEAR(all.at("peak_gigabytes_per_second"), 19.2, 0.02);
+    const nlohmann::json& closed = all.at("closed_forms").at(0);
+    ASSERT_EQ(all.at("rows").size(), 6U); // two loads and no limit, of two controllers
+    for (const nlohmann::json& row : all.at("rows")) {
+        const double wanted = row.at("load").is_null() ? 1 : row.at("load").get<double>();
+        const double moved = row.at("gigabytes_per_second");
+        EXPECT_LE(moved, closed.at("gigabytes_per_second").get<double>() * 1.001);
+        EXPECT_LE(moved, wanted * 19.2 * 1.02);
+        EXPECT_GE(row.at("latency_ns").at("p99"), row.at("latency_ns").at("median"));
+        EXPECT_EQ(row.at("counters").at("reads"), 20000);
+        if (row.at("controller") == "queued" && row.at("load").is_null()) {
+            EXPECT_GT(moved, 0.98 * closed.at("gigabytes_per_second").get<double>());
+        }
+        if (row.at("load") == 0.1) {
+            EXPECT_NEAR(row.at("latency_ns").at("mean").get<double>() /
+                            closed.at("idle_latency_ns").get<double>(),
+                        1, 0.4);
+        }
+    }
+    ASSERT_EQ(simulator(few + "--stream random --load 0.1 --load 0.5").code, 0);
+    EXPECT_EQ(report("d.json"), all) << "the same twice";
+    ASSERT_EQ(simulator(few + "--controller queued --stream sequential --seed 2 -g memory.channels=2").code,
+              0);
+    EXPECT_EQ(report("d.json").at("rows").size(), 6U);
+    EXPECT_NEAR(report("d.json").at("peak_gigabytes_per_second"), 38.4, 0.04);
+    EXPECT_EQ(report("d.json").at("rows").at(0).at("controller"), "queued");
+    ASSERT_EQ(simulator("dram --requests 1000 --controller immediate --machine " + tiny).code, 0);
+
+    const std::size_t before = folder_.count();
+    for (const auto& [options, says] : {std::pair{"--preset ddr9", "memory.preset is \"ddr9\""},
+                                        {"--stream zigzag", "zigzag"},
+                                        {"--load 0", "--load '0'"},
+                                        {"--load 1.1", "--load '1.1'"},
+                                        {"--load much", "--load 'much'"},
+                                        {"--requests 0", "--requests '0'"},
+                                        {"--in-flight 0", "--in-flight '0'"},
+                                        {"--mebibytes 0", "--mebibytes '0'"},
+                                        {"--stride -4", "--stride '-4'"},
+                                        {"--seed x", "--seed 'x'"},
+                                        {"--controller other", "--controller 'other'"},
+                                        {"--machine none.toml", "none.toml: cannot be read"},
+                                        {"-g memory.tRCD=0", "memory.tRCD is 0"},
+                                        {"-g memory.trcd=9", "the nearest known one is memory.tRCD"},
+                                        {"--json nowhere/e.json", "nowhere"},
+                                        {"--strem random", "did you mean --stream?"}}) {
+        SCOPED_TRACE(options);
+        const Outcome bad =
+            simulator(std::string("dram ") + options +
+                      (std::string(options).find("--json") == std::string::npos ? " --json e.json" : ""));
+        EXPECT_EQ(bad.code, 2);
+        EXPECT_EQ(bad.error_lines(), 1) << bad.err;
+        EXPECT_NE(bad.err.find(says), std::string::npos) << bad.err;
+        EXPECT_EQ(bad.out, "");
+        EXPECT_EQ(folder_.count(), before) << "a file was left";
+    }
+}
+
 TEST_F(Simulator, RefusesBadMachinesAndOptions) {
     folder_.file("good.toml", "[chip]\ncores = 2\n");
     folder_.file("empty.toml", "");
@@ -233,6 +339,9 @@ TEST_F(Simulator, RefusesBadMachinesAndOptions) {
         {"--machine good.toml --workers 5", "give a whole number from 1 to 4"},
         {"--machine good.toml --share all", "--share: kdtree.share is \"all\"; it must be one of"},
         {"--machine good.toml --share 0", "--share: kdtree.share is \"0\""},
+        {"--machine good.toml --jitter -1", "--jitter '-1'"},
+        {"--machine good.toml --jitter 1.5", "give a whole number from 0 to 2147483647"},
+        {"--machine good.toml -g sim.jitter=x", "-g sim.jitter=x"},
         {"--machin good.toml", "did you mean --machine?"},
         {"", "--machine is required"},
     };
