@@ -105,9 +105,9 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
         h.site.first = false;
     }
     Answer a = core.l1.access(line, write, accesses, at, h.column);
-    while (a.retry != 0)
+    while (a.refused)
         [[unlikely]] {
-            from = at = await_room(h, at, a.retry);
+            from = at = await_room(h, at, a.ready);
             data.granted = std::max(data.granted, at);
             a = core.l1.access(line, write, accesses, at, h.column);
         }

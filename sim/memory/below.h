@@ -9,16 +9,16 @@
 
 namespace sim {
 
-/// When an access is served (a cycle or a ticket), and what serves it. Or, `retry` not 0: nothing has
-/// happened, for an MSHR or buffer is not free; ask again at that cycle, or (unknown) when the window has
-/// ended.
+/// When an access is served (a cycle or a ticket), and what serves it. Or, refused: nothing has happened, for
+/// an MSHR or buffer is not free; ask again at that cycle, or (unknown) when the window has ended. Small
+/// enough for two registers.
 struct Answer {
     static constexpr cycle unknown = ~cycle{0};
     cycle ready;
     Cause from;
-    cycle retry = 0;
+    bool refused = false;
 
-    static Answer later(cycle when) { return {0, Cause::mshrs, when}; }
+    static Answer later(cycle when) { return {when, Cause::mshrs, true}; }
 };
 
 /// A request for some bytes of one line, at any address in it.

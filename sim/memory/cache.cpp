@@ -75,8 +75,8 @@ cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_
     std::uint64_t address = line << line_shift_;
     Answer accepted =
         below_.write({address, std::uint32_t{1} << line_shift_, down, column, true, followed, forced});
-    if (accepted.retry != 0)
-        return accepted.retry;
+    if (accepted.refused)
+        return accepted.ready;
     ++counters_.write_backs;
     ++(attribution_.cell(address, column).*traffic_.write_backs);
     if (!last_)
@@ -98,7 +98,7 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column) 
         array_.set_dirty(entry, false);
     }
     Answer below = below_.read({line << line_shift_, std::uint32_t{1} << line_shift_, down, column});
-    if (below.retry != 0)
+    if (below.refused)
         return below;
     ++counters_.fills;
     mshrs_.hold({line, t, below.ready, below.from});
@@ -112,13 +112,36 @@ void Cache::prefetch(std::uint64_t address, cycle t, std::size_t column) {
     std::uint64_t line = address >> line_shift_;
     if (array_.find(line) != CacheArray::none)
         return;
-    if (fill(line, t, t + latency_, column).retry != 0) {
+    if (fill(line, t, t + latency_, column).refused) {
         ++counters_.prefetches_dropped;
         return;
     }
     ++counters_.prefetches;
     if (causes_)
         causes_->use(line, true);
+}
+
+/// An access to an L1 whose line is not there yet.
+Answer Cache::waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
+                             cycle t, std::size_t column) {
+    Answer answer{t + latency_, Cause::l1};
+    if (entry != CacheArray::none) {
+        counters_.hits += accesses;
+        array_.touch(entry);
+        answer = in_flight(entry, line, answer);
+    } else {
+        answer = fill(line, t, t + latency_, column);
+        if (answer.refused)
+            return answer;
+        entry = array_.find(line);
+        counters_.hits += accesses - 1;
+        ++counters_.misses;
+        ++(attribution_.cell(line << line_shift_, column).*traffic_.misses);
+    }
+    if (write)
+        array_.set_dirty(entry, true);
+    count_accesses(line, write, accesses, column);
+    return answer;
 }
 
 /// An access to an L1 that does more than the least.
@@ -129,12 +152,10 @@ Answer Cache::special_access(std::uint64_t line, bool write, std::uint32_t acces
     Answer answer =
         perform({address, std::min(std::uint32_t{1} << line_shift_, accesses * port_bytes_), t, column}, line,
                 write, t + latency_, hit);
-    if (answer.retry != 0)
+    if (answer.refused)
         return answer;
     counters_.hits += hit ? accesses : accesses - 1;
-    Traffic& cell = attribution_.touch(address, column);
-    (write ? counters_.writes : counters_.reads) += accesses;
-    cell.*(write ? traffic_.writes : traffic_.reads) += accesses;
+    count_accesses(line, write, accesses, column);
     return answer;
 }
 
@@ -145,7 +166,7 @@ Answer Cache::serve(const Access& a, bool write) {
     cycle start = bank.find_run(a.at, slots);
     bool hit = false;
     Answer answer = perform(a, line, write, start + latency_, hit);
-    if (answer.retry != 0)
+    if (answer.refused)
         return answer;
     counters_.hits += hit ? 1 : 0;
     bank.mark_run(start, slots);
@@ -176,7 +197,7 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
             answer = in_flight(entry, line, answer);
     } else if (brings) {
         answer = allocate(a, line, write, done);
-        if (answer.retry != 0)
+        if (answer.refused)
             return answer;
     }
     if (goes_on) {
@@ -208,7 +229,7 @@ Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle do
         array_.fill(entry, line);
     } else {
         answer = fill(line, a.at, done, a.column);
-        if (answer.retry != 0)
+        if (answer.refused)
             return answer;
     }
     if ((write || a.modify) && !through_)
@@ -252,7 +273,7 @@ void Cache::prefetch_after(const Access& a, std::uint64_t line, bool first, cycl
     prefetcher_.after(line, first, site_.number, [&](std::uint64_t wanted) {
         if ((wanted < end) != (line < end) || array_.find(wanted) != CacheArray::none)
             return;
-        if (fill(wanted, a.at, down, a.column).retry != 0) {
+        if (fill(wanted, a.at, down, a.column).refused) {
             ++counters_.prefetches_dropped;
             return;
         }

@@ -36,28 +36,14 @@ public:
         if (special_) [[unlikely]]
             return special_access(line, write, accesses, t, column);
         CacheArray::Entry entry = array_.find(line);
-        Answer answer{t + latency_, Cause::l1};
-        if (entry != CacheArray::none) {
-            counters_.hits += accesses;
-            array_.touch(entry);
-            if (write)
-                array_.set_dirty(entry, true);
-            if (array_.in_flight(entry)) [[unlikely]]
-                answer = in_flight(entry, line, answer);
-        } else {
-            answer = fill(line, t, t + latency_, column);
-            if (answer.retry != 0)
-                return answer;
-            if (write)
-                array_.set_dirty(array_.find(line), true);
-            counters_.hits += accesses - 1;
-            ++counters_.misses;
-            ++(attribution_.cell(line << line_shift_, column).*traffic_.misses);
-        }
-        Traffic& cell = attribution_.touch(line << line_shift_, column);
-        (write ? counters_.writes : counters_.reads) += accesses;
-        cell.*(write ? traffic_.writes : traffic_.reads) += accesses;
-        return answer;
+        if (entry == CacheArray::none || array_.in_flight(entry)) [[unlikely]]
+            return waiting_access(entry, line, write, accesses, t, column);
+        array_.touch(entry);
+        if (write)
+            array_.set_dirty(entry, true);
+        counters_.hits += accesses;
+        count_accesses(line, write, accesses, column);
+        return {t + latency_, Cause::l1};
     }
     /// Begins a fill if the line is absent and an MSHR is free.
     void prefetch(std::uint64_t address, cycle t, std::size_t column);
@@ -98,6 +84,13 @@ public:
 private:
     Cache(const Config& machine, const CacheConfig& config, unsigned level, bool last, const cycle& earliest,
           const SiteAtHand& site, Below& below, Tickets& tickets, Attribution& attribution);
+    void count_accesses(std::uint64_t line, bool write, std::uint32_t accesses, std::size_t column) {
+        Traffic& cell = attribution_.touch(line << line_shift_, column);
+        (write ? counters_.writes : counters_.reads) += accesses;
+        (write ? cell.l1_writes : cell.l1_reads) += accesses;
+    }
+    Answer waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
+                          cycle t, std::size_t column);
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
     Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column);
     cycle write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,

@@ -19,7 +19,7 @@ public:
         Access later = a;
         later.at += mix(key_ + lines_) & 1U;
         const Answer answer = below_.read(later);
-        if (answer.retry == 0) {
+        if (!answer.refused) {
             ++lines_;
             cycles_ += later.at - a.at;
         }

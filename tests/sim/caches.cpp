@@ -46,7 +46,7 @@ public:
         for (std::uint64_t line = r.address >> line_shift_; line <= (r.address + r.bytes - 1) >> line_shift_;
              ++line) {
             now_ += 1000;
-            ASSERT_EQ(l1.access(line, r.write, 1, now_, 0).retry, 0U);
+            ASSERT_FALSE(l1.access(line, r.write, 1, now_, 0).refused);
         }
     }
 
