@@ -40,6 +40,10 @@ struct Hart {
 
     // --- the CPI stack: all cycles before `accounted` have a cause
     cycle accounted = 0;
+    cycle boundary = ~cycle{0}; // the end of the interval (intervals.h) that these lie in ...
+    std::uint64_t interval = 0; // ... its length ...
+    Stack marked{};             // ... and the sum of `stacks` when the one before it ended
+    cycle finish = 0;           // when the worker's last result was there
     RegisterFile registers;
     std::uint64_t spill_base = 0;
     StoreBuffer store_buffer;
@@ -76,7 +80,16 @@ struct Hart {
     cycle next_look = 0;               // at the word, in issue slots taken in advance ...
     std::vector<Calendar::Slot> looks; // ... these, of the window at hand
 
-    void account(cycle from, cycle to, Cause why) { (*stack)[static_cast<std::size_t>(why)] += to - from; }
+    void account(cycle from, cycle to, Cause why) {
+        if (to > boundary) [[unlikely]] {
+            account_across(from, to, why);
+            return;
+        }
+        (*stack)[static_cast<std::size_t>(why)] += to - from;
+    }
+    void account_across(cycle from, cycle to, Cause why);
+    void close_interval();
+    Stack& stack_of_interval() const;
     /// Work and time count under this column from now on.
     void enter(std::size_t next) {
         column = next;

@@ -36,7 +36,7 @@ Labels with_frame_end(Labels labels) {
 } // namespace
 
 Engine::Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
-               int host_threads, const std::function<void(int)>& worker)
+               int host_threads, const RunOptions& options, const std::function<void(int)>& worker)
     : config_(config), pieces_(std::max(1U, width / narrow(config.core.lanes))),
       piece_lanes_(width / pieces_), issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
@@ -59,7 +59,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       labels_(with_frame_end(labels)), lines_(space, line_shift_), homes_(space, config.chip.tiles),
       beyond_(config, [this](std::uint32_t tile, cycle ticket,
                              cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
-      host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), workers_(workers) {
+      host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))),
+      intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
     std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
     spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
@@ -76,6 +77,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
+                if (intervals_.wanted())
+                    h.boundary = h.interval = intervals_.length();
                 h.spill_base = lines_.spill_begin() + number * spill_bytes;
                 tile.harts.push_back(&h);
             }
@@ -234,6 +237,8 @@ bool Engine::run_window() {
     window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
     set_floors(next);
     cycle begin = window_end_ - window_cycles_;
+    if (intervals_.due(begin))
+        intervals_.close(begin, sums());
     for (Tile& tile : tiles_)
         tile.earliest = begin > reach_ ? begin - reach_ : 0;
     run_tiles();
@@ -284,8 +289,16 @@ void Engine::finish_frame() {
             h.account(h.accounted, h.complete.at(), h.complete.why());
             h.accounted = h.complete.at();
         }
+        h.finish = h.accounted;
         cycles_ = std::max(cycles_, h.accounted);
     }
+    for (Hart& h : harts_) {
+        h.account(h.accounted, cycles_, Cause::idle);
+        h.accounted = cycles_;
+        if (intervals_.wanted())
+            h.close_interval();
+    }
+    at_end_ = sums();
     auto lasting = [this](std::uint64_t address) {
         const isa::region* r = space_.find(address);
         return r != nullptr && !r->transient;
@@ -318,7 +331,28 @@ std::string Engine::describe_deadlock() const {
     return fmt::format("deadlock: nobody is left to write what the others wait for: {}", who);
 }
 
-Report Engine::report() const {
+/// What has been counted so far.
+Interval Engine::sums() const {
+    Interval s;
+    for (const Hart& h : harts_) {
+        s.vops += h.counters.vops;
+        s.instructions += h.counters.instructions;
+    }
+    for (const Tile& tile : tiles_) {
+        for (const Core& core : tile.cores) {
+            s.l1_accesses += core.l1.counters().reads + core.l1.counters().writes;
+            s.l1_misses += core.l1.counters().misses;
+        }
+        s.l2_accesses += tile.l2.counters().reads + tile.l2.counters().writes;
+        s.l2_misses += tile.l2.counters().misses;
+    }
+    const MemoryCounters memory = beyond_.memory().counters();
+    s.memory_reads = memory.reads;
+    s.memory_writes = memory.writes;
+    return s;
+}
+
+Report Engine::report() {
     Report r;
     r.config = config_;
     r.labels = labels_;
@@ -359,15 +393,19 @@ Report Engine::report() const {
         t.tile = static_cast<int>(h.tile->number);
         t.core = number / threads;
         t.thread = number % threads;
-        t.finish = h.accounted;
+        t.finish = h.finish;
         t.instructions = h.counters.instructions;
         t.stacks = h.stacks;
-        t.stacks[h.column][static_cast<std::size_t>(Cause::idle)] += r.cycles - h.accounted;
         r.threads.push_back(std::move(t));
     }
     r.drained = std::max(r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)));
     for (const Tile& tile : tiles_)
         r.drained = std::max(r.drained, tile.l2.quiet());
+    r.interval = intervals_.length();
+    std::vector<const TileIntervals*> series;
+    for (const Tile& tile : tiles_)
+        series.push_back(&tile.intervals);
+    r.intervals = intervals_.finish(r.cycles, at_end_, r.drained, sums(), series);
     return r;
 }
 

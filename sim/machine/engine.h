@@ -33,7 +33,7 @@ struct Issued {
 class Engine {
 public:
     Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
-           int host_threads, const std::function<void(int)>& worker);
+           int host_threads, const RunOptions& options, const std::function<void(int)>& worker);
     Report run();
 
     // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
@@ -216,6 +216,7 @@ private:
             outside(p);
         return a;
     }
+    void move_looks(const Hart& sleeper, cycle since, std::uint64_t looks);
     [[noreturn]] static void outside(const void* p);
     static void check_label(const char* what, std::size_t number, std::size_t count);
 
@@ -234,7 +235,8 @@ private:
     void fail(const std::exception_ptr& why);
     void finish_frame();
     std::string describe_deadlock() const;
-    Report report() const;
+    Interval sums() const;
+    Report report();
 
     // --- constants of the machine, in the types that the hot paths want
     Config config_;
@@ -273,6 +275,8 @@ private:
     cycle window_end_ = 0;
     std::exception_ptr failure_;
     cycle cycles_ = 0; // of the whole run
+    Intervals intervals_;
+    Interval at_end_; // of the run: what has been counted
     int workers_;
 };
 

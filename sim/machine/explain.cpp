@@ -30,6 +30,24 @@ void add_level(Explanations& out, const std::string& level, const std::string& p
     add_counters(out, parts + "[]", rows);
 }
 
+/// Of the JSON report, then of the file.
+void add_intervals(Explanations& out) {
+    out.push_back({"intervals.cycles", "cycles", "of an interval (--interval); absent where none were kept"});
+    out.push_back({"intervals.rows", "", "intervals of the file (--intervals); the last is after the run"});
+    const std::string file = "intervals[].";
+    out.push_back({file + "interval", "", "a row of the file: its number"});
+    out.push_back({file + "begin", "cycles", "its first"});
+    out.push_back({file + "end", "cycles",
+                   "the next one's first; the last row goes from the workers' end until memory was quiet"});
+    for (const auto& c : interval_counters)
+        out.push_back({file + c.name, "", fmt::format("{}, in the interval", c.meaning)});
+    out.push_back({file + "ipc", "", "machine instructions a cycle and core in the interval"});
+    out.push_back({file + "memory_bytes", "bytes", "to and from memory in the interval"});
+    for (const CauseName& c : causes)
+        out.push_back({fmt::format("{}stack_{}", file, c.name), "cycles",
+                       fmt::format("all threads, in the interval: {}", c.meaning)});
+}
+
 Explanations make() {
     Explanations out;
     for (const Parameter& p : parameters())
@@ -45,6 +63,7 @@ Explanations make() {
     add("jitter.seed", "", "of the noise; 0: there was none");
     add("jitter.lines", "", "lines that L1s asked for, each 0 or 1 cycle later by chance");
     add("jitter.cycles", "cycles", "that this added, all lines together");
+    add_intervals(out);
     add("coherence_of_plain_data", "", "whether stores to words that are not shared invalidate other copies");
     add_counters(out, "core", core_counters);
     add_stack(out, "stack", "all threads");

@@ -148,6 +148,8 @@ std::string print_json(const Report& r, bool with_host) {
     out["window_cycles"] = r.window;
     out["seconds"] = r.seconds();
     out["jitter"] = {{"seed", r.config.sim.jitter}, {"lines", r.jitter.lines}, {"cycles", r.jitter.cycles}};
+    if (r.interval != 0)
+        out["intervals"] = {{"cycles", r.interval}, {"rows", r.intervals.size()}};
     out["coherence_of_plain_data"] = "not modelled";
     out["core"] = counters(r.core, core_counters);
     out["stack"] = stack(r.stack());

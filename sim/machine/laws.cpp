@@ -203,6 +203,42 @@ void check_stacks(const Report& r) {
     equal("instructions = sum over kinds and phases", r.core.instructions, sum.instructions);
 }
 
+/// Intervals follow each other without gaps, sum to the run, and each holds all threads' cycles.
+void check_intervals(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
+    if (r.interval == 0) {
+        equal("no intervals", r.intervals.size(), 0);
+        return;
+    }
+    auto threads = static_cast<std::uint64_t>(r.config.all_threads());
+    Interval sum;
+    for (const Interval& i : r.intervals) {
+        const bool last = &i == &r.intervals.back();
+        equal("an interval begins where the one before it ends", i.begin, sum.end);
+        sum.end = i.end;
+        at_most("an interval is as long as was asked", last ? 0 : i.end - i.begin, r.interval);
+        equal("an interval's CPI stack = threads x cycles",
+              std::accumulate(i.stack.begin(), i.stack.end(), std::uint64_t{0}),
+              last ? 0 : threads * (i.end - i.begin));
+        for (const auto& c : interval_counters)
+            sum.*c.count += i.*c.count;
+        for (std::size_t cause = 0; cause < cause_count; ++cause)
+            sum.stack[cause] += i.stack[cause];
+    }
+    equal("the last interval begins when the workers have returned", r.intervals.back().begin, r.cycles);
+    equal("intervals end when memory is quiet", sum.end, r.drained);
+    equal("operations = sum over intervals", r.core.vops, sum.vops);
+    equal("instructions = sum over intervals", r.core.instructions, sum.instructions);
+    equal("L1 accesses = sum over intervals", l1.reads + l1.writes, sum.l1_accesses);
+    equal("L1 misses = sum over intervals", l1.misses, sum.l1_misses);
+    equal("L2 accesses = sum over intervals", l2.reads + l2.writes, sum.l2_accesses);
+    equal("L2 misses = sum over intervals", l2.misses, sum.l2_misses);
+    equal("memory reads = sum over intervals", r.memory.reads, sum.memory_reads);
+    equal("memory writes = sum over intervals", r.memory.writes, sum.memory_writes);
+    const Stack stack = r.stack();
+    for (std::size_t cause = 0; cause < cause_count; ++cause)
+        equal("the CPI stack = sum over intervals", stack[cause], sum.stack[cause]);
+}
+
 /// Whether all threads are ordered operation by operation: tiles are not, and neither are those that come
 /// back from memory in the middle of a window that has been run.
 bool exact(Config c) {
@@ -223,6 +259,7 @@ void check_laws(const Report& r) {
     check_stacks(r);
     check_buffers(r, l1);
     check_jitter(r, l1);
+    check_intervals(r, l1, l2);
     if (exact(r.config))
         equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
 }

@@ -27,13 +27,14 @@ public:
 } // namespace
 
 Report Machine::run(const isa::address_space& space, int workers, const Labels& labels,
-                    const std::function<void(int worker)>& worker, int host_threads) const {
+                    const std::function<void(int worker)>& worker, int host_threads,
+                    const RunOptions& options) const {
     if (workers < 1 || workers > threads())
         throw std::invalid_argument("as many workers as the machine has hardware threads, at most");
     check_consistency(config_, "machine");
     auto begin = std::chrono::steady_clock::now();
     std::clock_t worked = std::clock();
-    auto engine = std::make_unique<Engine>(config_, space, workers, labels, host_threads, worker);
+    auto engine = std::make_unique<Engine>(config_, space, workers, labels, host_threads, options, worker);
     Running running(*engine);
     Report report = engine->run();
     report.host_threads = host_threads;

@@ -18,6 +18,11 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// What else is wanted of a run.
+struct RunOptions {
+    std::uint64_t interval = 0; // cycles of an interval of Report::intervals, whole windows; 0: none are kept
+};
+
 class Machine {
 public:
     explicit Machine(Config config) : config_(std::move(config)) {}
@@ -32,7 +37,8 @@ public:
     /// 0.
     /// Tiles run on `host_threads` threads of the host, which changes no digit of the report.
     Report run(const isa::address_space& space, int workers, const Labels& labels,
-               const std::function<void(int worker)>& worker, int host_threads = 1) const;
+               const std::function<void(int worker)>& worker, int host_threads = 1,
+               const RunOptions& options = {}) const;
 
 private:
     Config config_;

@@ -83,6 +83,24 @@ struct ThreadReport {
     Stack stack() const;       // of all columns
 };
 
+/// What the chip did from one cycle to another.
+struct Interval {
+    cycle begin = 0, end = 0;
+    std::uint64_t vops = 0, instructions = 0, l1_accesses = 0, l1_misses = 0, l2_accesses = 0, l2_misses = 0,
+                  memory_reads = 0, memory_writes = 0;
+    Stack stack{}; // of all threads
+};
+inline constexpr std::array<CounterRow<Interval>, 8> interval_counters = {{
+    {"vops", &Interval::vops, "vocabulary operations"},
+    {"instructions", &Interval::instructions, "machine instructions"},
+    {"l1_accesses", &Interval::l1_accesses, "L1 accesses, reads and writes"},
+    {"l1_misses", &Interval::l1_misses, "of these, misses"},
+    {"l2_accesses", &Interval::l2_accesses, "L2 accesses, reads and writes"},
+    {"l2_misses", &Interval::l2_misses, "of these, misses"},
+    {"memory_reads", &Interval::memory_reads, "lines read from memory"},
+    {"memory_writes", &Interval::memory_writes, "lines written to memory"},
+}};
+
 struct Report {
     Config config;
     Labels labels;
@@ -103,8 +121,10 @@ struct Report {
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<TrafficRow> traffic;            // where there was any
     std::vector<TouchedLines> touched;          // of the structures but `spill`
-    double host_seconds = 0;                    // apart from everything else in JSON
-    double processor_seconds = 0;               // what the host's processor worked, all its threads
+    cycle interval = 0;                         // cycles of an interval; 0: none were kept
+    std::vector<Interval> intervals; // of the run, the last one from its end until memory was quiet
+    double host_seconds = 0;         // apart from everything else in JSON
+    double processor_seconds = 0;    // what the host's processor worked, all its threads
     int host_threads = 1;
 
     double seconds() const;

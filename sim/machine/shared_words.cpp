@@ -185,6 +185,22 @@ void Engine::stop_looking(Hart& sleeper, cycle woken) {
     sleeper.looks.clear();
 }
 
+/// These looks are counted now: those of earlier intervals belong there.
+void Engine::move_looks(const Hart& sleeper, cycle since, std::uint64_t looks) {
+    const auto period = wide(config_.core.spin_period);
+    std::vector<std::int64_t>& moved = sleeper.tile->intervals.looks;
+    moved.resize(intervals_.open() + 1);
+    std::uint64_t before = 0; // of them
+    for (std::size_t i = (since + period) / intervals_.length(); i < intervals_.open(); ++i) {
+        const cycle end = (i + 1) * intervals_.length();
+        const std::uint64_t until =
+            std::min(looks, (end - 1 - since) / period); // look n comes n periods later
+        moved[i] += static_cast<std::int64_t>(2 * (until - before));
+        before = until;
+    }
+    moved.back() -= static_cast<std::int64_t>(2 * before);
+}
+
 stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due ready) {
     before_atomic(h, isa::timing::atomic::load_acquire, p, ready, true);
     const volatile std::int32_t* word = p;
@@ -207,6 +223,8 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
             h.counters.spins += looks;
             h.counters.instructions += 2 * looks;
             h.instructions[h.column] += 2 * looks;
+            if (intervals_.wanted()) [[unlikely]]
+                move_looks(h, since, looks);
             h.account(h.accounted, woken, Cause::synchronise);
             h.accounted = woken;
         }

@@ -5,6 +5,7 @@
 #include "sim/core/core.h"
 #include "sim/core/hart.h"
 #include "sim/core/sites.h"
+#include "sim/machine/intervals.h"
 #include "sim/machine/published.h"
 #include "sim/machine/scheduler.h"
 #include "sim/machine/word_queues.h"
@@ -55,6 +56,7 @@ struct Tile {
     std::vector<Hart*> sleepers;
     std::vector<Parked> parked;
     std::vector<Deed> deeds;
+    TileIntervals intervals;
 };
 
 } // namespace sim

@@ -14,6 +14,7 @@
 #include "sim/config/machine_file.h"
 #include "sim/config/parameters.h"
 #include "sim/config/placement.h"
+#include "sim/machine/intervals.h"
 #include "sim/machine/machine.h"
 #include "sim/program/native_run.h"
 #include "sim/program/provenance.h"
@@ -154,6 +155,12 @@ void RunCommand::add_to(CLI::App& app) {
            "who shares a kd-tree: chip (all), tile, core, worker (nobody), or N neighbouring workers; "
            "without it, as the machine file says (kdtree.share)")
         ->type_name("WHO");
+    run.add_option("--intervals", intervals_,
+                   "write a time series: a row of work, misses, traffic and stalls for each --interval")
+        ->type_name("FILE.csv");
+    run.add_option("--interval", interval_,
+                   "cycles of a row of --intervals, rounded up to whole windows; without it, 100000")
+        ->type_name("CYCLES");
     run.add_option("--jitter", jitter_,
                    "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later; runs that "
                    "differ in the seed alone say how far results must lie apart to mean anything; 0: none; "
@@ -189,11 +196,17 @@ int RunCommand::run() const {
     const std::vector<int> trees = Placement(config.chip).trees(workers, config.kdtree.share);
     const int host_threads =
         host_threads_.empty() ? 1 : razor::parse_whole("--host-threads", host_threads_, {1, 1024});
+    RunOptions run_options;
+    if (intervals_.empty() && !interval_.empty())
+        throw razor::UserError("--interval is of no use without --intervals FILE.csv; give both");
+    if (!intervals_.empty())
+        run_options.interval = static_cast<std::uint64_t>(
+            interval_.empty() ? 100000 : razor::parse_whole("--interval", interval_, {1000, 1e9}));
     const razor::SceneDescription description = scene_.describe();
     const std::string scene = razor::to_toml(description);
     for (const std::string& output : outputs_)
         razor::check_output(output);
-    for (const std::string& file : {json_, report_})
+    for (const std::string& file : {json_, report_, intervals_})
         if (!file.empty())
             razor::check_writable(file);
 
@@ -208,7 +221,7 @@ int RunCommand::run() const {
         const Watch watch(frame, progress, interrupted);
         report = machine.run(
             frame.memory(), workers, labels,
-            [&](int worker) { frame.render(razor::simulated::kernels, worker); }, host_threads);
+            [&](int worker) { frame.render(razor::simulated::kernels, worker); }, host_threads, run_options);
     }
     // Edges of 2^level, of the frame's units until here.
     for (TrafficRow& row : report.traffic)
@@ -236,6 +249,8 @@ int RunCommand::run() const {
                                             {"razor.isa", razor::simulated::kernels.name}};
     for (const std::string& output : outputs_)
         razor::write_image(output, frame.film(), attributes);
+    if (!intervals_.empty())
+        razor::write_text_file(intervals_, print_intervals(report));
     if (!json_.empty()) {
         json out{{"program", "razor-sim"},
                  {"version", razor::version()},

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
 namespace razor {
 namespace {
@@ -238,6 +239,70 @@ TEST_F(Simulator, NoiseMovesCyclesAlone) {
     EXPECT_EQ(report("a.json"), option);
 }
 
+// A time series whose sums are the report's, on any number of host threads; whole or not there.
+TEST_F(Simulator, WritesATimeSeries) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start =
+        std::string("run --quiet --no-native --scene s.toml --spp 1 --sky-samples 1 --light-samples "
+                    "0 --edge-pixels 4 -g chip.tiles=2 -g chip.cores=2 -g sim.quantum=100 --machine ") +
+        tiny + " ";
+    const auto series = [&](const char* threads) {
+        const Outcome result = simulator(
+            start + "--size 16x16 --json a.json --intervals i.csv --interval 20000 --host-threads " +
+            threads);
+        EXPECT_EQ(result.code, 0) << result.err;
+        return text("i.csv");
+    };
+    const std::string csv = series("1");
+    EXPECT_EQ(series("2"), csv);
+    const nlohmann::json a = report("a.json");
+    std::istringstream lines(csv);
+    std::string line, cell;
+    std::vector<std::string> names;
+    std::getline(lines, line);
+    for (std::istringstream head(line); std::getline(head, cell, ',');)
+        names.push_back(cell);
+    std::map<std::string, std::uint64_t> sums;
+    std::size_t rows = 0;
+    for (; std::getline(lines, line); ++rows) {
+        std::istringstream row(line);
+        for (const std::string& name : names) {
+            ASSERT_TRUE(std::getline(row, cell, ',')) << line;
+            if (name != "ipc")
+                sums[name] = (name == "end" ? 0 : sums[name]) + std::stoull(cell);
+        }
+    }
+    EXPECT_GT(rows, 10U);
+    EXPECT_EQ(a.at("intervals").at("rows"), rows);
+    EXPECT_GE(a.at("intervals").at("cycles"), 20000);
+    EXPECT_EQ(sums["end"], a.at("drained_cycles"));
+    for (const char* name : {"vops", "instructions"})
+        EXPECT_EQ(sums[name], a.at("core").at(name)) << name;
+    for (const char* level : {"l1", "l2"})
+        EXPECT_EQ(sums[std::string(level) + "_misses"], a.at(level).at("misses"));
+    EXPECT_EQ(sums["memory_reads"], a.at("memory").at("reads"));
+    for (const auto& [cause, cycles] : a.at("stack").items())
+        EXPECT_EQ(sums["stack_" + cause], cycles) << cause;
+    for (const std::string& name : names)
+        EXPECT_EQ(simulator("explain intervals." + name).code, 0) << name;
+
+    std::filesystem::remove(folder_ / "i.csv");
+    std::filesystem::remove(folder_ / "a.json");
+    const std::size_t before = folder_.count();
+    // ulimit counts blocks of 512 or 1024 bytes; the series needs more than two of either.
+    Outcome stopped = run("ulimit -f 2; trap '' XFSZ; " + quoted_argument(RAZOR_SIMULATOR) + " " + start +
+                              "--size 16x16 --intervals i.csv --interval 1000",
+                          folder_.path());
+    EXPECT_EQ(stopped.code, 2);
+    EXPECT_NE(stopped.err.find("i.csv"), std::string::npos) << stopped.err;
+    EXPECT_EQ(stopped.error_lines(), 1) << stopped.err;
+    EXPECT_EQ(folder_.count(), before) << "a file was left";
+    stopped = run("timeout -s INT 0.7 " + quoted_argument(RAZOR_SIMULATOR) + " " + start +
+                      "--size 200x200 --intervals i.csv --interval 1000",
+                  folder_.path());
+    EXPECT_EQ(folder_.count(), before) << "a file was left";
+}
+
 // A memory by itself: beside its closed forms, and what it refuses.
 TEST_F(Simulator, TriesMemories) {
     const std::string few = "dram --preset ddr4-2400r --requests 20000 --json d.json ";
@@ -339,6 +404,10 @@ TEST_F(Simulator, RefusesBadMachinesAndOptions) {
         {"--machine good.toml --workers 5", "give a whole number from 1 to 4"},
         {"--machine good.toml --share all", "--share: kdtree.share is \"all\"; it must be one of"},
         {"--machine good.toml --share 0", "--share: kdtree.share is \"0\""},
+        {"--machine good.toml --interval 5000", "--interval is of no use without --intervals FILE.csv"},
+        {"--machine good.toml --intervals i.csv --interval 0", "give a whole number from 1000 to 1000000000"},
+        {"--machine good.toml --intervals i.csv --interval 10k", "--interval '10k'"},
+        {"--machine good.toml --intervals none/i.csv", "none/i.csv"},
         {"--machine good.toml --jitter -1", "--jitter '-1'"},
         {"--machine good.toml --jitter 1.5", "give a whole number from 0 to 2147483647"},
         {"--machine good.toml -g sim.jitter=x", "-g sim.jitter=x"},

@@ -1,11 +1,13 @@
 // Every figure of a report is explained, and nothing is explained that no report has.
 #include "sim/machine/explain.h"
+#include "sim/machine/intervals.h"
 #include "tests/sim/kernels.h"
 #include "tests/sim/machines.h"
 
 #include <nlohmann/json.hpp>
 
 #include <set>
+#include <sstream>
 
 namespace sim::test {
 namespace {
@@ -29,13 +31,20 @@ std::set<std::string> figures() {
     c.core.pairing = "any | any";
     c.core.shared_classes = "divide";
     Memory memory;
-    const Report r = Machine(c).run(memory.space, 4, {{"work", "more"}, {"none", "some"}}, [&](int w) {
-        set_phase(w % 2);
-        note_level(memory.more, 64, 1);
-        mixed_work(reinterpret_cast<std::int32_t*>(memory.more),
-                   reinterpret_cast<isa::shared<std::int32_t>*>(memory.data), w, 3);
-    });
+    const Report r =
+        Machine(c).run(memory.space, 4, {{"work", "more"}, {"none", "some"}},
+                       [&](int w) {
+                           set_phase(w % 2);
+                           note_level(memory.more, 64, 1);
+                           mixed_work(reinterpret_cast<std::int32_t*>(memory.more),
+                                      reinterpret_cast<isa::shared<std::int32_t>*>(memory.data), w, 3);
+                       },
+                       1, {.interval = 500});
     std::set<std::string> out;
+    const std::string series = print_intervals(r);
+    std::istringstream columns(series.substr(0, series.find('\n')));
+    for (std::string name; std::getline(columns, name, ',');)
+        out.insert("intervals[]." + name);
     collect(nlohmann::json::parse(print_json(r)), "", out);
     return out;
 }
