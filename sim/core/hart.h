@@ -41,7 +41,8 @@ struct Hart {
     // --- the CPI stack: all cycles before `accounted` have a cause
     cycle accounted = 0;
     cycle boundary = ~cycle{0}; // the end of the interval (intervals.h) that these lie in ...
-    std::uint64_t interval = 0; // ... its length ...
+    std::uint64_t interval = 0; // ... its length, 0 before the first one ...
+    cycle origin = 0;           // ... where that begins ...
     Stack marked{};             // ... and the sum of `stacks` when the one before it ended
     cycle finish = 0;           // when the worker's last result was there
     RegisterFile registers;
@@ -88,7 +89,9 @@ struct Hart {
         (*stack)[static_cast<std::size_t>(why)] += to - from;
     }
     void account_across(cycle from, cycle to, Cause why);
+    void begin_intervals(cycle t, std::uint64_t length);
     void close_interval();
+    Stack sum_of_stacks() const;
     Stack& stack_of_interval() const;
     /// Work and time count under this column from now on.
     void enter(std::size_t next) {

@@ -23,6 +23,10 @@ public:
     /// Serves everything that arrives before cycle `end`. What arrives after this is later.
     void serve(cycle end);
     static constexpr cycle everything = ~cycle{0};
+    /// Memory writes what it has queued; returns the cycle from which on it and all requests are at rest.
+    cycle drain() { return std::max(served_, memory_.drain()); }
+    /// What follows counts by itself from this memory clock on.
+    void count_from(std::uint64_t clock) { memory_.count_refreshes(clock); }
     /// Nothing follows: memory writes what it has queued.
     void finish() { memory_.finish(); }
     /// When the earliest request waits to be served; ~0: none does.

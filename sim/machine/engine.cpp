@@ -1,6 +1,7 @@
 #include "sim/machine/engine.h"
 
 #include "sim/config/placement.h"
+#include "sim/machine/warm_up.h"
 
 #include <fmt/core.h>
 
@@ -59,8 +60,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       labels_(with_frame_end(labels)), lines_(space, line_shift_), homes_(space, config.chip.tiles),
       beyond_(config, [this](std::uint32_t tile, cycle ticket,
                              cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
-      host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))),
-      intervals_(options.interval, window_cycles_), workers_(workers) {
+      host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), options_(options),
+      worker_(worker), intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
     std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
     spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
@@ -77,8 +78,6 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
-                if (intervals_.wanted())
-                    h.boundary = h.interval = intervals_.length();
                 h.spill_base = lines_.spill_begin() + number * spill_bytes;
                 tile.harts.push_back(&h);
             }
@@ -87,13 +86,6 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)
         harts_[wide(placement.number(placement.of(w)))].worker = w;
-    for (Hart& h : harts_)
-        if (h.worker >= 0)
-            h.tile->scheduler.add(h.number, [&h, worker] {
-                running_hart = &h;
-                worker(h.worker);
-                h.finished = true;
-            });
 }
 
 /// In how many cycles so many instructions of a kind issue at the least.
@@ -256,7 +248,7 @@ bool Engine::run_window() {
     return true;
 }
 
-Report Engine::run() {
+void Engine::run_workers() {
     auto unfinished = [this] {
         return std::any_of(tiles_.begin(), tiles_.end(),
                            [](const Tile& t) { return t.scheduler.unfinished() > 0; });
@@ -269,8 +261,66 @@ Report Engine::run() {
             host_threads_.one(host_thread(tile), [&](int) { tile.scheduler.cancel(); });
         std::rethrow_exception(failure_);
     }
-    finish_frame();
-    return report();
+}
+
+/// All workers begin at cycle `t`, before which everything is at rest.
+void Engine::begin_frame(cycle t) {
+    for (Hart& h : harts_) {
+        h.account(h.accounted, t, Cause::idle);
+        h.accounted = h.now = t;
+        h.bound = Due(t, Cause::idle);
+        h.enter(0);
+        if (h.worker < 0)
+            continue;
+        h.finished = false;
+        h.tile->scheduler.add(h.number, t, [this, &h] {
+            running_hart = &h;
+            worker_(h.worker);
+            h.finished = true;
+        });
+    }
+    cycles_ = t;
+}
+
+/// Intervals, and lines that count as touched, begin here.
+void Engine::begin_counting() {
+    lines_.forget_touched();
+    intervals_.begin(cycles_, sums());
+    if (intervals_.wanted())
+        for (Hart& h : harts_)
+            h.begin_intervals(cycles_, intervals_.length());
+}
+
+Report Engine::run() {
+    Report warm;
+    begin_frame(0);
+    for (int frame = 0;; ++frame) {
+        const bool last = frame + 1 == options_.frames;
+        if (last)
+            begin_counting();
+        run_workers();
+        finish_frame();
+        if (last)
+            break;
+        cycle quiet = std::max({cycles_, window_end_, beyond_.drain()});
+        for (const Tile& tile : tiles_)
+            quiet = std::max(quiet, tile.l2.quiet());
+        begin_frame((quiet + window_cycles_ - 1) / window_cycles_ * window_cycles_);
+        if (frame + 2 == options_.frames) {
+            beyond_.count_from(to_memory_clocks(config_, cycles_));
+            warm = report();
+        }
+        if (options_.next_frame)
+            options_.next_frame(frame + 1);
+    }
+    beyond_.finish();
+    Report r = report();
+    r.all_vops = r.core.vops;
+    r.all_instructions = r.core.instructions;
+    if (options_.frames > 1)
+        take_away(r, warm);
+    add_intervals(r);
+    return r;
 }
 
 /// The workers have returned: what they began is completed, and dirty lines of data that outlives the frame
@@ -295,7 +345,7 @@ void Engine::finish_frame() {
     for (Hart& h : harts_) {
         h.account(h.accounted, cycles_, Cause::idle);
         h.accounted = cycles_;
-        if (intervals_.wanted())
+        if (h.interval != 0)
             h.close_interval();
     }
     at_end_ = sums();
@@ -311,7 +361,6 @@ void Engine::finish_frame() {
     for (Tile& tile : tiles_)
         tile.l2.finish(cycles_, frame_end, lasting);
     serve_all();
-    beyond_.finish();
 }
 
 std::string Engine::describe_deadlock() const {
@@ -352,7 +401,7 @@ Interval Engine::sums() const {
     return s;
 }
 
-Report Engine::report() {
+Report Engine::report() const {
     Report r;
     r.config = config_;
     r.labels = labels_;
@@ -401,12 +450,15 @@ Report Engine::report() {
     r.drained = std::max(r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)));
     for (const Tile& tile : tiles_)
         r.drained = std::max(r.drained, tile.l2.quiet());
+    return r;
+}
+
+void Engine::add_intervals(Report& r) {
     r.interval = intervals_.length();
     std::vector<const TileIntervals*> series;
     for (const Tile& tile : tiles_)
         series.push_back(&tile.intervals);
     r.intervals = intervals_.finish(r.cycles, at_end_, r.drained, sums(), series);
-    return r;
 }
 
 } // namespace sim

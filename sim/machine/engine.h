@@ -233,10 +233,14 @@ private:
     void answer_parked(Tile& tile);
     void forget_tickets(Tile& tile);
     void fail(const std::exception_ptr& why);
+    void run_workers();
     void finish_frame();
+    void begin_frame(cycle t);
+    void begin_counting();
     std::string describe_deadlock() const;
     Interval sums() const;
-    Report report();
+    Report report() const;
+    void add_intervals(Report& r);
 
     // --- constants of the machine, in the types that the hot paths want
     Config config_;
@@ -275,6 +279,8 @@ private:
     cycle window_end_ = 0;
     std::exception_ptr failure_;
     cycle cycles_ = 0; // of the whole run
+    RunOptions options_;
+    std::function<void(int)> worker_;
     Intervals intervals_;
     Interval at_end_; // of the run: what has been counted
     int workers_;

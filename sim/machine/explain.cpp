@@ -56,6 +56,7 @@ Explanations make() {
         out.push_back({path, unit, meaning});
     };
     add("workers", "", "workers, each on a hardware thread of its own");
+    add("warm_up_cycles", "cycles", "before what counts: all other figures but the host's are from then on");
     add("cycles", "cycles", "until the last worker had returned and its last result was there");
     add("drained_cycles", "cycles", "until memory was quiet as well");
     add("window_cycles", "cycles", "in which tiles run by themselves");

@@ -10,7 +10,15 @@
 namespace sim {
 
 Intervals::Intervals(std::uint64_t length, std::uint64_t window)
-    : length_((length + window - 1) / window * window), next_(length_ == 0 ? ~cycle{0} : length_) {}
+    : length_((length + window - 1) / window * window) {}
+
+void Intervals::begin(cycle t, const Interval& sums) {
+    if (!wanted())
+        return;
+    origin_ = t;
+    next_ = t + length_;
+    counted_ = sums;
+}
 
 void Intervals::add(cycle end, const Interval& sums) {
     Interval row;
@@ -24,15 +32,15 @@ void Intervals::add(cycle end, const Interval& sums) {
 
 void Intervals::close(cycle t, const Interval& sums) {
     for (; next_ <= t; next_ += length_)
-        add(next_, sums);
+        add(next_ - origin_, sums);
 }
 
 std::vector<Interval> Intervals::finish(cycle cycles, const Interval& sums, cycle drained,
                                         const Interval& all, const std::vector<const TileIntervals*>& tiles) {
     if (!wanted())
         return {};
-    for (; next_ < cycles; next_ += length_)
-        add(next_, sums);
+    for (; next_ - origin_ < cycles; next_ += length_)
+        add(next_ - origin_, sums);
     add(cycles, sums);
     // A window may have begun after the last result was there.
     while (rows_.size() > 1 && rows_[rows_.size() - 2].end >= cycles) {
@@ -53,6 +61,21 @@ std::vector<Interval> Intervals::finish(cycle cycles, const Interval& sums, cycl
     return std::move(rows_);
 }
 
+void Hart::begin_intervals(cycle t, std::uint64_t length) {
+    interval = length;
+    origin = t;
+    boundary = t + length;
+    marked = sum_of_stacks();
+}
+
+Stack Hart::sum_of_stacks() const {
+    Stack sum{};
+    for (const Stack& column : stacks)
+        for (std::size_t i = 0; i < cause_count; ++i)
+            sum[i] += column[i];
+    return sum;
+}
+
 /// The cycles from `from` on reach beyond the interval's end.
 void Hart::account_across(cycle from, cycle to, Cause why) {
     const auto cause = static_cast<std::size_t>(why);
@@ -70,7 +93,7 @@ void Hart::account_across(cycle from, cycle to, Cause why) {
 /// That which ends at `boundary`.
 Stack& Hart::stack_of_interval() const {
     std::vector<Stack>& all = tile->intervals.stacks;
-    const std::size_t number = boundary / interval - 1;
+    const std::size_t number = (boundary - origin) / interval - 1;
     if (all.size() <= number)
         all.resize(number + 1, Stack{});
     return all[number];
@@ -78,10 +101,7 @@ Stack& Hart::stack_of_interval() const {
 
 /// What has been accounted for since the last time counts for the interval at hand.
 void Hart::close_interval() {
-    Stack sum{};
-    for (const Stack& column : stacks)
-        for (std::size_t i = 0; i < cause_count; ++i)
-            sum[i] += column[i];
+    const Stack sum = sum_of_stacks();
     Stack& row = stack_of_interval();
     for (std::size_t i = 0; i < cause_count; ++i)
         row[i] += sum[i] - marked[i];

@@ -23,15 +23,20 @@ public:
     /// `length` in cycles, rounded up to whole windows; 0: none are kept.
     Intervals(std::uint64_t length, std::uint64_t window);
 
+    /// The first one begins at cycle `t`, the end of a window, when this has been counted.
+    void begin(cycle t, const Interval& sums);
     bool wanted() const { return length_ != 0; }
     std::uint64_t length() const { return length_; }
     /// The interval that counters count for.
     std::size_t open() const { return rows_.size(); }
+    /// The cycle at which the first one begins; rows count from here.
+    cycle origin() const { return origin_; }
     /// Whether intervals end between the last time and cycle `t`.
     bool due(cycle t) const { return t >= next_; }
     /// They end: `sums` is what has been counted since the run began.
     void close(cycle t, const Interval& sums);
-    /// The run ends at `cycles`, and memory is quiet at `drained`, with these sums then and there.
+    /// The run ends `cycles` after the origin, and memory is quiet at `drained`, with these sums then and
+    /// there.
     std::vector<Interval> finish(cycle cycles, const Interval& sums, cycle drained, const Interval& all,
                                  const std::vector<const TileIntervals*>& tiles);
 
@@ -39,7 +44,7 @@ private:
     void add(cycle end, const Interval& sums);
 
     std::uint64_t length_;
-    cycle next_;
+    cycle next_ = ~cycle{0}, origin_ = 0;
     Interval counted_; // in the rows so far
     std::vector<Interval> rows_;
 };

@@ -143,6 +143,7 @@ std::string print_json(const Report& r, bool with_host) {
     json out;
     out["machine"] = configuration(r.config);
     out["workers"] = r.workers;
+    out["warm_up_cycles"] = r.warm_up;
     out["cycles"] = r.cycles;
     out["drained_cycles"] = r.drained;
     out["window_cycles"] = r.window;
@@ -185,8 +186,8 @@ std::string print_json(const Report& r, bool with_host) {
             {"seconds", r.host_seconds},
             {"processor_seconds", r.processor_seconds},
             {"threads", r.host_threads},
-            {"vops_per_second", static_cast<double>(r.core.vops) / r.processor_seconds},
-            {"instructions_per_second", static_cast<double>(r.core.instructions) / r.processor_seconds}};
+            {"vops_per_second", static_cast<double>(r.all_vops) / r.processor_seconds},
+            {"instructions_per_second", static_cast<double>(r.all_instructions) / r.processor_seconds}};
     return out.dump(2) + "\n";
 }
 

@@ -21,6 +21,8 @@ public:
 /// What else is wanted of a run.
 struct RunOptions {
     std::uint64_t interval = 0; // cycles of an interval of Report::intervals, whole windows; 0: none are kept
+    int frames = 1;             // so often all workers run, one time after another; the last counts
+    std::function<void(int frame)> next_frame = {}; // called before all but the first, memory being quiet
 };
 
 class Machine {
@@ -35,6 +37,8 @@ public:
     /// alone. Rethrows what a worker or a page service throws, after all other workers have been unwound;
     /// throws Deadlock. Checks all laws. One run at a time in a process. A worker begins in phase 0 and kind
     /// 0.
+    /// With several frames, caches, predictors and open rows stay as the frame before left them: its dirty
+    /// lines that outlive a frame have been written, others were dropped, and memory has become quiet.
     /// Tiles run on `host_threads` threads of the host, which changes no digit of the report.
     Report run(const isa::address_space& space, int workers, const Labels& labels,
                const std::function<void(int worker)>& worker, int host_threads = 1,

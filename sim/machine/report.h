@@ -106,6 +106,7 @@ struct Report {
     Labels labels;
     std::vector<std::string> structures;
     int workers = 0;
+    cycle warm_up = 0; // cycles before what counts: all that follows is from then on
     cycle cycles = 0;  // until the last worker has returned and its last result is there
     cycle drained = 0; // until memory is quiet as well
     cycle window = 0;  // in which tiles ran by themselves
@@ -123,8 +124,9 @@ struct Report {
     std::vector<TouchedLines> touched;          // of the structures but `spill`
     cycle interval = 0;                         // cycles of an interval; 0: none were kept
     std::vector<Interval> intervals; // of the run, the last one from its end until memory was quiet
-    double host_seconds = 0;         // apart from everything else in JSON
-    double processor_seconds = 0;    // what the host's processor worked, all its threads
+    std::uint64_t all_vops = 0, all_instructions = 0; // warm-up included
+    double host_seconds = 0;                          // apart from everything else in JSON
+    double processor_seconds = 0;                     // what the host's processor worked, all its threads
     int host_threads = 1;
 
     double seconds() const;

@@ -2,14 +2,13 @@
 
 namespace sim {
 
-void Scheduler::add(std::uint32_t thread, std::function<void()> work) {
+void Scheduler::add(std::uint32_t thread, cycle t, std::function<void()> work) {
     threads_.resize(std::max<std::size_t>(threads_.size(), thread + 1));
     threads_[thread] = std::make_unique<Thread>();
-    Thread* t = threads_[thread].get();
-    t->number = thread;
-    t->fibre = std::make_unique<Fibre>(
+    threads_[thread]->number = thread;
+    threads_[thread]->fibre = std::make_unique<Fibre>(
         stack_bytes_, [this, work = std::move(work)] { body(work); }, main_);
-    push(key(0, thread));
+    push(key(t, thread));
     ++unfinished_;
 }
 

@@ -28,8 +28,9 @@ public:
     Scheduler(std::uint64_t quantum, std::uint64_t window, std::size_t stack_bytes)
         : quantum_(quantum), whole_windows_(quantum >= window), stack_bytes_(stack_bytes) {}
 
-    /// Adds a thread (ascending numbers, all before run()).
-    void add(std::uint32_t thread, std::function<void()> body);
+    /// Adds a thread that begins at cycle `t`: a new one (ascending numbers), or one that has ended once
+    /// more.
+    void add(std::uint32_t thread, cycle t, std::function<void()> body);
 
     // From outside of all threads:
     /// Runs threads until none is earlier than cycle `end`, or one has failed.

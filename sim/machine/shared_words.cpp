@@ -191,8 +191,9 @@ void Engine::move_looks(const Hart& sleeper, cycle since, std::uint64_t looks) {
     std::vector<std::int64_t>& moved = sleeper.tile->intervals.looks;
     moved.resize(intervals_.open() + 1);
     std::uint64_t before = 0; // of them
-    for (std::size_t i = (since + period) / intervals_.length(); i < intervals_.open(); ++i) {
-        const cycle end = (i + 1) * intervals_.length();
+    for (std::size_t i = (since + period - intervals_.origin()) / intervals_.length(); i < intervals_.open();
+         ++i) {
+        const cycle end = intervals_.origin() + (i + 1) * intervals_.length();
         const std::uint64_t until =
             std::min(looks, (end - 1 - since) / period); // look n comes n periods later
         moved[i] += static_cast<std::int64_t>(2 * (until - before));
@@ -223,7 +224,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
             h.counters.spins += looks;
             h.counters.instructions += 2 * looks;
             h.instructions[h.column] += 2 * looks;
-            if (intervals_.wanted()) [[unlikely]]
+            if (h.interval != 0) [[unlikely]]
                 move_looks(h, since, looks);
             h.account(h.accounted, woken, Cause::synchronise);
             h.accounted = woken;

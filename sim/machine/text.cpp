@@ -15,6 +15,9 @@ void overview(std::string& out, const Report& r) {
     auto cores = static_cast<std::uint64_t>(r.config.all_cores());
     out += fmt::format("cycles                {:>14}   ({:.6f} s at {:.3f} GHz)\n", r.cycles, r.seconds(),
                        1e3 / static_cast<double>(r.config.chip.clock_ps));
+    if (r.warm_up != 0)
+        out += fmt::format(
+            "warm-up               {:>14}   cycles before these, in no figure but the host's\n", r.warm_up);
     out += fmt::format("workers               {:>14}   on {} tiles x {} cores x {} threads\n", r.workers,
                        r.config.chip.tiles, r.config.chip.cores, r.config.chip.threads);
     out += fmt::format("order of threads      {:>14}   {}\n",
@@ -251,8 +254,8 @@ std::string print_text(const Report& r) {
         "\nhost: {:.3f} s on {} thread{}, {:.3f} s of processor time: {:.2f} million operations and {:.2f} "
         "million instructions a second of it\n",
         r.host_seconds, r.host_threads, r.host_threads == 1 ? "" : "s", worked,
-        static_cast<double>(r.core.vops) / worked * 1e-6,
-        static_cast<double>(r.core.instructions) / worked * 1e-6);
+        static_cast<double>(r.all_vops) / worked * 1e-6,
+        static_cast<double>(r.all_instructions) / worked * 1e-6);
     return out;
 }
 

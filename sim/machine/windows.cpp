@@ -17,6 +17,10 @@ std::uint64_t to_core_cycles(const Config& c, integer memory_clocks) {
     return wide((memory_clocks * c.memory.clock_ps + c.chip.clock_ps - 1) / c.chip.clock_ps);
 }
 
+std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
+    return (core_cycles * wide(c.chip.clock_ps) + wide(c.memory.clock_ps) - 1) / wide(c.memory.clock_ps);
+}
+
 std::uint64_t window_cycles(const Config& c) {
     if (c.sim.window != 0)
         return wide(c.sim.window);

@@ -1,6 +1,7 @@
 #include "sim/memory/dram_channel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sim {
 
@@ -219,15 +220,25 @@ Clock DramChannel::write(const DramPlace& place, std::uint64_t burst, Clock arri
     return taken;
 }
 
-void DramChannel::finish(Clock t) {
-    low_ = 0;
+void DramChannel::drain(Clock t) {
+    const std::size_t low = std::exchange(low_, 0);
     while (waiting_ > 0)
         send_batch(t);
+    low_ = low;
+}
+
+Clock DramChannel::quiet() const {
     Clock end = 0;
     for (const MemoryCounters& n : counters_)
         end = std::max(end, n.last_clock);
+    return end;
+}
+
+void DramChannel::count_refreshes(Clock end) {
     for (std::uint32_t rank = 0; t_.tREFI != 0 && rank < counters_.size(); ++rank)
         for (Clock r = slots_.first_refresh(rank); r < end; r += t_.tREFI) {
+            if (r < refreshed_)
+                continue;
             ++counters_[rank].refreshes;
             DramPlace p;
             p.channel = number_;
@@ -235,6 +246,7 @@ void DramChannel::finish(Clock t) {
             log(DramCommand::Kind::precharge_all, r - t_.tRP, p);
             log(DramCommand::Kind::refresh, r, p);
         }
+    refreshed_ = std::max(refreshed_, end);
 }
 
 std::vector<MemoryCounters> DramChannel::counters() const {

@@ -26,11 +26,15 @@ public:
     /// Returns the clock at which the queue has taken the burst.
     Clock write(const DramPlace& place, std::uint64_t burst, Clock arrival);
     /// Sends all queued writes.
-    void finish(Clock t);
+    void drain(Clock t);
+    /// Counts refreshes before this clock (those of an earlier call once).
+    void count_refreshes(Clock end);
+    /// The clock after the last data so far.
+    Clock quiet() const;
 
     /// By rank; what is of the channel alone stands with rank 0.
     std::vector<MemoryCounters> counters() const;
-    /// Every command from here on is appended to `log`, not in time order; refreshes by finish().
+    /// Every command from here on is appended to `log`, not in time order; refreshes by count_refreshes().
     void set_log(std::vector<DramCommand>* log) { log_ = log; }
 
 private:
@@ -85,6 +89,7 @@ private:
     std::uint64_t batch_ = 0;
     std::size_t waiting_ = 0;              // of these, not sent
     std::vector<MemoryCounters> counters_; // by rank
+    Clock refreshed_ = 0;                  // refreshes before this are counted
     std::vector<DramCommand>* log_ = nullptr;
 };
 

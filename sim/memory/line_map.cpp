@@ -77,6 +77,13 @@ std::optional<int> LineMap::level_of(LineKind kind) {
     return code == 0 ? std::nullopt : std::optional(static_cast<int>(code) - 128);
 }
 
+void LineMap::forget_touched() {
+    for (std::size_t g = 0; g < granule_count_; ++g)
+        if (Line* lines = granules_[g].lines.load(std::memory_order_relaxed); lines != nullptr)
+            for (std::size_t i = 0; i < lines_in_granule(); ++i)
+                lines[i].touched_.store(0, std::memory_order_relaxed);
+}
+
 std::vector<TouchedLines> LineMap::touched() const {
     std::map<std::pair<std::size_t, std::uint64_t>, std::uint64_t> counts;
     for (std::size_t g = 0; g < granule_count_; ++g) {

@@ -72,6 +72,8 @@ public:
     static std::optional<int> level_of(LineKind kind);
     /// Lines of the structures but `spill`, by structure and by which columns touched them.
     std::vector<TouchedLines> touched() const;
+    /// None has been touched so far.
+    void forget_touched();
 
 private:
     static constexpr unsigned level_bits = 8; // 0: none noted; levels beyond +-127 count as those

@@ -54,9 +54,24 @@ cycle Memory::write(std::uint64_t address, cycle t) {
     return leave(taken);
 }
 
-void Memory::finish() {
+cycle Memory::drain() {
+    Clock end = 0;
+    for (DramChannel& c : channels_) {
+        c.drain(latest_);
+        end = std::max(end, c.quiet());
+    }
+    return leave(end);
+}
+
+void Memory::count_refreshes(Clock clocks) {
     for (DramChannel& c : channels_)
-        c.finish(latest_);
+        c.count_refreshes(clocks);
+}
+
+void Memory::finish() {
+    drain();
+    for (DramChannel& c : channels_)
+        c.count_refreshes(c.quiet());
 }
 
 std::vector<MemoryCounters> Memory::rank_counters() const {

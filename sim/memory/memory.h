@@ -22,7 +22,11 @@ public:
     cycle read(std::uint64_t address, cycle t);
     /// Returns the core cycle at which the write queues have taken the line.
     cycle write(std::uint64_t address, cycle t);
-    /// Sends what is still queued. No requests follow.
+    /// Sends what is still queued; returns the core cycle from which on memory is quiet.
+    cycle drain();
+    /// Of this many clocks the refreshes are counted from now on.
+    void count_refreshes(Clock clocks);
+    /// Sends what is still queued and counts refreshes until then. No requests follow.
     void finish();
 
     /// Sums over all ranks, and each: rank r of channel c at c x ranks + r.

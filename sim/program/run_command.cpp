@@ -161,6 +161,11 @@ void RunCommand::add_to(CLI::App& app) {
     run.add_option("--interval", interval_,
                    "cycles of a row of --intervals, rounded up to whole windows; without it, 100000")
         ->type_name("CYCLES");
+    run.add_option(
+           "--frames", frames_,
+           "render the frame so many times in one run and count the last alone: caches, predictors and "
+           "topology pages are warm, all else is built anew; without it, 1")
+        ->type_name("N");
     run.add_option("--jitter", jitter_,
                    "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later; runs that "
                    "differ in the seed alone say how far results must lie apart to mean anything; 0: none; "
@@ -202,6 +207,7 @@ int RunCommand::run() const {
     if (!intervals_.empty())
         run_options.interval = static_cast<std::uint64_t>(
             interval_.empty() ? 100000 : razor::parse_whole("--interval", interval_, {1000, 1e9}));
+    run_options.frames = frames_.empty() ? 1 : razor::parse_whole("--frames", frames_, {1, 1000});
     const razor::SceneDescription description = scene_.describe();
     const std::string scene = razor::to_toml(description);
     for (const std::string& output : outputs_)
@@ -215,6 +221,11 @@ int RunCommand::run() const {
     razor::Frame frame(built, {.workers = workers, .tree_of_worker = trees});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
+    run_options.next_frame = [&](int) {
+        frame.reset();
+        if (interrupted.load())
+            frame.stop();
+    };
     Report report;
     {
         razor::Progress progress(!quiet_);
@@ -254,7 +265,8 @@ int RunCommand::run() const {
     if (!json_.empty()) {
         json out{{"program", "razor-sim"},
                  {"version", razor::version()},
-                 {"options", {{"workers", workers}, {"share", config.kdtree.share}}},
+                 {"options",
+                  {{"workers", workers}, {"share", config.kdtree.share}, {"frames", run_options.frames}}},
                  {"scene", scene}};
         json run = json::parse(print_json(report));
         json host = run["host"];

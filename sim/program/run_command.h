@@ -29,7 +29,7 @@ private:
     MachineOptions machine_;
     razor::SceneOptions scene_;
     std::vector<std::string> outputs_;
-    std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_;
+    std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_;
     bool quiet_ = false, no_native_ = false;
 };
 

@@ -303,6 +303,39 @@ TEST_F(Simulator, WritesATimeSeries) {
     EXPECT_EQ(folder_.count(), before) << "a file was left";
 }
 
+// The last of several frames: the same picture and rays, with pages, caches and predictors that are there.
+TEST_F(Simulator, CountsTheLastFrameAlone) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = std::string("run --quiet --scene s.toml --size 24x24 --spp 1 --sky-samples 1 "
+                                          "--light-samples 0 --edge-pixels 4 --workers 1 -g chip.tiles=1 "
+                                          "-o a.exr --json a.json --machine ") +
+                              tiny + " ";
+    ASSERT_EQ(simulator(start).code, 0);
+    const nlohmann::json once = report("a.json");
+    const Film picture = read_exr(folder_ / "a.exr");
+    ASSERT_EQ(simulator(start + "--frames 1").code, 0);
+    EXPECT_EQ(report("a.json"), once);
+    for (const char* frames : {"2", "3"}) {
+        const Outcome result = simulator(start + "--frames " + frames);
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find("\nwarm-up "), std::string::npos);
+        EXPECT_NE(result.out.find("the same picture, bit for bit"), std::string::npos);
+        const nlohmann::json a = report("a.json");
+        EXPECT_GE(a.at("warm_up_cycles"), once.at("cycles"));
+        EXPECT_LT(a.at("cycles"), once.at("cycles"));
+        EXPECT_GT(once.at("core").at("pages"), 0);
+        EXPECT_EQ(a.at("core").at("pages"), 0);
+        EXPECT_LT(a.at("core").at("mispredicts"), once.at("core").at("mispredicts"));
+        EXPECT_LT(a.at("l2").at("misses"), once.at("l2").at("misses"));
+        nlohmann::json counters = a.at("renderer").at("counters"), cold = once.at("renderer").at("counters");
+        EXPECT_EQ(counters.at("pages_requested"), 0);
+        cold["pages_requested"] = 0;
+        EXPECT_EQ(counters, cold);
+        for (const Plane& plane : picture.planes)
+            EXPECT_EQ(read_exr(folder_ / "a.exr").find(plane.name)->values, plane.values) << plane.name;
+    }
+}
+
 // A memory by itself: beside its closed forms, and what it refuses.
 TEST_F(Simulator, TriesMemories) {
     const std::string few = "dram --preset ddr4-2400r --requests 20000 --json d.json ";
@@ -408,6 +441,8 @@ TEST_F(Simulator, RefusesBadMachinesAndOptions) {
         {"--machine good.toml --intervals i.csv --interval 0", "give a whole number from 1000 to 1000000000"},
         {"--machine good.toml --intervals i.csv --interval 10k", "--interval '10k'"},
         {"--machine good.toml --intervals none/i.csv", "none/i.csv"},
+        {"--machine good.toml --frames 0", "give a whole number from 1 to 1000"},
+        {"--machine good.toml --frames two", "--frames 'two'"},
         {"--machine good.toml --jitter -1", "--jitter '-1'"},
         {"--machine good.toml --jitter 1.5", "give a whole number from 0 to 2147483647"},
         {"--machine good.toml -g sim.jitter=x", "-g sim.jitter=x"},
