@@ -61,6 +61,7 @@ struct MemoryConfig {
     integer read_queue = 0, write_queue = 0, write_high = 0, write_low = 0, age_cap = 0, page_timeout = 0;
     integer controller_cycles = 0;
     std::string scheduler, refresh, page_policy, mapping, bank_xor;
+    double activate_pj = 0, read_pj = 0, write_pj = 0, refresh_pj = 0, background_mw = 0;
 
     /// Of the data bus, for one burst.
     integer burst_clocks() const { return burst_length / transfers_per_clock; }
@@ -69,6 +70,14 @@ struct MemoryConfig {
 /// How the renderer uses the machine.
 struct KdTreeConfig {
     std::string share;
+};
+
+/// Energies of events, in pJ, and powers that flow whatever happens, in mW; those of memory are with it.
+struct EnergyConfig {
+    double instruction_pj = 0;
+    double logic_pj = 0, add_pj = 0, multiply_pj = 0, fused_pj = 0, divide_pj = 0; // of a lane
+    double l1_access_pj = 0, l1_line_pj = 0, l2_line_pj = 0;
+    double core_mw = 0, tile_mw = 0;
 };
 
 struct SimulationConfig {
@@ -85,6 +94,7 @@ struct Config {
     CoherenceConfig coherence;
     MemoryConfig memory;
     KdTreeConfig kdtree;
+    EnergyConfig energy;
     SimulationConfig sim;
 
     /// Every parameter at its default.

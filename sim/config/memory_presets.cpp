@@ -6,7 +6,8 @@ namespace sim {
 namespace {
 
 /// Queues and policies are of the controller; no data sheet gives them. Assumed: 64 entries, as gem5's
-/// controller has, drained in long batches; an age that only what is starved reaches.
+/// controller has, drained in long batches; an age that only what is starved reaches. Energies are assumed
+/// too: sheets give currents, which differ from maker to maker; what is here are a rank's round numbers.
 MemoryConfig controller() {
     MemoryConfig c;
     c.scheduler = "fr-fcfs";
@@ -56,6 +57,12 @@ MemoryConfig ddr3_1600k() {
     c.tRFC = 128;            // 160 ns, 2 Gbit
     c.tRFCpb = 128;          // DDR3 refreshes all banks: unused
     c.tRREFD = 5;            // unused
+    // Energies: of usual 2 Gbit parts at 1.5 V, from their currents; termination as 10 pJ a bit.
+    c.activate_pj = 29000;
+    c.read_pj = 13000;
+    c.write_pj = 14000;
+    c.refresh_pj = 330000;
+    c.background_mw = 500;
     c.mapping = "row:rank:bank:group:column:channel";
     return c;
 }
@@ -95,6 +102,12 @@ MemoryConfig ddr4_2400r() {
     c.tRFC = 421;   // 350 ns, 8 Gbit
     c.tRFCpb = 421; // DDR4 refreshes all banks: unused
     c.tRREFD = 6;   // unused
+    // Energies: of usual 8 Gbit parts at 1.2 V, from their currents; termination as 5 pJ a bit.
+    c.activate_pj = 9000;
+    c.read_pj = 6000;
+    c.write_pj = 6000;
+    c.refresh_pj = 700000;
+    c.background_mw = 360;
     c.mapping = "row:rank:bank:column:channel:group";
     return c;
 }
@@ -143,6 +156,12 @@ MemoryConfig ddr5_4800b() {
     c.tRFC = 710;   // 295 ns, 16 Gbit
     c.tRFCpb = 710; // unused
     c.tRREFD = 12;  // unused
+    // Energies: a fifth less a bit than DDR4.
+    c.activate_pj = 5500;
+    c.read_pj = 4500;
+    c.write_pj = 4500;
+    c.refresh_pj = 600000;
+    c.background_mw = 260;
     c.mapping = "row:rank:bank:column:group:channel";
     return c;
 }
@@ -182,6 +201,12 @@ MemoryConfig gddr5_4000() {
     c.tRFC = 65;    // 65 ns
     c.tRFCpb = 65;  // unused
     c.tRREFD = 6;   // unused
+    // Energies: 14 pJ a bit in all (O'Connor et al., MICRO 2017), a quarter of it for rows.
+    c.activate_pj = 6000;
+    c.read_pj = 2600;
+    c.write_pj = 2600;
+    c.refresh_pj = 120000;
+    c.background_mw = 250;
     c.mapping = "row:rank:bank:column:group:channel";
     return c;
 }
@@ -221,6 +246,12 @@ MemoryConfig gddr6_14000() {
     c.tRFC = 211;   // 120 ns
     c.tRFCpb = 106; // 60 ns
     c.tRREFD = 15;
+    // Energies: half as much a bit as GDDR5.
+    c.activate_pj = 4000;
+    c.read_pj = 1900;
+    c.write_pj = 1900;
+    c.refresh_pj = 120000;
+    c.background_mw = 250;
     c.mapping = "row:rank:bank:column:group:channel:column.1";
     return c;
 }
@@ -262,6 +293,12 @@ MemoryConfig hbm2() {
     c.tRFC = 260;   // 260 ns
     c.tRFCpb = 160; // 160 ns, up to 8 Gbit
     c.tRREFD = 8;   // 8 ns
+    // Energies: 3.9 pJ a bit in all (O'Connor et al., MICRO 2017), a third of it for rows.
+    c.activate_pj = 1200;
+    c.read_pj = 700;
+    c.write_pj = 700;
+    c.refresh_pj = 60000;
+    c.background_mw = 40;
     c.mapping = "row:rank:bank:column:group:channel:column.1";
     return c;
 }
@@ -304,6 +341,12 @@ MemoryConfig hbm3() {
     c.tRFC = 416;   // 260 ns, 4 Gbit a channel
     c.tRFCpb = 320; // 200 ns
     c.tRREFD = 13;  // 8 ns
+    // Energies: a fifth less a bit than HBM2.
+    c.activate_pj = 1000;
+    c.read_pj = 550;
+    c.write_pj = 550;
+    c.refresh_pj = 60000;
+    c.background_mw = 40;
     c.mapping = "row:rank:bank:column:group:channel:column.1";
     return c;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
 
 namespace sim {
 
@@ -202,6 +203,30 @@ void add_caches(Table& t) {
           "that a write or read-modify-write takes longer where the word is reached from several tiles");
 }
 
+/// Energies of events of a part, and its power at rest; 0: not counted.
+template <class Section>
+void add_energies(
+    Table& t, const std::string& table, Section Config::*section,
+    std::initializer_list<std::tuple<const char*, double Section::*, double, const char*>> all) {
+    for (const auto& [name, member, preset, meaning] : all) {
+        const bool power = std::string_view(name).ends_with("_mw");
+        t.add(fmt::format("{}.{}", table, name), section, member, power ? "mW" : "pJ", preset, 0, 1e9,
+              meaning);
+    }
+}
+
+void add_memory_energies(Table& t) {
+    using C = MemoryConfig;
+    const C& d = memory_presets().front();
+    add_energies<C>(
+        t, "memory", &Config::memory,
+        {{"activate_pj", &C::activate_pj, d.activate_pj, "a row opened and closed, in all devices of a rank"},
+         {"read_pj", &C::read_pj, d.read_pj, "a burst read, bus and termination included"},
+         {"write_pj", &C::write_pj, d.write_pj, "a burst written, likewise"},
+         {"refresh_pj", &C::refresh_pj, d.refresh_pj, "a refresh of a rank"},
+         {"background_mw", &C::background_mw, d.background_mw, "a rank, whatever it does"}});
+}
+
 void add_memory(Table& t) {
     using C = MemoryConfig;
     auto s = &Config::memory;
@@ -292,6 +317,26 @@ void add_memory(Table& t) {
         "fields of an address, most significant first, above the bytes of a burst; x.2: two bits of x");
     t.add("memory.bank_xor", s, &C::bank_xor, {"off", "on"},
           "on: the lowest bits of the row are added to bank group and bank, bit by bit");
+    add_memory_energies(t);
+}
+
+void add_energy(Table& t) {
+    using C = EnergyConfig;
+    add_energies<C>(
+        t, "energy", &Config::energy,
+        {{"instruction_pj", &C::instruction_pj, 0, "fetching, decoding, scheduling one, its registers"},
+         {"logic_pj", &C::logic_pj, 0,
+          "a lane of integer, select, mask, compare, convert, shuffle, reduce ..."},
+         {"add_pj", &C::add_pj, 0, "a lane of a floating-point addition"},
+         {"multiply_pj", &C::multiply_pj, 0, "a lane of a multiplication, integer or not"},
+         {"fused_pj", &C::fused_pj, 0, "a lane of a fused multiplication and addition"},
+         {"divide_pj", &C::divide_pj, 0, "a lane of a division or square root"},
+         {"l1_access_pj", &C::l1_access_pj, 0, "an access of l1.port_bytes"},
+         {"l1_line_pj", &C::l1_line_pj, 0, "a line filled or written back"},
+         {"l2_line_pj", &C::l2_line_pj, 0,
+          "an access, fill or write-back, the way to the tile's cores included"},
+         {"core_mw", &C::core_mw, 0, "a core with its L1, whatever it does: leakage and clock"},
+         {"tile_mw", &C::tile_mw, 0, "a tile's L2, likewise"}});
 }
 
 void add_kdtree(Table& t) {
@@ -328,6 +373,7 @@ std::vector<Parameter> make_table() {
     add_caches(t);
     add_memory(t);
     add_kdtree(t);
+    add_energy(t);
     add_simulation(t);
     return std::move(t.rows);
 }

@@ -64,6 +64,7 @@ struct Hart {
     Stack* stack = &stacks[0]; // of the column, and so are ...
     std::vector<std::uint64_t> vops, instructions;
     CoreCounters counters;
+    KindCounts by_kind{};
 
     // --- operands of the operation at hand whose times are open
     struct Pending {

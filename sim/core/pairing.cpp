@@ -32,12 +32,6 @@ bool is_memory(std::size_t kind) {
     return kind % form_kinds >= load_kind;
 }
 
-/// The name without "scalar." or "vector.".
-std::string_view bare_name(std::size_t kind) {
-    std::size_t k = kind % form_kinds;
-    return k == load_kind ? "load" : k == store_kind ? "store" : class_names[k];
-}
-
 constexpr std::size_t vector_branch = vector_kind(branch_class); // there is none
 
 /// Adds what a word stands for; false if nothing.
@@ -73,6 +67,11 @@ std::string parse(std::string_view text, std::vector<Kinds>& ports) {
 }
 
 } // namespace
+
+std::string_view bare_name(std::size_t kind) {
+    std::size_t k = kind % form_kinds;
+    return k == load_kind ? "load" : k == store_kind ? "store" : class_names[k];
+}
 
 std::string kind_name(std::size_t kind) {
     if (kind == branch_class)

@@ -31,6 +31,8 @@ constexpr std::size_t class_of(std::size_t kind) {
     std::size_t k = kind % form_kinds;
     return k < class_count ? k : integer_kind;
 }
+/// "add", "load", "branch": of both forms.
+std::string_view bare_name(std::size_t kind);
 /// "vector.add", "scalar.load", "branch".
 std::string kind_name(std::size_t kind);
 

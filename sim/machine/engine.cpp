@@ -432,6 +432,8 @@ Report Engine::report() const {
     for (const Hart& h : harts_) {
         for (const auto& row : core_counters)
             r.core.*row.count += h.counters.*row.count;
+        for (std::size_t k = 0; k < issue_kinds; ++k)
+            r.by_kind[k] += h.by_kind[k];
         for (std::size_t i = 0; i < labels_.columns(); ++i) {
             r.work[i].vops += h.vops[i];
             r.work[i].instructions += h.instructions[i];

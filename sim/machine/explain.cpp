@@ -67,6 +67,9 @@ Explanations make() {
     add_intervals(out);
     add("coherence_of_plain_data", "", "whether stores to words that are not shared invalidate other copies");
     add_counters(out, "core", core_counters);
+    add("instructions_by_class.*.scalar", "",
+        "machine instructions on one value; looks of waiting threads are of no class");
+    add("instructions_by_class.*.vector", "", "machine instructions on core.lanes values");
     add_stack(out, "stack", "all threads");
     add("cores[].core", "", "number through all tiles");
     add("cores[].instructions", "", "machine instructions of its threads");
@@ -93,6 +96,13 @@ Explanations make() {
     add("limits[].share", "", "of the drained cycles");
     add("binding", "", "the resource with the largest bound");
     add("limiter", "", "what bounds the run, or what it waits for if no resource is busy for most of it");
+    add("energy.joules", "J",
+        "of the run until memory was quiet, by machine.energy and machine.memory; 0: none is stated");
+    add("energy.watts", "W", "of it, on average");
+    add("energy.joule_seconds", "J s", "energy times the time until memory was quiet");
+    add("energy.parts[].part", "", "of the machine");
+    add("energy.parts[].events", "", "that took energy; of parts at rest: cycles");
+    add("energy.parts[].joules", "J", "that it took");
     add("traffic[].structure", "", "of data, as its arena is named; spill: registers");
     add("traffic[].level", "", "of detail of what lies there; null where none is known");
     add("traffic[].kind", "", "of work that caused it");

@@ -41,6 +41,7 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instruction
     if (hold_policy_)
         core.busy_until = std::max(core.busy_until, at.last + 1);
     h.counters.instructions += instructions;
+    h.by_kind[kind] += instructions;
     h.instructions[h.column] += instructions;
     if (at.first > h.accounted) {
         cycle stalled = std::min(std::max(ready.at(), h.accounted), at.first);

@@ -1,6 +1,7 @@
 // The report for programs.
 #include "sim/config/parameters.h"
 #include "sim/machine/derived.h"
+#include "sim/machine/energy.h"
 #include "sim/machine/limits.h"
 
 #include <nlohmann/json.hpp>
@@ -137,6 +138,23 @@ json kinds(const Report& r) {
     return out;
 }
 
+/// By class, as scalars and as vectors; memory instructions are classes of their own.
+json instructions_by_class(const Report& r) {
+    json out = json::object();
+    for (std::size_t k = 0; k < form_kinds; ++k)
+        out[std::string(bare_name(k))] = {{"scalar", r.by_kind[k]}, {"vector", r.by_kind[vector_kind(k)]}};
+    return out;
+}
+
+json energy(const Report& r) {
+    const std::vector<EnergyPart> parts = energy_parts(r);
+    const EnergyTotal all = total(r, parts);
+    json out = {{"joules", all.joules}, {"watts", all.watts()}, {"joule_seconds", all.joule_seconds()}};
+    for (const EnergyPart& p : parts)
+        out["parts"].push_back({{"part", p.part}, {"events", p.events}, {"joules", p.joules}});
+    return out;
+}
+
 } // namespace
 
 std::string print_json(const Report& r, bool with_host) {
@@ -153,6 +171,7 @@ std::string print_json(const Report& r, bool with_host) {
         out["intervals"] = {{"cycles", r.interval}, {"rows", r.intervals.size()}};
     out["coherence_of_plain_data"] = "not modelled";
     out["core"] = counters(r.core, core_counters);
+    out["instructions_by_class"] = instructions_by_class(r);
     out["stack"] = stack(r.stack());
     out["cores"] = cores(r);
     if (!r.shared_unit_cycles.empty())
@@ -178,6 +197,7 @@ std::string print_json(const Report& r, bool with_host) {
             {{"resource", l.resource}, {"cycles", l.cycles}, {"share", ratio(l.cycles, r.drained)}});
     out["binding"] = binding(all).resource;
     out["limiter"] = limiter(r);
+    out["energy"] = energy(r);
     out["traffic"] = traffic(r);
     out["touched_lines"] = touched(r);
     out["threads"] = threads(r);

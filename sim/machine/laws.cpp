@@ -203,6 +203,8 @@ void check_stacks(const Report& r) {
         through_ports = std::accumulate(ports.begin(), ports.end(), through_ports);
     if (r.config.core.pairing != "any") // looks of waiting threads take slots alone
         equal("instructions = sum over issue ports", r.core.instructions, through_ports + 2 * r.core.spins);
+    equal("instructions = sum over classes + looks", r.core.instructions,
+          std::accumulate(r.by_kind.begin(), r.by_kind.end(), 2 * r.core.spins));
     equal("operations = sum over kinds and phases", r.core.vops, sum.vops);
     equal("instructions = sum over kinds and phases", r.core.instructions, sum.instructions);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/config/config.h"
+#include "sim/core/pairing.h"
 #include "sim/core/stalls.h"
 #include "sim/memory/counters.h"
 #include "sim/memory/traffic.h"
@@ -52,6 +53,9 @@ inline constexpr std::array<CounterRow<CoreCounters>, 26> core_counters = {{
     {"folded", &CoreCounters::folded, "address operations left to the loads and stores that use them"},
     {"unfolded", &CoreCounters::unfolded, "of these, issued after all: something else used them"},
 }};
+
+/// Machine instructions of each kind (pairing.h).
+using KindCounts = std::array<std::uint64_t, issue_kinds>;
 
 using Stack = std::array<std::uint64_t, cause_count>;
 
@@ -111,6 +115,7 @@ struct Report {
     cycle drained = 0; // until memory is quiet as well
     cycle window = 0;  // in which tiles ran by themselves
     CoreCounters core;
+    KindCounts by_kind{};   // looks of waiting threads are of none
     std::vector<Work> work; // by column
     std::vector<ThreadReport> threads;
     std::vector<std::vector<std::uint64_t>> port_instructions; // by core and port of core.pairing

@@ -1,5 +1,6 @@
 // The report for people.
 #include "sim/machine/derived.h"
+#include "sim/machine/energy.h"
 #include "sim/machine/limits.h"
 
 #include <fmt/core.h>
@@ -136,6 +137,28 @@ void levels(std::string& out, const Report& r) {
     out += fmt::format("limited by {}\n", limiter(r));
 }
 
+void instructions(std::string& out, const Report& r) {
+    out += "\nmachine instructions        scalar         vector   % of all\n";
+    for (std::size_t k = 0; k < form_kinds; ++k)
+        if (const std::uint64_t all = r.by_kind[k] + r.by_kind[vector_kind(k)]; all != 0)
+            out += fmt::format("  {:<18} {:>14} {:>14} {:>10.1f}\n", bare_name(k), r.by_kind[k],
+                               r.by_kind[vector_kind(k)], 100 * ratio(all, r.core.instructions));
+}
+
+/// Nothing where the machine states no energy.
+void energy(std::string& out, const Report& r) {
+    const std::vector<EnergyPart> parts = energy_parts(r);
+    const EnergyTotal all = total(r, parts);
+    if (all.joules == 0)
+        return;
+    out += fmt::format("\nenergy: {:.4g} mJ, {:.4g} W on average, {:.4g} J s of energy times delay\n",
+                       all.joules * 1e3, all.watts(), all.joule_seconds());
+    for (const EnergyPart& p : parts)
+        if (p.joules > 0)
+            out += fmt::format("  {:<16} {:>14} {:>12.4g} mJ {:>6.1f} %   {}\n", p.part, p.events,
+                               p.joules * 1e3, 100 * p.joules / all.joules, p.meaning);
+}
+
 template <class Name>
 void table(std::string& out, const Report& r, const char* what, std::size_t rows, Name name_and_sum) {
     out += fmt::format("\n{:<16}", what);
@@ -246,8 +269,10 @@ void traffic(std::string& out, const Report& r) {
 std::string print_text(const Report& r) {
     std::string out;
     overview(out, r);
+    instructions(out, r);
     stack(out, r);
     levels(out, r);
+    energy(out, r);
     traffic(out, r);
     double worked = r.processor_seconds;
     out += fmt::format(
