@@ -44,7 +44,7 @@ if $all; then
     step "clang: reports and pictures equal those of g++" compare_compilers
     step "a fuzzer for $fuzz_seconds s" fuzz
     step "address and undefined-behaviour sanitizers: build" build asan-ubsan -DRAZOR_TESTS=ON
-    step "address and undefined-behaviour sanitizers: tests" run_tests asan-ubsan -E "$not_sanitized"
+    step "address and undefined-behaviour sanitizers: tests" run_sanitized_tests
     step "thread sanitizer: build" build tsan -DRAZOR_TESTS=OFF
     step "thread sanitizer: shared trees" render_shared_trees
     for width in 8 16 64; do

@@ -4,6 +4,7 @@
 #include "tests/sim/machines.h"
 
 #include <bit>
+#include <cstdlib>
 #include <random>
 
 namespace sim::test {
@@ -105,9 +106,17 @@ Config random_machine(std::mt19937& random) {
     return c;
 }
 
+/// RAZOR_RANDOM_MACHINES: how many (300).
+int machines_wanted() {
+    const char* text = std::getenv("RAZOR_RANDOM_MACHINES");
+    return text != nullptr ? std::atoi(text) : 300;
+}
+
 TEST(Properties, RandomMachinesKeepTheLaws) {
     std::mt19937 random(2026);
-    for (int trial = 0; trial < 300; ++trial) {
+    const int wanted = machines_wanted();
+    ASSERT_GT(wanted, 0);
+    for (int trial = 0; trial < wanted; ++trial) {
         Config c = random_machine(random);
         SCOPED_TRACE(print_machine(c));
         Memory memory;

@@ -2,8 +2,9 @@
 
 razor=razor/program/razor # within a build folder
 simulator=sim/program/razor-sim
-# Not under sanitizers: tests that run none of our code, and the longest ones' variants of the same paths.
+# Not under sanitizers: tests that run none of our code, and the longest ones that take the paths of others.
 not_sanitized='^isa_(refused|lint)|^tree$|^Zoom|LevelsOfTorus|(Watertight|BruteForce|Fields|Continuity)\..*_(stretched|bilinear)'
+not_sanitized+='|LevelsThatJumpHaveHoles|OfChecksAreTheScenes|RunsCopernicus|CountsTheSameInAllUnits'
 scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
@@ -96,6 +97,12 @@ run_tests() {
     else
         ctest "${arguments[@]}" | grep --line-buffered -v -E '^ *[0-9]+/[0-9]+ Test +#[0-9]+: .* Passed |^ +Start +[0-9]+: '
     fi
+}
+
+# Ten times as slow, and one trial shows an error of memory as well as ten do.
+run_sanitized_tests() {
+    export RAZOR_WATERTIGHT_RAYS=20000 RAZOR_RANDOM_MACHINES=40
+    run_tests asan-ubsan -E "$not_sanitized"
 }
 
 # The lint of kernels is among the tests.
