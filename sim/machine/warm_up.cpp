@@ -37,6 +37,8 @@ void take_away(Report& r, const Report& warm) {
     r.cycles -= warm.cycles;
     r.drained -= warm.cycles;
     reduce(r.core, warm.core, core_counters);
+    for (std::size_t k = 0; k < issue_kinds; ++k)
+        r.by_kind[k] -= warm.by_kind[k];
     for (std::size_t i = 0; i < r.work.size(); ++i) {
         r.work[i].vops -= warm.work[i].vops;
         r.work[i].instructions -= warm.work[i].instructions;
