@@ -6,14 +6,26 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 namespace sim {
+namespace {
+
+/// A worker has failed, or is cancelled as another has: what its destructors write takes no time, as no
+/// exception may leave them, nor may another thread have the host's stack before they are done.
+bool unwinding() {
+    return std::uncaught_exceptions() > 0;
+}
+
+} // namespace
 
 /// Shared words are not reordered: they act after all earlier operations of the thread have issued, when no
 /// other thread is earlier. A load acts at its issue; only it does not wait for the others under a quantum. A
 /// release acts when the thread's stores are in the L1, a read-modify-write then and when the L2 lets it have
 /// the line. Where another tile may reach the word, it acts between windows.
 void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due ready, bool waits) {
+    if (unwinding()) [[unlikely]]
+        return;
     bool writes = kind != isa::timing::atomic::load_acquire;
     std::uint64_t a = address(p);
     Scheduler& scheduler = h.tile->scheduler;
@@ -113,6 +125,8 @@ void Engine::publish(Hart& h, std::uint64_t address, cycle written, cycle visibl
 }
 
 stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, bool wrote) {
+    if (unwinding()) [[unlikely]]
+        return {};
     cycle t = h.acting.at();
     std::uint64_t a = address(p);
     bool chip = homes_.is_chip(a);

@@ -69,6 +69,11 @@ void trap_while_holding(word* w, int code) {
     trap(code);
 }
 
+void await_while_holding(word* held, word* awaited) {
+    LetGo guard{pointer<word>(held)};
+    wait_while(pointer<word>(awaited), 0);
+}
+
 void ask_for_page(isa::page_service& service, int times, int index) {
     spend(40);
     for (int i = 0; i < times; ++i)

@@ -21,6 +21,8 @@ void publish_numbers(std::int32_t* data, word* ready, int count);
 std::int32_t sum_when_published(std::int32_t* data, word* ready, int count);
 /// Traps with a guard on its stack that writes 7 to the word.
 void trap_while_holding(word* w, int code);
+/// Waits until the word `awaited` is not 0, with such a guard of `held`.
+void await_while_holding(word* held, word* awaited);
 void ask_for_page(isa::page_service& service, int times, int index);
 /// A little of everything: vectors, gathers, branches, a shared counter.
 void mixed_work(std::int32_t* data, word* counter, int worker, int rounds);

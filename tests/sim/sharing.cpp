@@ -181,6 +181,31 @@ TEST(Sharing, TrapsUnwindEverybodyAndSurface) {
     }
 }
 
+// Guards write words that other tiles reach as well: while they unwind nothing may wait for a window's end.
+TEST(Sharing, TrapsUnwindGuardsOfWordsThatTilesShare) {
+    for (int host_threads : {1, 2}) {
+        Config c = several(4, 1);
+        c.chip.tiles = 2;
+        c.chip.placement = "spread";
+        Shared s;
+        try {
+            Machine(c).run(
+                s.memory.space, 8, {{"work"}},
+                [&](int w) {
+                    count_up(s.word(1), 2); // it is the whole chip's
+                    if (w == 3)
+                        trap_while_holding(s.word(1), 42);
+                    await_while_holding(s.word(1), s.word(0));
+                },
+                host_threads);
+            FAIL();
+        } catch (const isa::trapped& t) {
+            EXPECT_EQ(t.code, 42);
+        }
+        EXPECT_EQ(s.word(1)->word, 7);
+    }
+}
+
 struct Pages final : isa::page_service {
     std::vector<std::array<std::int32_t, 3>> made;
     bool fail = false;
