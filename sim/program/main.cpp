@@ -9,6 +9,7 @@
 #include "sim/program/explain_command.h"
 #include "sim/program/provenance.h"
 #include "sim/program/run_command.h"
+#include "sim/program/validate_command.h"
 
 #include <fmt/format.h>
 
@@ -48,11 +49,14 @@ int main(int argc, char** argv) {
     explain.add_to(app);
     sim::DramTable dram;
     dram.add_to(app);
+    sim::ValidateCommand validate;
+    validate.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
             return print.parsed()               ? print_config(machine)
                    : describing.parsed()        ? describe(described)
                    : explain.parsed()           ? explain.run()
+                   : validate.parsed()          ? validate.run()
                    : app.got_subcommand("dram") ? dram.run()
                                                 : run.run();
         } catch (const sim::ConfigError& e) {

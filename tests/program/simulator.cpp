@@ -336,6 +336,36 @@ TEST_F(Simulator, CountsTheLastFrameAlone) {
     }
 }
 
+// The table names every row of what must be validated, and says which are not.
+TEST_F(Simulator, ValidatesItself) {
+    const Outcome result = simulator("validate --json v.json");
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    const nlohmann::json all = nlohmann::json::parse(text("v.json"));
+    EXPECT_EQ(all.at("missed"), 0);
+    std::map<std::string, int> results;
+    for (const nlohmann::json& row : all.at("rows")) {
+        ++results[row.at("result").get<std::string>()];
+        for (const char* column : {"what", "against", "bar"})
+            EXPECT_NE(row.at(column), "") << row;
+        EXPECT_NE(result.out.find(row.at("what").get<std::string>()), std::string::npos);
+    }
+    EXPECT_GT(results["passed"], 50);
+    EXPECT_EQ(results["reported"], 1);
+    EXPECT_GT(results["tests only"], 3);
+    EXPECT_GT(results["not built"], 3);
+    for (const char* what : {"operations", "instruction and reference counts", "caches", "laws", "DRAM",
+                             "core", "network", "coherence", "order", "noise", "assumptions", "the whole"})
+        EXPECT_NE(result.out.find(what), std::string::npos) << what;
+    const std::size_t before = folder_.count();
+    for (const char* options : {"validate --json none/v.json", "validate --jsn v.json", "validate more"}) {
+        const Outcome bad = simulator(options);
+        EXPECT_EQ(bad.code, 2) << options;
+        EXPECT_EQ(bad.error_lines(), 1) << bad.err;
+        EXPECT_EQ(bad.out, "");
+        EXPECT_EQ(folder_.count(), before);
+    }
+}
+
 // A memory by itself: beside its closed forms, and what it refuses.
 TEST_F(Simulator, TriesMemories) {
     const std::string few = "dram --preset ddr4-2400r --requests 20000 --json d.json ";

@@ -1,4 +1,5 @@
 // Closed forms of the core: exact cycles.
+#include "sim/validation/core_forms.h"
 #include "tests/sim/machines.h"
 
 namespace sim::test {
@@ -6,6 +7,16 @@ namespace {
 
 constexpr int n = 1000;
 constexpr auto add_class = static_cast<std::size_t>(operation::add);
+
+TEST(Core, FormsTakeTheirCycles) {
+    const std::vector<CoreForm> forms = core_forms();
+    EXPECT_EQ(forms.size(), 22U);
+    for (const CoreForm& form : forms) {
+        const Report r = form.run();
+        EXPECT_EQ(r.cycles, form.cycles) << form.name;
+        EXPECT_EQ(r.core.instructions, form.instructions) << form.name;
+    }
+}
 
 TEST(Core, DependentChainTakesItsLatencies) {
     for (integer latency : {1, 4, 7}) {
@@ -20,18 +31,6 @@ TEST(Core, DependentChainTakesItsLatencies) {
         EXPECT_EQ(r.core.instructions, u(n));
         EXPECT_EQ(cause(r, Cause::busy), u(n));
         EXPECT_EQ(cause(r, Cause::compute), u(n * (latency - 1)));
-    }
-}
-
-TEST(Core, IndependentOperationsIssueAtTheWidth) {
-    for (integer width : {1, 2, 3, 4}) {
-        Config c = simple();
-        c.core.issue_width = width;
-        Report r = run(c, [](int) {
-            for (int i = 0; i < n; ++i)
-                scalar_op(operation::add, stamp{});
-        });
-        EXPECT_EQ(r.cycles, u((n + width - 1) / width - 1 + c.latency[add_class])) << width;
     }
 }
 
@@ -50,22 +49,6 @@ TEST(Core, VectorOperationsTakeASlotForEachPiece) {
     }
 }
 
-// A consumer follows its producer piece by piece; a dependent chain is as long as the longer of latency and
-// pieces.
-TEST(Core, VectorChainsFollowPieceByPiece) {
-    for (integer lanes : {1, 2, 4, 8, 64}) {
-        Config c = simple();
-        c.core.lanes = lanes;
-        integer pieces = std::max<integer>(1, ISA_WIDTH / lanes);
-        Report r = run(c, [](int) {
-            stamp s;
-            for (int i = 0; i < n; ++i)
-                s = vector_op(operation::add, s);
-        });
-        EXPECT_EQ(r.cycles, u((n - 1) * std::max<integer>(4, pieces) + pieces - 1 + 4)) << lanes;
-    }
-}
-
 TEST(Core, ReductionsWaitForTheLastPiece) {
     Config c = simple();
     c.core.lanes = 4;
@@ -79,33 +62,6 @@ TEST(Core, ReductionsWaitForTheLastPiece) {
     EXPECT_EQ(vector.last, pieces - 1 + 4);
     EXPECT_EQ(scalar.last, vector.last + pieces - 1 + 6);
     EXPECT_EQ(scalar.first, scalar.last);
-}
-
-// A load far away, used at once, then independent work: a window lets that work pass.
-TEST(Core, WindowLetsYoungerOperationsPass) {
-    for (integer window : {1, 2, 8, 64}) {
-        Config c = simple();
-        c.core.window = window;
-        c.latency[add_class] = 100;
-        Report r = run(c, [](int) {
-            stamp slow = scalar_op(operation::add, stamp{});
-            scalar_op(operation::integer, slow); // issues at 100
-            for (int i = 0; i < 50; ++i)
-                scalar_op(operation::integer, stamp{});
-        });
-        // The stalled operation is number 1; number 1 + window waits for it.
-        integer after = std::max<integer>(0, 51 - window);
-        EXPECT_EQ(r.cycles, window > 50 ? 101U : u(100 + after + 1)) << window;
-    }
-}
-
-TEST(Core, UnpipelinedUnitsSerialise) {
-    Config c = simple();
-    Report r = run(c, [](int) {
-        for (int i = 0; i < n; ++i)
-            scalar_op(operation::divide, stamp{});
-    });
-    EXPECT_EQ(r.cycles, u((n - 1) * 8 + 16));
 }
 
 TEST(Core, ThreadsShareTheSlotsAndHideLatency) {

@@ -8,6 +8,7 @@
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
 #include "sim/machine/engine.h"
+#include "sim/validation/core_forms.h"
 
 #include <gtest/gtest.h>
 
@@ -19,13 +20,7 @@ inline constexpr site here{"test", 1};
 
 /// One core, one thread, one lane for each logical lane, nothing in the way.
 inline Config simple() {
-    Config c;
-    c.chip.cores = c.chip.threads = 1;
-    c.core.lanes = 64;
-    c.l1.port_bytes = 1024;
-    c.core.predictor = "perfect";
-    c.memory.tREFI = 0;
-    return c;
+    return plain_core();
 }
 /// A frame memory of one region of 64 MiB.
 struct Memory {
