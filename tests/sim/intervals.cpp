@@ -106,7 +106,7 @@ TEST(Intervals, SumToTheRunAndChangeNothing) {
     for (integer window : {0, 1000})
         for (integer quantum : {1, 100, 10000}) {
             const Report plain = mixed(0, 1, window, quantum);
-            for (std::uint64_t interval : {1, 777, 5000, 1000000000}) {
+            for (std::uint64_t interval : {1U, 777U, 5000U, 1000000000U}) {
                 Report r = mixed(interval, 1, window, quantum);
                 EXPECT_EQ(r.intervals.size() > 3, interval <= 5000) << interval;
                 r.interval = 0;
