@@ -37,9 +37,11 @@ inline constexpr int class_count = isa::timing::operation_kinds + 1;
 inline constexpr int branch_class = isa::timing::operation_kinds;
 extern const std::array<const char*, class_count> class_names;
 
+inline constexpr unsigned most_levels = 5; // of caches
 struct CacheConfig {
     integer size_bytes = 0, ways = 0, line_bytes = 0, latency = 0, mshrs = 0, write_back_buffer = 0;
     integer banks = 0, bank_bytes = 0; // but of an L1
+    std::string share, inclusion;      // likewise
     std::string replacement, write_policy, write_miss, prefetcher;
     integer prefetch_degree = 0, prefetch_sites = 0;
 };
@@ -90,7 +92,7 @@ struct Config {
     CoreConfig core;
     std::array<integer, class_count> latency{}, interval{};
     L1Config l1;
-    CacheConfig l2;
+    CacheConfig l2, l3, l4, l5; // without bytes: no such level
     CoherenceConfig coherence;
     MemoryConfig memory;
     KdTreeConfig kdtree;
@@ -102,6 +104,21 @@ struct Config {
 
     integer all_cores() const { return chip.tiles * chip.cores; }
     integer all_threads() const { return all_cores() * chip.threads; }
+
+    /// Levels count from 0, the L1.
+    const CacheConfig& cache(unsigned level) const {
+        const std::array<const CacheConfig*, most_levels> all = {&l1, &l2, &l3, &l4, &l5};
+        return *all[level];
+    }
+    unsigned cache_levels() const;
+    /// Its lines are those of the memory.
+    const CacheConfig& last_cache() const { return cache(cache_levels() - 1); }
+    /// Cores that share a cache of the level.
+    integer cores_sharing(unsigned level) const;
+    /// Whether the level lies beyond the tiles: only the last one may.
+    bool beyond_tiles(unsigned level) const;
+    /// Levels that lie within a tile.
+    unsigned tile_levels() const { return cache_levels() - (beyond_tiles(cache_levels() - 1) ? 1 : 0); }
 };
 
 /// Throws ConfigError where parameters do not fit each other; `what` names the machine in the message.

@@ -76,19 +76,21 @@ void check_core(const std::string& what, const Config& config) {
 void check_memory(const std::string& what, const Config& config) {
     const MemoryConfig& c = config.memory;
     integer burst = c.bus_bytes * c.burst_length;
-    if (burst > config.l2.line_bytes)
+    const integer line = config.last_cache().line_bytes;
+    const unsigned last = config.cache_levels();
+    if (burst > line)
         fail(what,
              fmt::format("a memory burst is {} bytes (memory.bus_bytes x memory.burst_length), more than "
-                         "l2.line_bytes, {}; lower either",
-                         burst, config.l2.line_bytes));
+                         "l{}.line_bytes, {}; lower either",
+                         burst, last, line));
     if (c.burst_length < c.transfers_per_clock)
         fail(what, fmt::format("memory.burst_length is {}, less than memory.transfers_per_clock, {}; a burst "
                                "takes a clock at least: raise it",
                                c.burst_length, c.transfers_per_clock));
-    if (c.row_bytes < config.l2.line_bytes)
+    if (c.row_bytes < line)
         fail(what,
-             fmt::format("memory.row_bytes is {}, less than l2.line_bytes, {}; a line must lie in one row",
-                         c.row_bytes, config.l2.line_bytes));
+             fmt::format("memory.row_bytes is {}, less than l{}.line_bytes, {}; a line must lie in one row",
+                         c.row_bytes, last, line));
     if (std::string mistake = DramMapping::mistake(c); !mistake.empty())
         fail(what, fmt::format("memory.mapping \"{}\" {}", c.mapping, mistake));
     at_least(what, "tCCD_L", c.tCCD_L, "tCCD_S", c.tCCD_S);
@@ -121,26 +123,119 @@ void check_memory(const std::string& what, const Config& config) {
                          c.tREFI, c.ranks, needed, needed * c.ranks));
 }
 
+std::string level_name(unsigned level) {
+    return fmt::format("l{}", level + 1);
+}
+
+/// Who shares the caches of a level: groups of whole caches of the level above, beyond the tiles of whole
+/// tiles.
+void check_share(const std::string& what, const Config& config, unsigned level) {
+    const std::string name = level_name(level), above = level_name(level - 1);
+    const integer cores = config.cores_sharing(level), upper = config.cores_sharing(level - 1);
+    if (config.beyond_tiles(level)) {
+        if (level == 1)
+            fail(what,
+                 fmt::format("l2.share is {}, more than chip.cores, {}: the L2 lies in a tile; share it by "
+                             "at most as many, or put more cores into a tile",
+                             cores, config.chip.cores));
+        if (level + 1 != config.cache_levels())
+            fail(what,
+                 fmt::format("{0}.share is \"{1}\", beyond the tiles, where the last level alone may lie; "
+                             "make it \"tile\", or {2}.size_bytes 0",
+                             name, config.cache(level).share, level_name(level + 1)));
+        if (cores % config.chip.cores != 0 || config.all_cores() % cores != 0)
+            fail(what,
+                 fmt::format("{}.share is {}, not so many whole tiles of chip.cores, {}, that the chip's "
+                             "{} cores divide into; make it \"chip\" or a multiple",
+                             name, cores, config.chip.cores, config.all_cores()));
+        return;
+    }
+    if (config.chip.cores % cores != 0)
+        fail(what, fmt::format("{}.share is {}, which does not divide chip.cores, {}; make it a divisor",
+                               name, cores, config.chip.cores));
+    if (cores % upper != 0)
+        fail(what,
+             fmt::format("{0}.share is {1} cores, which caches of {2}.share, {3} cores, do not divide; make "
+                         "it a multiple",
+                         name, cores, above, upper));
+}
+
+/// What inclusive and exclusive levels ask of themselves and of the level above.
+void check_inclusion(const std::string& what, const Config& config, unsigned level) {
+    const CacheConfig &c = config.cache(level), &upper = config.cache(level - 1);
+    // A line on its way up to the L1 could not be recalled when a prefetch takes its place.
+    for (unsigned at = 1; at <= level && c.inclusion == "inclusive" && !config.beyond_tiles(level); ++at)
+        if (config.cache(at).prefetcher != "none")
+            fail(what,
+                 fmt::format("{0}.inclusion is \"inclusive\", but {1}.prefetcher is \"{2}\": within a tile "
+                             "only the L1 may have a prefetcher above an inclusive level; make it \"none\"",
+                             level_name(level), level_name(at), config.cache(at).prefetcher));
+    if (c.inclusion != "exclusive")
+        return;
+    const std::string name = level_name(level), above = level_name(level - 1);
+    const auto refuse = [&](const std::string& key, const std::string& value, const char* wanted) {
+        fail(what, fmt::format("{}.inclusion is \"exclusive\", for which {} must be {}, not {}", name, key,
+                               wanted, value));
+    };
+    if (config.beyond_tiles(level))
+        refuse(name + ".share", c.share, "a tile or less");
+    if (c.line_bytes != upper.line_bytes)
+        fail(what, fmt::format("{0}.inclusion is \"exclusive\", for which {0}.line_bytes, {1}, must be "
+                               "{2}.line_bytes, {3}",
+                               name, c.line_bytes, above, upper.line_bytes));
+    for (const auto& [key, of] : {std::pair(name, &c), std::pair(above, &upper)}) {
+        if (of->write_policy != "back")
+            refuse(key + ".write_policy", of->write_policy, "back");
+        if (of->write_miss != "allocate")
+            refuse(key + ".write_miss", of->write_miss, "allocate");
+    }
+    if (c.prefetcher != "none")
+        refuse(name + ".prefetcher", c.prefetcher, "none");
+}
+
+void check_caches(const std::string& what, const Config& config) {
+    const unsigned levels = config.cache_levels();
+    for (unsigned level = levels; level < most_levels; ++level)
+        if (config.cache(level).size_bytes != 0)
+            fail(what,
+                 fmt::format("{}.size_bytes is {}, but there is no level above it; give {}.size_bytes too",
+                             level_name(level), config.cache(level).size_bytes, level_name(levels)));
+    double lines = 0;
+    for (unsigned level = 0; level < levels; ++level) {
+        const CacheConfig& c = config.cache(level);
+        const std::string name = level_name(level);
+        check_cache(what, name.c_str(), c);
+        if (level != 0) {
+            const CacheConfig& upper = config.cache(level - 1);
+            if (c.line_bytes < upper.line_bytes)
+                fail(what,
+                     fmt::format("{}.line_bytes is {}, less than {}.line_bytes, {}; make it at least that",
+                                 name, c.line_bytes, level_name(level - 1), upper.line_bytes));
+            check_share(what, config, level);
+            check_inclusion(what, config, level);
+            if (config.beyond_tiles(level) && c.prefetcher == "stride")
+                fail(what, fmt::format("{0}.prefetcher is \"stride\", but beyond the tiles nobody knows the "
+                                       "program's sites; make it \"next\" or \"none\"",
+                                       name));
+        }
+        lines += static_cast<double>(config.all_cores() / config.cores_sharing(level)) *
+                 static_cast<double>(c.size_bytes / c.line_bytes);
+    }
+    constexpr double most_lines = 1 << 27; // about a gigabyte of the host's memory for their tags
+    if (lines > most_lines)
+        fail(what,
+             fmt::format("the caches of all cores and tiles hold {:.0f} lines together, more than the "
+                         "{:.0f} that can be simulated; lower l1.size_bytes, l2.size_bytes, chip.cores or "
+                         "chip.tiles",
+                         lines, most_lines));
+}
+
 } // namespace
 
 void check_consistency(const Config& c, const std::string& what) {
-    check_cache(what, "l1", c.l1);
-    check_cache(what, "l2", c.l2);
-    if (c.l2.line_bytes < c.l1.line_bytes)
-        fail(what, fmt::format("l2.line_bytes is {}, less than l1.line_bytes, {}; make it at least that",
-                               c.l2.line_bytes, c.l1.line_bytes));
+    check_caches(what, c);
     check_core(what, c);
     check_memory(what, c);
-    constexpr double most_lines = 1 << 27; // about a gigabyte of the host's memory for their tags
-    double lines =
-        static_cast<double>(c.all_cores()) * static_cast<double>(c.l1.size_bytes / c.l1.line_bytes) +
-        static_cast<double>(c.chip.tiles) * static_cast<double>(c.l2.size_bytes / c.l2.line_bytes);
-    if (lines > most_lines)
-        fail(what,
-             fmt::format(
-                 "the caches of all cores and tiles hold {:.0f} lines together, more than the {:.0f} that "
-                 "can be simulated; lower l1.size_bytes, l2.size_bytes, chip.cores or chip.tiles",
-                 lines, most_lines));
     if (c.all_threads() > 65536)
         fail(what, fmt::format("chip.tiles x chip.cores x chip.threads is {}; it must be at most 65536",
                                c.all_threads()));

@@ -65,7 +65,8 @@ void add_chip(Table& t) {
     using C = ChipConfig;
     auto s = &Config::chip;
     t.add("chip.clock_ps", s, &C::clock_ps, "ps", 1000, 50, 1000000, "period of the cores' clock");
-    t.add("chip.tiles", s, &C::tiles, "", 1, 1, 1024, "tiles, each with its own L2");
+    t.add("chip.tiles", s, &C::tiles, "", 1, 1, 1024,
+          "tiles: cores and caches that run by themselves for a window");
     t.add("chip.cores", s, &C::cores, "", 4, 1, 1024, "cores of a tile, each with its own L1");
     t.add("chip.threads", s, &C::threads, "", 2, 1, 64, "hardware threads of a core");
     t.add("chip.placement", s, &C::placement, {"spread", "pack"},
@@ -162,6 +163,38 @@ template <class Section> void add_policies(Table& t, const std::string& level, S
           "predictions of the next use; any, by a fixed sequence");
 }
 
+/// What a level below the L1 is by default.
+struct LevelPresets {
+    std::vector<std::string> share;
+    integer size_bytes, least_bytes, ways, latency, banks, mshrs, write_back_buffer;
+};
+void add_level(Table& t, const std::string& level, CacheConfig Config::*section, const LevelPresets& d) {
+    using C = CacheConfig;
+    t.add(level + ".size_bytes", section, &C::size_bytes, "bytes", d.size_bytes, d.least_bytes,
+          kibi * kibi * kibi,
+          d.least_bytes == 0 ? "cache below the level above; 0: no such level, and none below it"
+                             : "cache below the L1s");
+    t.add(level + ".share", section, &C::share, d.share,
+          d.least_bytes == 0 ? "cores that share one: all of the chip, beyond the tiles (the last level "
+                               "alone), those of a tile, each its own, or so many neighbours"
+                             : "cores that share one: those of a tile, each its own, or so many neighbours",
+          integer{1} << 20);
+    t.add(level + ".inclusion", section, &C::inclusion, {"none", "inclusive", "exclusive"},
+          "none: lines come and go without regard to the levels above; inclusive: what leaves also leaves "
+          "those; exclusive: holds what left the level above, and what is read moves up");
+    t.add(level + ".ways", section, &C::ways, "", d.ways, 1, 64, "associativity");
+    t.add(level + ".line_bytes", section, &C::line_bytes, "bytes", 64, 16, 1024, "line", true);
+    t.add(level + ".latency", section, &C::latency, "cycles", d.latency, 1, 1000,
+          "from access to data, and to the request of a miss");
+    t.add(level + ".banks", section, &C::banks, "", d.banks, 1, 256, "banks, interleaved by line", true);
+    t.add(level + ".bank_bytes", section, &C::bank_bytes, "bytes/cycle", 32, 1, 1024,
+          "what a bank moves; a line keeps it busy", true);
+    t.add(level + ".mshrs", section, &C::mshrs, "lines", d.mshrs, 1, 4096, "misses outstanding");
+    t.add(level + ".write_back_buffer", section, &C::write_back_buffer, "lines", d.write_back_buffer, 1, 4096,
+          "evicted dirty lines on their way");
+    add_policies(t, level, section);
+}
+
 void add_caches(Table& t) {
     using A = L1Config;
     auto a = &Config::l1;
@@ -178,21 +211,10 @@ void add_caches(Table& t) {
     t.add("l1.write_back_buffer", a, &A::write_back_buffer, "lines", 4, 1, 1024,
           "evicted dirty lines on their way");
     add_policies(t, "l1", a);
-    using B = CacheConfig;
-    auto b = &Config::l2;
-    t.add("l2.size_bytes", b, &B::size_bytes, "bytes", 128 * kibi, 64, kibi * kibi * kibi,
-          "cache shared by the cores");
-    t.add("l2.ways", b, &B::ways, "", 8, 1, 64, "associativity");
-    t.add("l2.line_bytes", b, &B::line_bytes, "bytes", 64, 16, 1024, "line", true);
-    t.add("l2.latency", b, &B::latency, "cycles", 12, 1, 1000,
-          "from access to data, and to the request of a miss");
-    t.add("l2.banks", b, &B::banks, "", 4, 1, 256, "banks, interleaved by line", true);
-    t.add("l2.bank_bytes", b, &B::bank_bytes, "bytes/cycle", 32, 1, 1024,
-          "what a bank moves; a line keeps it busy", true);
-    t.add("l2.mshrs", b, &B::mshrs, "lines", 16, 1, 4096, "misses outstanding");
-    t.add("l2.write_back_buffer", b, &B::write_back_buffer, "lines", 8, 1, 4096,
-          "evicted dirty lines on their way");
-    add_policies(t, "l2", b);
+    add_level(t, "l2", &Config::l2, {{"tile", "core"}, 128 * kibi, 64, 8, 12, 4, 16, 8});
+    add_level(t, "l3", &Config::l3, {{"chip", "tile", "core"}, 0, 0, 16, 40, 8, 64, 32});
+    add_level(t, "l4", &Config::l4, {{"chip", "tile", "core"}, 0, 0, 16, 60, 8, 128, 64});
+    add_level(t, "l5", &Config::l5, {{"chip", "tile", "core"}, 0, 0, 16, 80, 8, 128, 64});
     using C = CoherenceConfig;
     auto c = &Config::coherence;
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,
@@ -311,7 +333,7 @@ void add_memory(Table& t) {
     t.add("memory.write_low", s, &C::write_low, "bursts", d.write_low, 0, 4095,
           "queued, at which the batch ends");
     t.add("memory.controller_cycles", s, &C::controller_cycles, "core cycles", 10, 0, 100000,
-          "from the L2 to the memory's command bus and back, together");
+          "from the last cache to the memory's command bus and back, together");
     t.add_text(
         "memory.mapping", s, &C::mapping, d.mapping,
         "fields of an address, most significant first, above the bytes of a burst; x.2: two bits of x");
@@ -450,6 +472,25 @@ Config::Config() {
     }
 }
 
+unsigned Config::cache_levels() const {
+    unsigned level = 1;
+    while (level < most_levels && cache(level).size_bytes != 0)
+        ++level;
+    return level;
+}
+
+integer Config::cores_sharing(unsigned level) const {
+    const std::string& share = cache(level).share;
+    return level == 0 || share == "core" ? 1
+           : share == "tile"             ? chip.cores
+           : share == "chip"             ? all_cores()
+                                         : std::stoll(share);
+}
+
+bool Config::beyond_tiles(unsigned level) const {
+    return level != 0 && (cache(level).share == "chip" || cores_sharing(level) > chip.cores);
+}
+
 std::span<const Parameter> parameters() {
     return table();
 }
@@ -466,6 +507,14 @@ const std::string& nearest_key(std::string_view key) {
         return unlikeness(a.key, key) < unlikeness(b.key, key);
     };
     return std::min_element(table().begin(), table().end(), by_distance)->key;
+}
+
+bool applies(const Parameter& p, const Config& config) {
+    if (p.key.size() < 3 || p.key[0] != 'l' || p.key[2] != '.')
+        return true;
+    const auto level = static_cast<unsigned>(p.key[1] - '1');
+    const unsigned levels = config.cache_levels();
+    return level < levels || (level == levels && p.key.ends_with(".size_bytes"));
 }
 
 std::string print_value(const Parameter& p, const Config& config) {

@@ -56,6 +56,9 @@ const Parameter* find_parameter(std::string_view key);
 /// The known key most like this one.
 const std::string& nearest_key(std::string_view key);
 
+/// Whether the machine has what the parameter is of: not so for a level of caches that it lacks, but for the
+/// size that says so.
+bool applies(const Parameter& p, const Config& config);
 /// The value of a parameter, as TOML writes it.
 std::string print_value(const Parameter& p, const Config& config);
 /// What it may be and in which unit: "1 to 64 bytes, a power of two".

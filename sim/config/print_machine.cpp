@@ -12,6 +12,10 @@ std::string print_machine(const MachineDescription& machine) {
         out = fmt::format("# {}, with everything that it inherits, defaults and overrides.\n", machine.name);
     std::size_t i = 0;
     for (const Parameter& p : parameters()) {
+        if (!applies(p, machine.config)) {
+            ++i;
+            continue;
+        }
         const std::size_t dot = p.key.find('.');
         if (p.key.substr(0, dot) != section) {
             section = p.key.substr(0, dot);

@@ -16,6 +16,9 @@ enum class Cause : std::uint8_t {
     compute,
     l1,
     l2,
+    l3,
+    l4,
+    l5,
     memory,
     mshrs,
     stores,
@@ -24,7 +27,7 @@ enum class Cause : std::uint8_t {
     synchronise,
     idle,
 };
-inline constexpr std::size_t cause_count = 12;
+inline constexpr std::size_t cause_count = 15;
 struct CauseName {
     const char *name, *meaning;
 };
@@ -34,6 +37,9 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"compute", "waiting for the result of an operation"},
     {"l1", "waiting for data that the L1 or a store buffer held"},
     {"l2", "waiting for data that came from the L2"},
+    {"l3", "waiting for data that came from the L3"},
+    {"l4", "waiting for data that came from the L4"},
+    {"l5", "waiting for data that came from the L5"},
     {"memory", "waiting for data that came from memory"},
     {"mshrs", "a miss waited for a free MSHR or write-back entry"},
     {"stores", "a store waited for a free entry of the store buffer"},
@@ -42,6 +48,12 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"synchronise", "waiting for a shared word"},
     {"idle", "without work: no worker, or the worker had returned"},
 }};
+
+/// Whether a machine with so many levels of caches has the cause.
+inline bool has_cause(std::size_t cause, unsigned cache_levels) {
+    const auto l1 = static_cast<std::size_t>(Cause::l1), memory = static_cast<std::size_t>(Cause::memory);
+    return cause < l1 + cache_levels || cause >= memory;
+}
 
 /// A cycle and why it is not earlier. Ordered by cycle.
 class Due {

@@ -339,21 +339,31 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
     count(h, 1, false);
 }
 
+/// The line of each level below the L1 around this address is dead if it lies in [begin, end).
+void Engine::discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end, cycle at) {
+    for (unsigned level = 1; level < cache_levels_; ++level) {
+        const std::uint64_t bytes = wide(config_.cache(level).line_bytes), first = address / bytes * bytes;
+        if (first < begin || first + bytes > end)
+            return;
+        if (level < tile_levels_)
+            cache_of(h, level).discard(first);
+        else if (first == address)
+            exit_of(h).tell(Request::discard, first, at, h.column);
+    }
+}
+
 /// Whole lines only; an instruction each.
 void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     settle(h, ready);
     std::uint64_t begin = address(p);
     std::uint64_t end = begin + bytes;
-    auto l2_line = wide(config_.l2.line_bytes);
     std::uint64_t first = (begin + line_bytes_ - 1) >> line_shift_;
     std::uint64_t last = end >> line_shift_;
     std::uint32_t lines = last > first ? static_cast<std::uint32_t>(last - first) : 0;
     Issued at = issue(h, store_kind, std::max(1U, lines), ready);
     for (std::uint64_t line = first; line < last; ++line) {
         h.core->l1.discard(line << line_shift_);
-        std::uint64_t outer = (line << line_shift_) / l2_line * l2_line;
-        if (outer >= begin && outer + l2_line <= end)
-            h.tile->l2.discard(outer);
+        discard_below(h, line << line_shift_, begin, end, at.first);
     }
     finish_issue(h, at, 0);
     count(h, 1, false);

@@ -1,22 +1,68 @@
-// What lies beyond the tiles: the L2s' outgoing MSHRs and write-back buffers, and memory. Requests are served
-// between windows, in the order (cycle, tile, sequence).
+// What lies beyond the tiles: the MSHRs and write-back buffers of the tiles' last caches, a level of caches
+// that tiles share, if there is one, and memory. Requests are served between windows, in the order (cycle,
+// tile, sequence). Where tiles share a cache, a request that arrives takes its bank, in this order, and acts
+// when the bank begins with it. What an inclusive cache drops there leaves the tiles at the end of the
+// window, in which they may still have used it. Not modelled: that a bank stands still while a miss waits for
+// an MSHR.
 #pragma once
 
 #include "sim/memory/below.h"
+#include "sim/memory/cache.h"
 #include "sim/memory/memory.h"
 #include "sim/memory/pool.h"
 
+#include <deque>
 #include <functional>
 #include <vector>
 
 namespace sim {
 
+struct Tile;
+
+/// The memory as a cache beyond the tiles sees it.
+class MemoryPort final : public Below {
+public:
+    explicit MemoryPort(Memory& memory) : memory_(memory) {}
+    /// Whose traffic follows.
+    void charge(Attribution& attribution) { attribution_ = &attribution; }
+
+    Answer read(const Access& a) override {
+        ++attribution_->cell(a.address, a.column).memory_reads;
+        return {memory_.read(a.address, a.at), Cause::memory};
+    }
+    Answer write(const Access& a) override {
+        ++attribution_->cell(a.address, a.column).memory_writes;
+        return {memory_.write(a.address, a.at), Cause::memory};
+    }
+
+private:
+    Memory& memory_;
+    Attribution* attribution_ = nullptr;
+};
+
+/// A cache of several tiles.
+struct SharedCache {
+    SharedCache(const Config& config, unsigned level, const cycle& earliest, const SiteAtHand& site,
+                Memory& memory, Tickets& tickets, Attribution& attribution)
+        : port(memory), cache(config, level, false, earliest, site, port, tickets, attribution) {
+        port.charge(attribution);
+    }
+    void charge(Attribution& attribution) {
+        port.charge(attribution);
+        cache.charge(attribution);
+    }
+    MemoryPort port;
+    Cache cache;
+};
+
 class Beyond {
 public:
-    /// Answers a request's ticket: (tile, ticket, cycle).
-    using Reply = std::function<void(std::uint32_t, cycle, cycle)>;
+    /// Answers a request's ticket: (tile, ticket, when and from where).
+    using Reply = std::function<void(std::uint32_t, cycle, const Answer&)>;
 
     Beyond(const Config& config, Reply reply);
+    /// The tiles that requests come from; once, before any.
+    void connect(std::deque<Tile>& tiles);
 
     /// Takes what a tile sends; empties the list.
     void accept(std::vector<Request>& leaving);
@@ -27,23 +73,46 @@ public:
     cycle drain() { return std::max(served_, memory_.drain()); }
     /// What follows counts by itself from this memory clock on.
     void count_from(std::uint64_t clock) { memory_.count_refreshes(clock); }
+    /// The frame is over: dirty lines that `keep` says so of are written back.
+    template <class Keep> void write_back(cycle t, std::size_t column, Keep keep) {
+        for (SharedCache& shared : caches_)
+            shared.cache.finish(std::max(t, served_ + shared.cache.latency()), column, keep);
+    }
     /// Nothing follows: memory writes what it has queued.
     void finish() { memory_.finish(); }
     /// When the earliest request waits to be served; ~0: none does.
     cycle next() const { return waiting_.empty() ? ~cycle{0} : waiting_.front().at; }
     const Memory& memory() const { return memory_; }
+    const std::deque<SharedCache>& caches() const { return caches_; }
+    std::uint64_t misplaced() const;
 
 private:
     struct Port {
         OrderedPool mshrs, write_backs;
+        std::vector<Request> held; // until it is known when an MSHR is free
     };
     void push(const Request& r);
     Request pop();
+    Port& port_of(const Request& r) { return ports_[r.tile * exits_ + r.exit]; }
+    SharedCache& cache_of(const Request& r) { return caches_[r.tile / tiles_sharing_]; }
+    void serve_from_memory(Request r);
+    void serve_from_cache(Request r);
+    void arrive(Request r);
+    void tell(const Request& r);
+    void write(Request r);
+    void read(Request r);
 
-    std::vector<Port> ports_;      // by tile
-    std::vector<Request> waiting_; // a heap, earliest first
+    std::size_t exits_, tiles_sharing_; // of a tile; of a cache
+    std::uint32_t line_bytes_;          // of the tiles' last caches
+    std::vector<Port> ports_;           // by tile and exit
+    std::vector<Request> waiting_;      // a heap, earliest first
     cycle served_ = 0;
     Memory memory_;
+    Config config_;
+    Tickets tickets_; // none is ever open
+    SiteAtHand site_;
+    std::deque<SharedCache> caches_;
+    std::deque<Tile>* tiles_ = nullptr;
     Reply reply_;
 };
 

@@ -11,8 +11,8 @@ struct Bandwidth {
     double achieved, peak;
     double utilisation() const { return peak > 0 ? achieved / peak : 0; }
 };
-/// L1 ports, L2 banks, memory buses.
-std::array<Bandwidth, 3> bandwidths(const Report& r);
+/// L1 ports, banks of each level below, memory buses.
+std::vector<Bandwidth> bandwidths(const Report& r);
 
 inline double ratio(std::uint64_t a, std::uint64_t b) {
     return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);

@@ -41,23 +41,31 @@ ChipFigures chip_figures(const Config& c) {
         c.interval[fused] > 1 ? 1 / real(c.interval[fused]) : real(c.core.issue_width);
     f.flops_per_second = cores * fused_a_cycle * 2 * real(c.core.lanes) * cycles_per_second;
     f.l1_bytes = cores * real(c.l1.size_bytes);
-    f.l2_bytes = real(c.chip.tiles * c.l2.size_bytes);
     f.l1_bytes_per_second = cores * real(c.l1.ports * c.l1.port_bytes) * cycles_per_second;
-    const integer bank_cycles = (c.l1.line_bytes + c.l2.bank_bytes - 1) / c.l2.bank_bytes;
-    f.l2_bytes_per_second =
-        real(c.chip.tiles * c.l2.banks * c.l1.line_bytes) / real(bank_cycles) * cycles_per_second;
     f.memory_bytes_per_second = real(c.memory.channels * c.memory.bus_bytes * c.memory.transfers_per_clock) *
                                 1e12 / real(c.memory.clock_ps);
     f.l1_ns = real(c.l1.latency) * cycle_ns;
-    f.l2_ns = f.l1_ns + real(c.l2.latency) * cycle_ns;
+    double ns = f.l1_ns;
+    for (unsigned level = 1; level < c.cache_levels(); ++level) {
+        const CacheConfig& cache = c.cache(level);
+        const integer line = c.cache(level - 1).line_bytes, caches = c.all_cores() / c.cores_sharing(level);
+        const integer bank_cycles = (line + cache.bank_bytes - 1) / cache.bank_bytes;
+        ns += real(cache.latency) * cycle_ns;
+        f.below.push_back({real(caches * cache.size_bytes),
+                           real(caches * cache.banks * line) / real(bank_cycles) * cycles_per_second, ns,
+                           caches});
+    }
+    f.l2_bytes = f.below.front().bytes;
+    f.l2_bytes_per_second = f.below.front().bytes_per_second;
+    f.l2_ns = f.below.front().ns;
     const integer bursts =
-        std::max<integer>(1, c.l2.line_bytes / (c.memory.bus_bytes * c.memory.burst_length));
+        std::max<integer>(1, c.last_cache().line_bytes / (c.memory.bus_bytes * c.memory.burst_length));
     const integer data = c.memory.tCL + bursts * c.memory.burst_clocks();
-    const double there = f.l2_ns + real(c.memory.controller_cycles) * cycle_ns;
+    const double there = ns + real(c.memory.controller_cycles) * cycle_ns;
     f.memory_open_ns = there + real(data * c.memory.clock_ps) * 1e-3;
     f.memory_closed_ns = there + real((c.memory.tRCD + data) * c.memory.clock_ps) * 1e-3;
-    f.miss_bytes_per_second =
-        real(c.chip.tiles * c.l2.mshrs * c.l2.line_bytes) / ((f.memory_closed_ns - f.l2_ns) * 1e-9);
+    f.miss_bytes_per_second = real(f.below.back().caches * c.last_cache().mshrs * c.last_cache().line_bytes) /
+                              ((f.memory_closed_ns - ns) * 1e-9);
     return f;
 }
 
@@ -79,9 +87,20 @@ std::string chip_text(const Config& c) {
     line("L1", fmt::format("{} a core, {} ways, lines of {} bytes; {} in all; {}; {:.3g} ns",
                            size(real(c.l1.size_bytes)), c.l1.ways, c.l1.line_bytes, size(f.l1_bytes),
                            rate(f.l1_bytes_per_second, "GB/s"), f.l1_ns));
-    line("L2", fmt::format("{} a tile, {} ways, lines of {} bytes; {} in all; {}; {:.3g} ns",
-                           size(real(c.l2.size_bytes)), c.l2.ways, c.l2.line_bytes, size(f.l2_bytes),
-                           rate(f.l2_bytes_per_second, "GB/s"), f.l2_ns));
+    for (unsigned level = 1; level < c.cache_levels(); ++level) {
+        const CacheConfig& cache = c.cache(level);
+        const ChipFigures::Level& l = f.below[level - 1];
+        const integer cores = c.cores_sharing(level);
+        const std::string whose = cores == 1               ? "a core"
+                                  : cores == c.chip.cores  ? "a tile"
+                                  : cores == c.all_cores() ? "for all"
+                                                           : fmt::format("for {} cores", cores);
+        line(fmt::format("L{}", level + 1).c_str(),
+             fmt::format("{} {}, {} ways, lines of {} bytes{}; {} in all; {}; {:.3g} ns",
+                         size(real(cache.size_bytes)), whose, cache.ways, cache.line_bytes,
+                         cache.inclusion == "none" ? "" : ", " + cache.inclusion, size(l.bytes),
+                         rate(l.bytes_per_second, "GB/s"), l.ns));
+    }
     line("memory",
          fmt::format(
              "{} ({} channels of {} bytes at {:.4g} MT/s, {} rank{} each); {}; a read {:.3g} ns from an open "
@@ -90,9 +109,10 @@ std::string chip_text(const Config& c) {
              1e6 * real(c.memory.transfers_per_clock) / real(c.memory.clock_ps), c.memory.ranks,
              c.memory.ranks == 1 ? "" : "s", rate(f.memory_bytes_per_second, "GB/s"), f.memory_open_ns,
              f.memory_closed_ns));
-    line("misses under way", fmt::format("{} lines: {} from closed rows, {:.3g} of what memory moves",
-                                         c.chip.tiles * c.l2.mshrs, rate(f.miss_bytes_per_second, "GB/s"),
-                                         f.miss_bytes_per_second / f.memory_bytes_per_second));
+    line("misses under way",
+         fmt::format("{} lines: {} from closed rows, {:.3g} of what memory moves",
+                     f.below.back().caches * c.last_cache().mshrs, rate(f.miss_bytes_per_second, "GB/s"),
+                     f.miss_bytes_per_second / f.memory_bytes_per_second));
     line("balance",
          fmt::format("{:.3g} bytes of memory, {:.3g} of L2 and {:.3g} of L1 a FLOP",
                      f.memory_bytes_per_second / f.flops_per_second,

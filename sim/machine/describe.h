@@ -4,6 +4,7 @@
 #include "sim/config/config.h"
 
 #include <string>
+#include <vector>
 
 namespace sim {
 
@@ -16,8 +17,13 @@ struct ChipFigures {
     double l1_ns = 0, l2_ns = 0;
     double memory_open_ns = 0,
            memory_closed_ns = 0; // a read, from the access to its last data: row open, none open
+    struct Level {
+        double bytes = 0, bytes_per_second = 0, ns = 0;
+        integer caches = 0;
+    };
+    std::vector<Level> below; // the L2 and what follows it
     double miss_bytes_per_second =
-        0; // what all MSHRs of the L2s together can fetch from closed rows (Little's law)
+        0; // what all MSHRs of the last level together can fetch from closed rows (Little's law)
 };
 ChipFigures chip_figures(const Config& config);
 

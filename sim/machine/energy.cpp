@@ -62,6 +62,12 @@ std::vector<EnergyPart> energy_parts(const Report& r) {
     events("L1 lines", l1.fills + l1.write_backs, e.l1_line_pj, "filled and written back");
     events("L2 lines", l2.reads + l2.writes + l2.fills + l2.write_backs, e.l2_line_pj,
            "accessed, filled and written back");
+    constexpr std::array<const char*, most_levels> lower = {"", "", "L3 lines", "L4 lines", "L5 lines"};
+    for (unsigned level = 2; level < r.config.cache_levels(); ++level) {
+        const CacheCounters c = r.cache_total(level);
+        events(lower[level], c.reads + c.writes + c.fills + c.write_backs, e.l2_line_pj,
+               "accessed, filled and written back; charged as those of the L2");
+    }
     events("memory rows", r.memory.activates, m.activate_pj, "opened and closed");
     events("memory reads", r.memory.read_bursts, m.read_pj, "bursts");
     events("memory writes", r.memory.write_bursts, m.write_pj, "bursts");

@@ -25,6 +25,13 @@ unsigned log2(integer x) {
     return static_cast<unsigned>(std::countr_zero(wide(x)));
 }
 
+bool uses_strides(const Config& config) {
+    for (unsigned level = 0; level < config.cache_levels(); ++level)
+        if (config.cache(level).prefetcher == "stride")
+            return true;
+    return false;
+}
+
 Labels with_frame_end(Labels labels) {
     if (labels.phases.empty())
         labels.phases.emplace_back("all");
@@ -43,10 +50,10 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
       issue_width_(narrow(config.core.issue_width)), line_bytes_(narrow(config.l1.line_bytes)),
       line_shift_(log2(config.l1.line_bytes)), port_byte_shift_(log2(config.l1.port_bytes)),
-      l1_latency_(wide(config.l1.latency)), pairing_(config.core.pairing),
+      l1_latency_(wide(config.l1.latency)), tile_levels_(config.tile_levels()),
+      cache_levels_(config.cache_levels()), pairing_(config.core.pairing),
       overhead_(static_cast<std::uint32_t>(config.core.scalar_overhead * 1024.0 + 0.5)),
-      registers_(config.core.vector_registers > 0),
-      strides_(config.l1.prefetcher == "stride" || config.l2.prefetcher == "stride"),
+      registers_(config.core.vector_registers > 0), strides_(uses_strides(config)),
       lane_gather_(config.core.gather == "lane"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
       hold_policy_(config.core.switch_policy == "stall"), in_order_(config.core.window == 1 || hold_policy_),
@@ -55,11 +62,13 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                   : config.core.predictor == "taken"     ? Prediction::taken
                   : config.core.predictor == "not_taken" ? Prediction::not_taken
                                                          : Prediction::counters),
-      base_(space.base()), window_cycles_(window_cycles(config)),
-      shortest_read_(Memory::shortest_read(config)), reach_(reach_cycles(config)), space_(space),
-      labels_(with_frame_end(labels)), lines_(space, line_shift_), homes_(space, config.chip.tiles),
-      beyond_(config, [this](std::uint32_t tile, cycle ticket,
-                             cycle ready) { tiles_[tile].tickets.answer(ticket, ready, Cause::memory); }),
+      base_(space.base()), window_cycles_(window_cycles(config)), shortest_read_(shortest_answer(config)),
+      reach_(reach_cycles(config)), space_(space), labels_(with_frame_end(labels)),
+      lines_(space, line_shift_), homes_(space, config.chip.tiles),
+      beyond_(config,
+              [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
+                  tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);
+              }),
       host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), options_(options),
       worker_(worker), intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
@@ -68,10 +77,13 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     bool shares = config.core.shared_classes != "none";
     for (integer t = 0; t < config.chip.tiles; ++t) {
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
-        Below& below = config.sim.jitter != 0 ? static_cast<Below&>(tile.jitter) : tile.l2;
         for (integer c = 0; c < config.chip.cores; ++c) {
-            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, below,
-                                                 tile.tickets, tile.attribution);
+            const std::size_t group = wide(c) / tile.sharing[1];
+            Cache& l2 = tile.caches[1][group];
+            Below& below = config.sim.jitter != 0 ? static_cast<Below&>(tile.jitters[group]) : l2;
+            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, l2,
+                                                 below, tile.tickets, tile.attribution);
+            l2.add_above(core.l1);
             if (shares && c % config.core.shared_cores == 0)
                 tile.shared_units.emplace_back(tile.earliest);
             core.shared = shares ? &tile.shared_units.back() : nullptr;
@@ -83,6 +95,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             }
         }
     }
+    beyond_.connect(tiles_);
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)
         harts_[wide(placement.number(placement.of(w)))].worker = w;
@@ -237,7 +250,7 @@ bool Engine::run_window() {
     if (!failure_)
         perform_deeds();
     for (Tile& tile : tiles_)
-        beyond_.accept(tile.exit.leaving());
+        beyond_.accept(tile.leaving.requests);
     beyond_.serve(window_end_);
     set_floors(window_end_);
     for (Tile& tile : tiles_) {
@@ -304,7 +317,11 @@ Report Engine::run() {
             break;
         cycle quiet = std::max({cycles_, window_end_, beyond_.drain()});
         for (const Tile& tile : tiles_)
-            quiet = std::max(quiet, tile.l2.quiet());
+            for (unsigned level = 1; level < tile_levels_; ++level)
+                for (const Cache& cache : tile.caches[level])
+                    quiet = std::max(quiet, cache.quiet());
+        for (const SharedCache& shared : beyond_.caches())
+            quiet = std::max(quiet, shared.cache.quiet());
         begin_frame((quiet + window_cycles_ - 1) / window_cycles_ * window_cycles_);
         if (frame + 2 == options_.frames) {
             beyond_.count_from(to_memory_clocks(config_, cycles_));
@@ -328,10 +345,15 @@ Report Engine::run() {
 void Engine::finish_frame() {
     auto serve_all = [this] {
         for (Tile& tile : tiles_)
-            beyond_.accept(tile.exit.leaving());
+            beyond_.accept(tile.leaving.requests);
         beyond_.serve(Beyond::everything);
     };
     serve_all();
+    for (unsigned level = 1; level < tile_levels_; ++level)
+        for (const Tile& tile : tiles_)
+            for (const Cache& cache : tile.caches[level])
+                misplaced_lines_ += cache.misplaced();
+    misplaced_lines_ += beyond_.misplaced();
     for (Hart& h : harts_) {
         settle_loads(h);
         await_stores(h);
@@ -358,9 +380,13 @@ void Engine::finish_frame() {
         for (Core& core : tile.cores)
             core.l1.finish(cycles_, frame_end, lasting);
     serve_all();
-    for (Tile& tile : tiles_)
-        tile.l2.finish(cycles_, frame_end, lasting);
-    serve_all();
+    for (unsigned level = 1; level < tile_levels_; ++level) {
+        for (Tile& tile : tiles_)
+            for (Cache& cache : tile.caches[level])
+                cache.finish(cycles_, frame_end, lasting);
+        serve_all();
+    }
+    beyond_.write_back(cycles_, frame_end, lasting);
 }
 
 std::string Engine::describe_deadlock() const {
@@ -392,8 +418,10 @@ Interval Engine::sums() const {
             s.l1_accesses += core.l1.counters().reads + core.l1.counters().writes;
             s.l1_misses += core.l1.counters().misses;
         }
-        s.l2_accesses += tile.l2.counters().reads + tile.l2.counters().writes;
-        s.l2_misses += tile.l2.counters().misses;
+        for (const Cache& l2 : tile.caches[1]) {
+            s.l2_accesses += l2.counters().reads + l2.counters().writes;
+            s.l2_misses += l2.counters().misses;
+        }
     }
     const MemoryCounters memory = beyond_.memory().counters();
     s.memory_reads = memory.reads;
@@ -418,9 +446,13 @@ Report Engine::report() const {
     r.memory_by_rank = beyond_.memory().rank_counters();
     r.work.resize(labels_.columns());
     for (const Tile& tile : tiles_) {
-        r.jitter.lines += tile.jitter.lines();
-        r.jitter.cycles += tile.jitter.cycles();
-        r.l2.push_back(tile.l2.counters());
+        for (const Jitter& jitter : tile.jitters) {
+            r.jitter.lines += jitter.lines();
+            r.jitter.cycles += jitter.cycles();
+        }
+        for (unsigned level = 1; level < tile_levels_; ++level)
+            for (const Cache& cache : tile.caches[level])
+                r.caches(level).push_back(cache.counters());
         for (const Core& core : tile.cores) {
             r.l1.push_back(core.l1.counters());
             r.port_instructions.push_back(core.port_instructions);
@@ -451,7 +483,14 @@ Report Engine::report() const {
     }
     r.drained = std::max(r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)));
     for (const Tile& tile : tiles_)
-        r.drained = std::max(r.drained, tile.l2.quiet());
+        for (unsigned level = 1; level < tile_levels_; ++level)
+            for (const Cache& cache : tile.caches[level])
+                r.drained = std::max(r.drained, cache.quiet());
+    r.misplaced_lines = misplaced_lines_;
+    for (const SharedCache& shared : beyond_.caches()) {
+        r.caches(tile_levels_).push_back(shared.cache.counters());
+        r.drained = std::max(r.drained, shared.cache.quiet());
+    }
     return r;
 }
 

@@ -25,6 +25,13 @@ using isa::timing::stamp;
 inline constexpr std::uint32_t width = ISA_WIDTH; // logical lanes
 inline constexpr std::uint64_t all_lanes = ~std::uint64_t{0} >> (64U - width);
 
+inline std::uint64_t wide(integer x) {
+    return static_cast<std::uint64_t>(x);
+}
+inline std::uint32_t narrow(integer x) {
+    return static_cast<std::uint32_t>(x);
+}
+
 /// When the first and the last machine instruction of an operation issued.
 struct Issued {
     cycle first, last;
@@ -47,6 +54,7 @@ public:
     void scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
     void prefetch(Hart& h, const void* p, Due ready);
     void discard(Hart& h, const void* p, std::uint32_t bytes, Due ready);
+    void discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end, cycle at);
     void before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due ready, bool waits = false);
     stamp after_atomic(Hart& h, isa::timing::atomic kind, const void* p, bool wrote);
     stamp wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due ready);
@@ -205,6 +213,14 @@ private:
     void read_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
     void write_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
 
+    /// Of the hart's core within its tile.
+    std::size_t core_in_tile(const Hart& h) const {
+        return h.number / wide(config_.chip.threads) % wide(config_.chip.cores);
+    }
+    Cache& cache_of(Hart& h, unsigned level) const { return h.tile->cache_of(level, core_in_tile(h)); }
+    TileExit& exit_of(Hart& h) const {
+        return h.tile->exits[core_in_tile(h) / h.tile->sharing[tile_levels_ - 1]];
+    }
     void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
     void publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);
@@ -250,6 +266,7 @@ private:
     std::uint32_t issue_width_, line_bytes_;
     unsigned line_shift_, port_byte_shift_;
     std::uint64_t l1_latency_;
+    unsigned tile_levels_, cache_levels_; // of caches: within a tile, in all
     // by kind of instruction (pairing.h)
     std::array<std::uint32_t, issue_kinds> latency_{}, interval_{};
     std::array<std::uint32_t, issue_kinds>
@@ -283,6 +300,7 @@ private:
     std::function<void(int)> worker_;
     Intervals intervals_;
     Interval at_end_; // of the run: what has been counted
+    std::uint64_t misplaced_lines_ = 0;
     int workers_;
 };
 
@@ -302,12 +320,5 @@ public:
 private:
     Hart* self_ = running_hart;
 };
-
-inline std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-inline std::uint32_t narrow(integer x) {
-    return static_cast<std::uint32_t>(x);
-}
 
 } // namespace sim

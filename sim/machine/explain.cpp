@@ -86,6 +86,9 @@ Explanations make() {
     add_stack(out, "kinds[].stack", "all threads, for it");
     add_level(out, "l1", "l1_by_core", cache_counters);
     add_level(out, "l2", "l2_by_tile", cache_counters);
+    add_counters(out, "l2_by_cache[]", cache_counters); // where a tile has several
+    for (unsigned level = 2; level < most_levels; ++level)
+        add_level(out, fmt::format("l{}", level + 1), fmt::format("l{}_by_cache", level + 1), cache_counters);
     add_level(out, "memory", "memory_by_rank", memory_counters);
     add("memory.last_clock", "memory clocks", "in which the last burst ended");
     add("bandwidth.*.achieved_gb_s", "GB/s", "moved by all of the level's parts, over the run");

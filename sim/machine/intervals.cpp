@@ -122,9 +122,10 @@ std::string print_intervals(const Report& r) {
         fmt::format_to(std::back_inserter(out), "{},{},{}", i, row.begin, row.end);
         for (const auto& c : interval_counters)
             fmt::format_to(std::back_inserter(out), ",{}", row.*c.count);
-        fmt::format_to(
-            std::back_inserter(out), ",{:.6f},{}", ratio(row.instructions, (row.end - row.begin) * cores),
-            (row.memory_reads + row.memory_writes) * static_cast<std::uint64_t>(r.config.l2.line_bytes));
+        fmt::format_to(std::back_inserter(out), ",{:.6f},{}",
+                       ratio(row.instructions, (row.end - row.begin) * cores),
+                       (row.memory_reads + row.memory_writes) *
+                           static_cast<std::uint64_t>(r.config.last_cache().line_bytes));
         for (std::uint64_t cycles : row.stack)
             fmt::format_to(std::back_inserter(out), ",{}", cycles);
         out += '\n';

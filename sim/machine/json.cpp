@@ -4,6 +4,7 @@
 #include "sim/machine/energy.h"
 #include "sim/machine/limits.h"
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace sim {
@@ -21,16 +22,19 @@ template <class Counters, class Rows> json counters(const Counters& c, const Row
 json configuration(const Config& config) {
     json out = json::object();
     for (const Parameter& p : parameters()) {
+        if (!applies(p, config))
+            continue;
         std::size_t dot = p.key.find('.');
         out[p.key.substr(0, dot)][p.key.substr(dot + 1)] = json::parse(print_value(p, config));
     }
     return out;
 }
 
-json stack(const Stack& s) {
+json stack(const Report& r, const Stack& s) {
     json out = json::object();
     for (std::size_t i = 0; i < cause_count; ++i)
-        out[causes[i].name] = s[i];
+        if (has_cause(i, r.config.cache_levels()))
+            out[causes[i].name] = s[i];
     return out;
 }
 
@@ -43,7 +47,7 @@ json cores(const Report& r) {
         for (const ThreadReport& t : r.threads)
             if (static_cast<std::size_t>(t.core) == core)
                 instructions += t.instructions;
-        json row = {{"core", core}, {"instructions", instructions}, {"stack", stack(stacks[core])}};
+        json row = {{"core", core}, {"instructions", instructions}, {"stack", stack(r, stacks[core])}};
         if (!r.port_instructions[core].empty())
             row["port_instructions"] = r.port_instructions[core];
         out.push_back(std::move(row));
@@ -75,10 +79,10 @@ json threads(const Report& r) {
     for (const ThreadReport& t : r.threads) {
         json row = {{"tile", t.tile},     {"core", t.core},     {"thread", t.thread},
                     {"worker", t.worker}, {"finish", t.finish}, {"instructions", t.instructions}};
-        row["stack_of_all_phases"] = stack(t.stack());
+        row["stack_of_all_phases"] = stack(r, t.stack());
         for (std::size_t p = 0; p < r.labels.phases.size(); ++p)
             row["stack"][r.labels.phases[p]] =
-                stack(sum_of(t, [&](std::size_t c) { return r.labels.phase(c) == p; }));
+                stack(r, sum_of(t, [&](std::size_t c) { return r.labels.phase(c) == p; }));
         out.push_back(std::move(row));
     }
     return out;
@@ -91,7 +95,9 @@ json traffic(const Report& r) {
                     {"level", t.level ? json(*t.level) : json()},
                     {"kind", r.labels.kinds[r.labels.kind(t.column)]},
                     {"phase", r.labels.phases[r.labels.phase(t.column)]}};
-        row.update(counters(t.traffic, traffic_columns));
+        for (const TrafficColumn& column : traffic_columns)
+            if (column.level < r.config.cache_levels())
+                row[column.name] = t.traffic.*column.count;
         out.push_back(std::move(row));
     }
     return out;
@@ -133,7 +139,7 @@ json kinds(const Report& r) {
         out.push_back({{"kind", r.labels.kinds[k]},
                        {"vops", w.vops},
                        {"instructions", w.instructions},
-                       {"stack", stack(all)}});
+                       {"stack", stack(r, all)}});
     }
     return out;
 }
@@ -172,7 +178,7 @@ std::string print_json(const Report& r, bool with_host) {
     out["coherence_of_plain_data"] = "not modelled";
     out["core"] = counters(r.core, core_counters);
     out["instructions_by_class"] = instructions_by_class(r);
-    out["stack"] = stack(r.stack());
+    out["stack"] = stack(r, r.stack());
     out["cores"] = cores(r);
     if (!r.shared_unit_cycles.empty())
         out["shared_unit_cycles"] = r.shared_unit_cycles;
@@ -181,9 +187,13 @@ std::string print_json(const Report& r, bool with_host) {
     out["l1"] = counters(r.l1_total(), cache_counters);
     for (const CacheCounters& c : r.l1)
         out["l1_by_core"].push_back(counters(c, cache_counters));
-    out["l2"] = counters(r.l2_total(), cache_counters);
-    for (const CacheCounters& c : r.l2)
-        out["l2_by_tile"].push_back(counters(c, cache_counters));
+    for (unsigned level = 1; level < r.config.cache_levels(); ++level) {
+        const std::string name = fmt::format("l{}", level + 1);
+        out[name] = counters(r.cache_total(level), cache_counters);
+        const char* by = level == 1 && r.config.cores_sharing(1) == r.config.chip.cores ? "tile" : "cache";
+        for (const CacheCounters& c : r.caches(level))
+            out[fmt::format("{}_by_{}", name, by)].push_back(counters(c, cache_counters));
+    }
     out["memory"] = counters(r.memory, memory_counters);
     out["memory"]["last_clock"] = r.memory.last_clock;
     for (const MemoryCounters& c : r.memory_by_rank)

@@ -29,17 +29,16 @@ std::uint64_t total(const Report& r, std::uint64_t Traffic::*count) {
         [count](std::uint64_t sum, const TrafficRow& row) { return sum + row.traffic.*count; });
 }
 
-void check_traffic(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
-    equal("L1 reads = sum over structures, kinds and phases", l1.reads, total(r, &Traffic::l1_reads));
-    equal("L1 writes = sum over structures, kinds and phases", l1.writes, total(r, &Traffic::l1_writes));
-    equal("L1 misses = sum over structures, kinds and phases", l1.misses, total(r, &Traffic::l1_misses));
-    equal("L1 write-backs = sum over structures, kinds and phases", l1.write_backs,
-          total(r, &Traffic::l1_write_backs));
-    equal("L2 reads = sum over structures, kinds and phases", l2.reads, total(r, &Traffic::l2_reads));
-    equal("L2 writes = sum over structures, kinds and phases", l2.writes, total(r, &Traffic::l2_writes));
-    equal("L2 misses = sum over structures, kinds and phases", l2.misses, total(r, &Traffic::l2_misses));
-    equal("L2 write-backs = sum over structures, kinds and phases", l2.write_backs,
-          total(r, &Traffic::l2_write_backs));
+void check_traffic(const Report& r) {
+    for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
+        const CacheCounters c = r.cache_total(level);
+        const TrafficOfLevel& t = traffic_of_level[level];
+        equal("reads of a level = sum over structures, kinds and phases", c.reads, total(r, t.reads));
+        equal("writes of a level = sum over structures, kinds and phases", c.writes, total(r, t.writes));
+        equal("misses of a level = sum over structures, kinds and phases", c.misses, total(r, t.misses));
+        equal("write-backs of a level = sum over structures, kinds and phases", c.write_backs,
+              total(r, t.write_backs));
+    }
     equal("memory reads = sum over structures, kinds and phases", r.memory.reads,
           total(r, &Traffic::memory_reads));
     equal("memory writes = sum over structures, kinds and phases", r.memory.writes,
@@ -124,35 +123,49 @@ void check_memory(const Report& r) {
     for (const auto& row : memory_counters)
         equal("memory = sum over ranks", r.memory.*row.count, sum.*row.count);
     equal("memory's last clock = that of a rank", r.memory.last_clock, sum.last_clock);
-    auto parts = static_cast<std::uint64_t>(r.config.l2.line_bytes / (c.bus_bytes * c.burst_length));
+    auto parts =
+        static_cast<std::uint64_t>(r.config.last_cache().line_bytes / (c.bus_bytes * c.burst_length));
     equal("read bursts + forwarded = lines read x bursts of a line", sum.read_bursts + sum.forwarded,
           sum.reads * parts);
     equal("written bursts + merged = lines written x bursts of a line", sum.write_bursts + sum.merged,
           sum.writes * parts);
 }
 
-void check_levels(const Report& r, const CacheCounters& l1, const CacheCounters& l2) {
-    equal("L1 hits + misses = accesses", l1.hits + l1.misses, l1.reads + l1.writes);
-    equal("L2 hits + misses = accesses", l2.hits + l2.misses, l2.reads + l2.writes);
+/// What a level sends down arrives, and nothing else but what shared words do at the L2.
+void check_below(const Report& r, const CacheCounters& above, const CacheCounters& c, bool l2) {
+    equal("reads of a level = fills of the one above (L2: + read-modify-writes)", c.reads,
+          above.fills + (l2 ? r.core.modifications : 0));
+    equal(
+        "writes of a level = write-backs + clean victims + writes through of the one above (L2: + releases)",
+        c.writes,
+        above.write_backs + above.clean_victims + above.written_through + (l2 ? r.core.releases : 0));
+    at_most("fills <= misses + prefetches", c.fills + c.written_around, c.misses + c.hardware_prefetches);
+}
+
+void check_levels(const Report& r) {
+    const unsigned levels = r.config.cache_levels();
+    for (unsigned level = 0; level < levels; ++level) {
+        const CacheCounters c = r.cache_total(level);
+        equal("hits + misses = accesses", c.hits + c.misses, c.reads + c.writes);
+        at_most("hits in flight <= hits", c.hits_in_flight, c.hits);
+        at_most("writes around <= writes through", c.written_around, c.written_through);
+        equal("hardware prefetches = useful + useless", c.hardware_prefetches,
+              c.prefetches_useful + c.prefetches_useless);
+        at_most("late prefetches <= useful", c.prefetches_late, c.prefetches_useful);
+        equal("misses = sum over causes", r.config.sim.miss_causes == "on" ? c.misses : 0,
+              c.compulsory + c.capacity + c.conflict + c.coherence);
+        const bool exclusive = r.config.cache(level).inclusion == "exclusive";
+        at_most("lines moved up <= hits of an exclusive level", c.moved_up, exclusive ? c.hits : 0);
+        if (level != 0)
+            check_below(r, r.cache_total(level - 1), c, level == 1);
+    }
+    const CacheCounters l1 = r.l1_total(), last = r.cache_total(levels - 1);
     equal("L1 fills + writes around = misses + prefetches", l1.fills + l1.written_around,
           l1.misses + l1.prefetches + l1.hardware_prefetches);
-    equal("L2 reads = L1 fills + read-modify-writes", l2.reads, l1.fills + r.core.modifications);
-    equal("L2 writes = L1 write-backs + writes through + releases", l2.writes,
-          l1.write_backs + l1.written_through + r.core.releases);
-    equal("memory reads = L2 fills", r.memory.reads, l2.fills);
-    equal("memory writes = L2 write-backs + writes through", r.memory.writes,
-          l2.write_backs + l2.written_through);
-    at_most("L2 fills <= misses + prefetches", l2.fills + l2.written_around,
-            l2.misses + l2.hardware_prefetches);
-    for (const CacheCounters* c : {&l1, &l2}) {
-        at_most("hits in flight <= hits", c->hits_in_flight, c->hits);
-        at_most("writes around <= writes through", c->written_around, c->written_through);
-        equal("hardware prefetches = useful + useless", c->hardware_prefetches,
-              c->prefetches_useful + c->prefetches_useless);
-        at_most("late prefetches <= useful", c->prefetches_late, c->prefetches_useful);
-        equal("misses = sum over causes", r.config.sim.miss_causes == "on" ? c->misses : 0,
-              c->compulsory + c->capacity + c->conflict + c->coherence);
-    }
+    equal("memory reads = fills of the last level", r.memory.reads, last.fills);
+    equal("memory writes = write-backs + writes through of the last level", r.memory.writes,
+          last.write_backs + last.written_through);
+    equal("inclusive levels have all lines above them, exclusive ones none", r.misplaced_lines, 0);
     check_memory(r);
 }
 
@@ -257,15 +270,14 @@ bool exact(Config c) {
 
 void check_laws(const Report& r) {
     CacheCounters l1 = r.l1_total();
-    CacheCounters l2 = r.l2_total();
-    check_levels(r, l1, l2);
-    check_traffic(r, l1, l2);
+    check_levels(r);
+    check_traffic(r);
     check_touched(r);
     check_use(r, l1);
     check_stacks(r);
     check_buffers(r, l1);
     check_jitter(r, l1);
-    check_intervals(r, l1, l2);
+    check_intervals(r, l1, r.l2_total());
     if (exact(r.config))
         equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
 }
@@ -291,12 +303,8 @@ void add(Stack& sum, const Stack& s) {
 
 } // namespace
 
-CacheCounters Report::l1_total() const {
-    return sum_of(l1);
-}
-
-CacheCounters Report::l2_total() const {
-    return sum_of(l2);
+CacheCounters Report::cache_total(unsigned level) const {
+    return sum_of(caches(level));
 }
 
 Stack ThreadReport::stack() const {

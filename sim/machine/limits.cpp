@@ -60,10 +60,15 @@ std::vector<Limit> limits(const Report& r) {
     std::vector<Limit> out = {
         {"issue slots", most_instructions(r) / wide(c.core.issue_width), "the core that issued most"},
         {"L1 ports", busiest(r.l1) / wide(c.l1.ports), "the core whose L1 was accessed most"},
-        {"L2 banks", busiest(r.l2) / wide(c.l2.banks), "the tile whose L2 was accessed most"},
         {"memory bus", core_cycles(c, bus_clocks(r)), "the channel that moved most"},
         {"row activates", core_cycles(c, activate_clocks(r)), "the rank that opened most rows, four in tFAW"},
     };
+    constexpr std::array<const char*, most_levels> banks = {"", "L2 banks", "L3 banks", "L4 banks",
+                                                            "L5 banks"};
+    for (unsigned level = 1; level < c.cache_levels(); ++level)
+        out.insert(out.begin() + 1 + level,
+                   {banks[level], busiest(r.caches(level)) / wide(c.cache(level).banks),
+                    "the cache of the level that was accessed most"});
     std::uint64_t port = 0;
     for (const auto& ports : r.port_instructions)
         for (std::uint64_t instructions : ports)

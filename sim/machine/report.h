@@ -121,7 +121,8 @@ struct Report {
     std::vector<std::vector<std::uint64_t>> port_instructions; // by core and port of core.pairing
     std::vector<std::uint64_t> shared_unit_cycles;             // by unit of core.shared_classes, taken
     std::vector<CacheCounters> l1;                             // by core
-    std::vector<CacheCounters> l2;                             // by tile
+    std::vector<CacheCounters> l2, l3, l4, l5;                 // by cache, tile after tile
+    std::uint64_t misplaced_lines = 0; // against inclusive and exclusive levels, before the frame's end
     JitterReport jitter;
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
@@ -135,8 +136,17 @@ struct Report {
     int host_threads = 1;
 
     double seconds() const;
-    CacheCounters l1_total() const;
-    CacheCounters l2_total() const;
+    /// From level 0, the L1.
+    std::vector<CacheCounters>& caches(unsigned level) {
+        const std::array<std::vector<CacheCounters>*, most_levels> all = {&l1, &l2, &l3, &l4, &l5};
+        return *all[level];
+    }
+    const std::vector<CacheCounters>& caches(unsigned level) const {
+        return const_cast<Report*>(this)->caches(level);
+    }
+    CacheCounters cache_total(unsigned level) const;
+    CacheCounters l1_total() const { return cache_total(0); }
+    CacheCounters l2_total() const { return cache_total(1); }
     Stack stack() const;                    // of all threads and columns
     std::vector<Stack> core_stacks() const; // of a core's threads, by core
 };

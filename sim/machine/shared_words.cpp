@@ -54,7 +54,13 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
         h.tile->site = {};
-        Answer line = h.tile->l2.modify({a, line_bytes_, at.last + l1_latency_, h.column});
+        cycle asks = at.last + l1_latency_;
+        Answer line = h.core->l2.modify({a, line_bytes_, asks, h.column});
+        while (line.refused)
+            [[unlikely]] {
+                asks = await_room(h, asks, line.ready);
+                line = h.core->l2.modify({a, line_bytes_, asks, h.column});
+            }
         auto [ready_at, behind] =
             h.tile->queues.enter(a, line.ready, wide(config_.coherence.atomic_cycles), h.tile->tickets);
         Answered there{ready_at, ready_at, line.from};
@@ -88,19 +94,22 @@ void Engine::check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready) 
     ready.later(Due(w->visible, Cause::synchronise));
 }
 
-/// Other copies of the word's line go.
+/// Copies of the word's line go, but for those in the caches below the L1 that the writer's core uses.
 void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip) {
-    if (!chip) {
-        for (Core& core : h.tile->cores)
-            core.l1.invalidate(address, t, h.column);
-        return;
-    }
-    for (Tile& tile : tiles_) {
+    auto in_tile = [&](Tile& tile) {
         for (Core& core : tile.cores)
             core.l1.invalidate(address, t, h.column);
-        if (&tile != h.tile)
-            tile.l2.invalidate(address, t, h.column);
-    }
+        for (unsigned level = 1; level < tile_levels_; ++level)
+            for (Cache& cache : tile.caches[level])
+                if (&cache != &cache_of(h, level))
+                    cache.invalidate(address, t, h.column);
+    };
+    if (!chip)
+        return in_tile(*h.tile);
+    for (Tile& tile : tiles_)
+        in_tile(tile);
+    if (beyond_.caches().size() > 1)
+        exit_of(h).tell(Request::invalidate, address, t, h.column);
 }
 
 /// The word has been written: those that wait for it wake.
@@ -150,7 +159,9 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         invalidate_elsewhere(h, a, t, chip);
         if (kind == isa::timing::atomic::store_release) {
             ++h.counters.releases;
-            h.tile->l2.write({a, line_bytes_, t + l1_latency_, h.column});
+            Access release{a, line_bytes_, t + l1_latency_, h.column};
+            release.forced = true;
+            h.core->l2.write(release);
             ready = Due(t, Cause::synchronise);
         } else {
             ready = h.acting;

@@ -101,6 +101,10 @@ void level(std::string& out, const char* name, const CacheCounters& c) {
     if (c.written_through != 0)
         out += fmt::format("           written through: {}, of which {} missed and brought no line\n",
                            c.written_through, c.written_around);
+    if (c.back_invalidations + c.clean_victims + c.moved_up != 0)
+        out +=
+            fmt::format("           {} back-invalidations, {} clean victims sent down, {} lines moved up\n",
+                        c.back_invalidations, c.clean_victims, c.moved_up);
     if (c.hardware_prefetches + c.prefetches_dropped != 0)
         out +=
             fmt::format("           hardware prefetches: {}, of which {} useful ({} late), {} useless\n",
@@ -110,7 +114,7 @@ void level(std::string& out, const char* name, const CacheCounters& c) {
 void memory(std::string& out, const Report& r) {
     const MemoryCounters& m = r.memory;
     out += fmt::format("memory   {:>12} {:>12}  lines of {} bytes, {}\n", m.reads, m.writes,
-                       r.config.l2.line_bytes, r.config.memory.preset);
+                       r.config.last_cache().line_bytes, r.config.memory.preset);
     out += fmt::format(
         "         bursts: {} rows open, {} empty, {} in conflict; {} from the write queue, {} merged\n",
         m.row_hits, m.row_empties, m.row_conflicts, m.forwarded, m.merged);
@@ -124,7 +128,8 @@ void memory(std::string& out, const Report& r) {
 void levels(std::string& out, const Report& r) {
     out += "\ncaches          reads       writes         hits       misses  miss rate  write-backs\n";
     level(out, "L1", r.l1_total());
-    level(out, "L2", r.l2_total());
+    for (unsigned i = 1; i < r.config.cache_levels(); ++i)
+        level(out, fmt::format("L{}", i + 1).c_str(), r.cache_total(i));
     memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";
     for (const Bandwidth& b : bandwidths(r))
@@ -171,10 +176,10 @@ void table(std::string& out, const Report& r, const char* what, std::size_t rows
         if (t.l1_reads + t.l1_writes + t.l2_reads + t.l2_writes == 0)
             continue;
         std::uint64_t lines = t.memory_reads + t.memory_writes;
-        out +=
-            fmt::format("{:<16} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name,
-                        t.l1_reads + t.l1_writes, t.l1_misses, t.l1_write_backs, t.l2_misses, t.memory_reads,
-                        t.memory_writes, lines * static_cast<std::uint64_t>(r.config.l2.line_bytes) / 1024);
+        out += fmt::format("{:<16} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name,
+                           t.l1_reads + t.l1_writes, t.l1_misses, t.l1_write_backs, t.l2_misses,
+                           t.memory_reads, t.memory_writes,
+                           lines * static_cast<std::uint64_t>(r.config.last_cache().line_bytes) / 1024);
     }
 }
 
@@ -237,7 +242,8 @@ void traffic(std::string& out, const Report& r) {
                              }));
         });
     auto kib = [&](const Traffic& t) {
-        return (t.memory_reads + t.memory_writes) * static_cast<std::uint64_t>(r.config.l2.line_bytes) / 1024;
+        return (t.memory_reads + t.memory_writes) *
+               static_cast<std::uint64_t>(r.config.last_cache().line_bytes) / 1024;
     };
     grid(out, r, "KiB to and from memory, structure by phase", labels.phases, all,
          [&](std::size_t s, std::size_t p) {

@@ -1,5 +1,5 @@
-// A tile: cores around an L2, and the fibres that run on them. Within a window of time it knows nothing of
-// other tiles.
+// A tile: cores, the caches below their L1s that lie within it, and the fibres that run on them. Within a
+// window of time it knows nothing of other tiles.
 #pragma once
 
 #include "sim/core/core.h"
@@ -20,10 +20,11 @@ namespace sim {
 struct Tile {
     Tile(const Config& config, std::uint32_t number, std::uint64_t window, LineMap& lines,
          std::size_t columns)
-        : number(number), attribution(lines, number, columns), exit(number, tickets, attribution),
-          l2(config, 1, true, earliest, site, exit, tickets, attribution), jitter(config, number, l2),
+        : number(number), attribution(lines, number, columns),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
-                    static_cast<std::size_t>(config.sim.stack_kib) * 1024) {}
+                    static_cast<std::size_t>(config.sim.stack_kib) * 1024) {
+        make_caches(config);
+    }
 
     /// Waits until a ticket is answered, or (no ticket) for the end of the window.
     struct Parked {
@@ -43,9 +44,11 @@ struct Tile {
     Tickets tickets;
     SiteAtHand site; // for prefetchers by stride
     Sites load_sites;
-    TileExit exit;
-    Cache l2;
-    Jitter jitter; // between the L1s and the L2, if wanted
+    Leaving leaving;
+    std::deque<TileExit> exits;                        // one a cache of the last level here
+    std::array<std::deque<Cache>, most_levels> caches; // by level, from 1 on
+    std::array<std::size_t, most_levels> sharing{};    // cores of such a cache
+    std::deque<Jitter> jitters;                        // between the L1s and each L2, if wanted
     std::deque<SharedUnit> shared_units;
     std::deque<Core> cores;
     std::vector<Hart*> harts;
@@ -57,6 +60,12 @@ struct Tile {
     std::vector<Parked> parked;
     std::vector<Deed> deeds;
     TileIntervals intervals;
+
+    /// The cache of a level that this core of the tile uses.
+    Cache& cache_of(unsigned level, std::size_t core) { return caches[level][core / sharing[level]]; }
+
+private:
+    void make_caches(const Config& config);
 };
 
 } // namespace sim

@@ -56,8 +56,8 @@ void take_away(Report& r, const Report& warm) {
             r.port_instructions[core][port] -= warm.port_instructions[core][port];
     for (std::size_t i = 0; i < r.shared_unit_cycles.size(); ++i)
         r.shared_unit_cycles[i] -= warm.shared_unit_cycles[i];
-    reduce(r.l1, warm.l1, cache_counters);
-    reduce(r.l2, warm.l2, cache_counters);
+    for (unsigned level = 0; level < r.config.cache_levels(); ++level)
+        reduce(r.caches(level), warm.caches(level), cache_counters);
     r.jitter.lines -= warm.jitter.lines;
     r.jitter.cycles -= warm.jitter.cycles;
     reduce(r.memory, warm.memory, memory_counters);

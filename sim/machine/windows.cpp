@@ -21,12 +21,17 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
     return (core_cycles * wide(c.chip.clock_ps) + wide(c.memory.clock_ps) - 1) / wide(c.memory.clock_ps);
 }
 
+std::uint64_t shortest_answer(const Config& c) {
+    const unsigned last = c.cache_levels() - 1;
+    return c.beyond_tiles(last) ? wide(c.cache(last).latency) : Memory::shortest_read(c);
+}
+
 std::uint64_t window_cycles(const Config& c) {
     if (c.sim.window != 0)
         return wide(c.sim.window);
     // An operation may follow the last piece of its operand by as many cycles less as it has pieces (rule 1).
     integer pieces = std::max<integer>(1, ISA_WIDTH / c.core.lanes);
-    return wide(std::max<integer>(1, static_cast<integer>(Memory::shortest_read(c)) - (pieces - 1)));
+    return wide(std::max<integer>(1, static_cast<integer>(shortest_answer(c)) - (pieces - 1)));
 }
 
 std::uint64_t reach_cycles(const Config& c) {

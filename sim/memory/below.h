@@ -17,6 +17,7 @@ struct Answer {
     cycle ready;
     Cause from;
     bool refused = false;
+    bool dirty = false; // the line has left an exclusive cache, which had not written it back
 
     static Answer later(cycle when) { return {when, Cause::mshrs, true}; }
 };
@@ -32,6 +33,7 @@ struct Access {
     bool followed = false; // of a write: the read of what takes its place follows at once
     bool modify = false;   // a read that changes what it reads
     bool forced = false;   // happens at once, whatever is busy
+    bool clean = false;    // of a write: what lies below has the same
 };
 
 class Below {
@@ -46,14 +48,23 @@ public:
     virtual Answer write(const Access& a) = 0;
 };
 
-/// What leaves a tile: a dirty line to be written, a line to be read, or the one and then the other.
+/// What leaves a tile: a dirty line to be written, a line to be read, or the one and then the other; or word
+/// that a line is to be dropped elsewhere, or is dead.
 struct Request {
     static constexpr std::uint64_t nothing = ~std::uint64_t{0};
     cycle at;
-    std::uint32_t tile;
+    std::uint32_t tile, exit;                      // of the tile, by number
     std::uint64_t sequence;                        // within its tile
     std::uint64_t write = nothing, read = nothing; // addresses
     cycle ticket = 0;                              // of the read
+    std::size_t column = 0;
+    std::uint32_t bytes = 0;                                              // of the write
+    bool whole = false;                                                   // likewise
+    enum Kind : std::uint8_t { lines, invalidate, discard } kind = lines; // of the line at `write`
+    /// Where it stands: on its way, then at a bank of a cache beyond the tiles, with an entry of its exit's
+    /// MSHRs.
+    enum Stage : std::uint8_t { arrives, writes, reads } stage = arrives;
+    std::size_t mshr = 0;
 };
 
 } // namespace sim

@@ -12,8 +12,8 @@ std::uint64_t wide(integer x) {
 unsigned log2(integer x) {
     return static_cast<unsigned>(std::countr_zero(wide(x)));
 }
-const CacheConfig& of_level(const Config& machine, unsigned level) {
-    return level == 0 ? machine.l1 : machine.l2;
+bool is(const Config& machine, unsigned level, const char* inclusion) {
+    return level != 0 && level < machine.cache_levels() && machine.cache(level).inclusion == inclusion;
 }
 std::size_t sets(const CacheConfig& c) {
     return wide(c.size_bytes / (c.ways * c.line_bytes));
@@ -23,7 +23,7 @@ std::size_t sets(const CacheConfig& c) {
 
 Cache::Cache(const Config& machine, unsigned level, bool last, const cycle& earliest, const SiteAtHand& site,
              Below& below, Tickets& tickets, Attribution& attribution)
-    : Cache(machine, of_level(machine, level), level, last, earliest, site, below, tickets, attribution) {}
+    : Cache(machine, machine.cache(level), level, last, earliest, site, below, tickets, attribution) {}
 
 Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, bool last,
              const cycle& earliest, const SiteAtHand& site, Below& below, Tickets& tickets,
@@ -33,13 +33,15 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
       port_bytes_(static_cast<std::uint32_t>(machine.l1.port_bytes)), latency_(wide(config.latency)),
       bank_mask_(level == 0 ? 0 : wide(config.banks) - 1), last_(last),
       through_(config.write_policy == "through"), around_(config.write_miss == "around"),
+      inclusive_(is(machine, level, "inclusive")), exclusive_(is(machine, level, "exclusive")),
+      sends_clean_(is(machine, level + 1, "exclusive")),
       cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), traffic_(traffic_of_level[level]),
       array_(sets(config), wide(config.ways), replacement_of(config.replacement)),
       banks_(level == 0 ? 0 : wide(config.banks), Calendar("cache bank", earliest)),
       mshrs_(wide(config.mshrs), tickets), write_backs_(wide(config.write_back_buffer), tickets),
       prefetcher_(config.prefetcher, static_cast<std::uint32_t>(config.prefetch_degree),
                   wide(config.prefetch_sites)),
-      tickets_(tickets), below_(below), site_(site), attribution_(attribution) {
+      tickets_(tickets), below_(below), site_(site), attribution_(&attribution) {
     if (last)
         mshrs_.lift_limit();
     if (machine.sim.miss_causes == "on")
@@ -67,45 +69,89 @@ Answer Cache::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer pres
     return {hold->until, hold->cause};
 }
 
-/// Sends a dirty line on its way, from the buffer that it has entered at `t`. Returns 0, or when to try
-/// again.
+/// Sends a line on its way, from the buffer that it has entered at `t`. Returns 0, or when to try again.
 cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
                         bool forced) {
     std::uint64_t line = array_.line(entry);
     std::uint64_t address = line << line_shift_;
-    Answer accepted =
-        below_.write({address, std::uint32_t{1} << line_shift_, down, column, true, followed, forced});
+    const bool dirty = array_.dirty(entry);
+    Answer accepted = below_.write(
+        {address, std::uint32_t{1} << line_shift_, down, column, true, followed, false, forced, !dirty});
     if (accepted.refused)
         return accepted.ready;
-    ++counters_.write_backs;
-    ++(attribution_.cell(address, column).*traffic_.write_backs);
+    if (dirty) {
+        ++counters_.write_backs;
+        ++(attribution_->cell(address, column).*traffic_.write_backs);
+    } else {
+        ++counters_.clean_victims;
+    }
     if (!last_)
         write_backs_.hold({line, t, accepted.ready, Cause::mshrs});
     return 0;
 }
 
-/// Reads the line from below, which is asked at `down`. Whoever was there is written back if it is dirty.
-Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column) {
+/// A line is about to leave an inclusive cache: so do its copies above, and what they have changed is here.
+void Cache::recall(CacheArray::Entry leaving) {
+    const std::uint64_t line = array_.line(leaving);
+    if (line == CacheArray::no_line)
+        return;
+    bool dirty = false;
+    for (Cache* c : above_)
+        dirty |= c->back_invalidate(line << line_shift_, std::uint64_t{1} << line_shift_);
+    if (dirty)
+        array_.set_dirty(leaving, true);
+}
+
+/// Drops all lines of these bytes here and above; returns whether any was dirty.
+bool Cache::back_invalidate(std::uint64_t address, std::uint64_t bytes) {
+    bool dirty = false;
+    for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
+        for (Cache* c : above_)
+            dirty |= c->back_invalidate(at, std::uint64_t{1} << line_shift_);
+        CacheArray::Entry entry = array_.find(at >> line_shift_);
+        if (entry == CacheArray::none)
+            continue;
+        dirty |= array_.dirty(entry);
+        ++counters_.back_invalidations;
+        count_useless(entry);
+        array_.drop(entry);
+    }
+    return dirty;
+}
+
+/// Reads the line from below, which is asked at `down`. Whoever was there is written back if it is dirty. To
+/// an exclusive level it goes after the read, into the room that this has left.
+Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced) {
     CacheArray::Entry entry = array_.victim(line);
     cycle retry = 0;
-    if (!last_ && (retry = mshrs_.take(t)) != t)
+    if (!last_ && !forced && (retry = mshrs_.take(t)) != t)
         return Answer::later(retry);
-    if (array_.dirty(entry)) {
-        if (!last_ && (retry = write_backs_.take(t)) != t)
+    if (inclusive_) [[unlikely]]
+        recall(entry);
+    if (leaves_with_news(entry)) {
+        if (!last_ && !forced && (retry = write_backs_.take(t)) != t)
             return Answer::later(retry);
-        if (retry = write_back(entry, down, down, column, true, false); retry != 0)
-            return Answer::later(retry);
-        array_.set_dirty(entry, false);
+        if (!sends_clean_) {
+            if (retry = write_back(entry, down, down, column, true, forced); retry != 0)
+                return Answer::later(retry);
+            array_.set_dirty(entry, false);
+        }
     }
-    Answer below = below_.read({line << line_shift_, std::uint32_t{1} << line_shift_, down, column});
+    Access wanted{line << line_shift_, std::uint32_t{1} << line_shift_, down, column};
+    wanted.forced = forced;
+    Answer below = below_.read(wanted);
     if (below.refused)
         return below;
+    if (sends_clean_ && array_.line(entry) != CacheArray::no_line) [[unlikely]]
+        write_back(entry, down, down, column, false, true);
     ++counters_.fills;
     mshrs_.hold({line, t, below.ready, below.from});
     count_useless(entry);
     array_.fill(entry, line);
     array_.set_in_flight(entry, true);
-    return below;
+    if (below.dirty) [[unlikely]]
+        array_.set_dirty(entry, true);
+    return {below.ready, below.from};
 }
 
 void Cache::prefetch(std::uint64_t address, cycle t, std::size_t column) {
@@ -136,7 +182,7 @@ Answer Cache::waiting_access(CacheArray::Entry entry, std::uint64_t line, bool w
         entry = array_.find(line);
         counters_.hits += accesses - 1;
         ++counters_.misses;
-        ++(attribution_.cell(line << line_shift_, column).*traffic_.misses);
+        ++(attribution_->cell(line << line_shift_, column).*traffic_.misses);
     }
     if (write)
         array_.set_dirty(entry, true);
@@ -160,21 +206,64 @@ Answer Cache::special_access(std::uint64_t line, bool write, std::uint32_t acces
 }
 
 Answer Cache::serve(const Access& a, bool write) {
-    std::uint64_t line = a.address >> line_shift_;
-    std::uint32_t slots = (a.bytes + (1U << bank_shift_) - 1) >> bank_shift_;
-    Calendar& bank = banks_[line & bank_mask_];
+    std::uint32_t slots = slots_of(a);
+    Calendar& bank = banks_[(a.address >> line_shift_) & bank_mask_];
     cycle start = bank.find_run(a.at, slots);
+    Answer answer = act(a, write, start);
+    if (answer.refused)
+        return answer;
+    bank.mark_run(start, slots);
+    quiet_ = std::max(quiet_, start + slots);
+    counters_.busy_cycles += slots;
+    return answer;
+}
+
+cycle Cache::book(const Access& a) {
+    std::uint32_t slots = slots_of(a);
+    cycle start = banks_[(a.address >> line_shift_) & bank_mask_].take_run(a.at, slots);
+    quiet_ = std::max(quiet_, start + slots);
+    counters_.busy_cycles += slots;
+    return start;
+}
+
+/// What becomes of an access that its bank begins with at `start`.
+Answer Cache::act(const Access& a, bool write, cycle start) {
     bool hit = false;
-    Answer answer = perform(a, line, write, start + latency_, hit);
+    Answer answer = perform(a, a.address >> line_shift_, write, start + latency_, hit);
     if (answer.refused)
         return answer;
     counters_.hits += hit ? 1 : 0;
-    bank.mark_run(start, slots);
-    quiet_ = std::max(quiet_, start + slots);
-    Traffic& cell = attribution_.cell(a.address, a.column);
+    Traffic& cell = attribution_->cell(a.address, a.column);
     ++(write ? counters_.writes : counters_.reads);
     ++(cell.*(write ? traffic_.writes : traffic_.reads));
-    counters_.busy_cycles += slots;
+    return answer;
+}
+
+/// A read of an exclusive cache.
+Answer Cache::move_up(const Access& a, CacheArray::Entry entry, std::uint64_t line, cycle done) {
+    Answer answer{done, cause_};
+    if (entry != CacheArray::none) {
+        if (array_.in_flight(entry))
+            answer = in_flight(entry, line, answer);
+        answer.dirty = array_.dirty(entry);
+        array_.drop(entry);
+        ++counters_.moved_up;
+    } else {
+        if (cycle room = last_ || a.forced ? a.at : mshrs_.take(a.at); room != a.at)
+            return Answer::later(room);
+        Access wanted{line << line_shift_, std::uint32_t{1} << line_shift_, done, a.column};
+        wanted.forced = a.forced;
+        answer = below_.read(wanted);
+        if (answer.refused)
+            return answer;
+        ++counters_.fills;
+        mshrs_.hold({line, a.at, answer.ready, answer.from});
+        ++counters_.misses;
+        ++(attribution_->cell(a.address, a.column).*traffic_.misses);
+        count_cause(line);
+    }
+    if (causes_)
+        causes_->leave(line);
     return answer;
 }
 
@@ -182,8 +271,10 @@ Answer Cache::serve(const Access& a, bool write) {
 Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle done, bool& hit) {
     CacheArray::Entry entry = array_.find(line);
     hit = entry != CacheArray::none;
+    if (exclusive_ && !write && !a.modify) [[unlikely]]
+        return move_up(a, entry, line, done);
     bool brings = !hit && !(write && around_);
-    bool changes = write || a.modify;
+    bool changes = (write && !a.clean) || a.modify;
     bool goes_on = (changes && through_) || (write && !hit && around_);
     if (goes_on && !last_ && !a.forced)
         if (cycle room = write_backs_.take(a.at); room != a.at)
@@ -206,7 +297,7 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
     }
     if (!hit) {
         ++counters_.misses;
-        ++(attribution_.cell(a.address, a.column).*traffic_.misses);
+        ++(attribution_->cell(a.address, a.column).*traffic_.misses);
         counters_.written_around += brings ? 0 : 1;
         count_cause(line);
     }
@@ -222,24 +313,26 @@ Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle do
     Answer answer{done, cause_};
     if (write && a.whole && a.bytes >> line_shift_ != 0) { // all of the line comes from above
         CacheArray::Entry entry = array_.victim(line);
-        if (array_.dirty(entry))
+        if (inclusive_)
+            recall(entry);
+        if (leaves_with_news(entry))
             if (cycle retry = write_back(entry, done, done, a.column, false, a.forced); retry != 0)
                 return Answer::later(retry);
         count_useless(entry);
         array_.fill(entry, line);
     } else {
-        answer = fill(line, a.at, done, a.column);
+        answer = fill(line, a.at, done, a.column, a.forced);
         if (answer.refused)
             return answer;
     }
-    if ((write || a.modify) && !through_)
+    if (((write && !a.clean) || a.modify) && !through_)
         array_.set_dirty(array_.find(line), true);
     return answer;
 }
 
 /// A write goes on to the level below.
 Answer Cache::send_on(const Access& a, cycle down) {
-    Answer accepted = below_.write({a.address, a.bytes, down, a.column, a.whole, false, true});
+    Answer accepted = below_.write({a.address, a.bytes, down, a.column, a.whole, false, false, true});
     ++counters_.written_through;
     if (!last_)
         write_backs_.hold({a.address >> line_shift_, a.at, accepted.ready, Cause::mshrs});
@@ -269,11 +362,13 @@ void Cache::count_cause(std::uint64_t line) {
 void Cache::prefetch_after(const Access& a, std::uint64_t line, bool first, cycle down) {
     if (prefetcher_.kind() == Prefetcher::Kind::stride && level_ == 0 && !site_.first)
         return;
-    std::uint64_t end = attribution_.spill_begin() >> line_shift_;
+    std::uint64_t end = attribution_->spill_begin() >> line_shift_;
     prefetcher_.after(line, first, site_.number, [&](std::uint64_t wanted) {
         if ((wanted < end) != (line < end) || array_.find(wanted) != CacheArray::none)
             return;
-        if (fill(wanted, a.at, down, a.column).refused) {
+        // The line at hand is not yet in the caches above, from where it could be recalled.
+        const bool takes_its_place = inclusive_ && array_.line(array_.victim(wanted)) == line;
+        if (takes_its_place || fill(wanted, a.at, down, a.column).refused) {
             ++counters_.prefetches_dropped;
             return;
         }
@@ -292,10 +387,24 @@ void Cache::invalidate(std::uint64_t address, cycle t, std::size_t column) {
     if (entry == CacheArray::none)
         return;
     ++counters_.invalidations;
+    if (inclusive_)
+        recall(entry);
     if (array_.dirty(entry))
         write_back(entry, t, t, column, false, true);
     count_useless(entry);
     array_.drop(entry);
+}
+
+std::uint64_t Cache::misplaced() const {
+    std::uint64_t lines = 0;
+    if (inclusive_)
+        for (const Cache* c : above_)
+            c->each_line([&](std::uint64_t address) { lines += holds(address) ? 0 : 1; });
+    if (exclusive_ && above_.size() == 1)
+        array_.for_each([&](CacheArray::Entry e) {
+            lines += above_.front()->holds(array_.line(e) << line_shift_) ? 1 : 0;
+        });
+    return lines;
 }
 
 void Cache::discard(std::uint64_t address) {

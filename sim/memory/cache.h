@@ -1,12 +1,16 @@
-// A cache of a tile: a core's L1, whose ports the core books, or a level below it, with banks interleaved by
-// line, each busy while it moves what is asked for. Neither inclusive nor exclusive of the caches
-// above. A line being filled counts as present; whoever hits it waits for the fill.
+// A cache: a core's L1, whose ports the core books, or a level below it, with banks interleaved by
+// line, each busy while it moves what is asked for. A line being filled counts as present; whoever hits it
+// waits for the fill. A level is neither inclusive nor exclusive of those above, or
+// * inclusive: a line that leaves it leaves all caches above it at that moment, and what was changed there
+//   goes with it;
+// * exclusive: what the level above evicts comes here, clean or dirty; a line that is read moves up, dirty if
+//   it was; one that is not here passes by. Of several caches above, each may have what another has too.
 // Misses are held in MSHRs, evicted dirty lines in a write-back buffer; those of the last cache of a tile
 // stand where their times are known, beyond the tile. Not modelled: ports and banks of fills; the network to
 // the cores (its time is part of the latency); that a line which must make room before it has come would
-// still be on its way; banks and ports of prefetches. What one operation writes of a line is written through
-// together, a port's width for each of its accesses. A line written back is accepted when its bank has taken
-// it, also where that evicts another dirty line.
+// still be on its way; banks and ports of prefetches, and of back-invalidations. What one operation writes of
+// a line is written through together, a port's width for each of its accesses. A line written back is
+// accepted when its bank has taken it, also where that evicts another dirty line.
 #pragma once
 
 #include "sim/config/config.h"
@@ -45,6 +49,10 @@ public:
         count_accesses(line, write, accesses, column);
         return {t + latency_, Cause::l1};
     }
+    /// `upper` lies directly above this one.
+    void add_above(Cache& upper) { above_.push_back(&upper); }
+    /// Whose traffic follows: of a cache that several tiles share.
+    void charge(Attribution& attribution) { attribution_ = &attribution; }
     /// Begins a fill if the line is absent and an MSHR is free.
     void prefetch(std::uint64_t address, cycle t, std::size_t column);
 
@@ -58,6 +66,10 @@ public:
         change.modify = true;
         return serve(change, false);
     }
+    /// For accesses in order of time: takes the access's bank; returns when that begins with it. Then, with
+    /// that as its cycle, or one to try again at:
+    cycle book(const Access& a);
+    Answer serve_booked(const Access& a, bool write) { return act(a, write, a.at); }
     /// A shared word in the line was written elsewhere: drops the line, writing it back if it is dirty.
     void invalidate(std::uint64_t address, cycle t, std::size_t column);
     /// The line's contents are dead: it need not be written back.
@@ -74,10 +86,16 @@ public:
             else
                 ++counters_.dropped;
             array_.set_dirty(e, false);
+            if (sends_clean_ && keep(array_.line(e) << line_shift_)) // it has moved
+                array_.drop(e);
         });
     }
     CacheCounters& counters() { return counters_; }
     const CacheCounters& counters() const { return counters_; }
+    /// Lines that are not where the level's inclusion says: 0. Exclusive ones are looked at below one cache
+    /// alone.
+    std::uint64_t misplaced() const;
+    std::uint64_t latency() const { return latency_; }
     /// From this cycle on no bank is busy.
     cycle quiet() const { return quiet_; }
 
@@ -85,19 +103,37 @@ private:
     Cache(const Config& machine, const CacheConfig& config, unsigned level, bool last, const cycle& earliest,
           const SiteAtHand& site, Below& below, Tickets& tickets, Attribution& attribution);
     void count_accesses(std::uint64_t line, bool write, std::uint32_t accesses, std::size_t column) {
-        Traffic& cell = attribution_.touch(line << line_shift_, column);
+        Traffic& cell = attribution_->touch(line << line_shift_, column);
         (write ? counters_.writes : counters_.reads) += accesses;
         (write ? cell.l1_writes : cell.l1_reads) += accesses;
     }
     Answer waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
                           cycle t, std::size_t column);
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
-    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column);
+    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced = false);
+    void recall(CacheArray::Entry leaving);
+    bool back_invalidate(std::uint64_t address, std::uint64_t bytes);
+    bool holds(std::uint64_t address) const {
+        return array_.find(address >> line_shift_) != CacheArray::none;
+    }
+    template <class Visit> void each_line(Visit visit) const { // and of those above
+        array_.for_each([&](CacheArray::Entry e) { visit(array_.line(e) << line_shift_); });
+        for (const Cache* c : above_)
+            c->each_line(visit);
+    }
+    bool leaves_with_news(CacheArray::Entry e) const {
+        return array_.dirty(e) || (sends_clean_ && array_.line(e) != CacheArray::no_line);
+    }
     cycle write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
                      bool forced);
     Answer special_access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t,
                           std::size_t column);
     Answer serve(const Access& a, bool write);
+    Answer act(const Access& a, bool write, cycle start);
+    std::uint32_t slots_of(const Access& a) const {
+        return (a.bytes + (1U << bank_shift_) - 1) >> bank_shift_;
+    }
+    Answer move_up(const Access& a, CacheArray::Entry entry, std::uint64_t line, cycle done);
     Answer perform(const Access& a, std::uint64_t line, bool write, cycle done, bool& hit);
     Answer allocate(const Access& a, std::uint64_t line, bool write, cycle done);
     Answer send_on(const Access& a, cycle down);
@@ -111,6 +147,8 @@ private:
     std::uint32_t port_bytes_; // of the L1
     std::uint64_t latency_, bank_mask_;
     bool last_, through_, around_;
+    bool inclusive_, exclusive_;
+    bool sends_clean_;             // to an exclusive level below
     bool special_;                 // an L1 that does more than the least
     bool used_prefetched_ = false; // by the access at hand, for the first time
     Cause cause_;
@@ -125,7 +163,8 @@ private:
     Tickets& tickets_;
     Below& below_;
     const SiteAtHand& site_;
-    Attribution& attribution_;
+    Attribution* attribution_;
+    std::vector<Cache*> above_;
 };
 
 } // namespace sim

@@ -14,13 +14,13 @@ template <class Counters> struct CounterRow {
 
 struct CacheCounters {
     std::uint64_t reads = 0, writes = 0, hits = 0, hits_in_flight = 0, misses = 0, fills = 0, write_backs = 0;
-    std::uint64_t invalidations = 0, discarded = 0, prefetches = 0, prefetches_dropped = 0, busy_cycles = 0,
-                  dropped = 0;
+    std::uint64_t invalidations = 0, back_invalidations = 0, clean_victims = 0, moved_up = 0, discarded = 0,
+                  prefetches = 0, prefetches_dropped = 0, busy_cycles = 0, dropped = 0;
     std::uint64_t written_through = 0, written_around = 0;
     std::uint64_t hardware_prefetches = 0, prefetches_useful = 0, prefetches_late = 0, prefetches_useless = 0;
     std::uint64_t compulsory = 0, capacity = 0, conflict = 0, coherence = 0;
 };
-inline constexpr std::array<CounterRow<CacheCounters>, 23> cache_counters = {{
+inline constexpr std::array<CounterRow<CacheCounters>, 26> cache_counters = {{
     {"reads", &CacheCounters::reads, "read accesses"},
     {"writes", &CacheCounters::writes, "write accesses"},
     {"hits", &CacheCounters::hits, "accesses that found their line, on its way or there"},
@@ -31,10 +31,14 @@ inline constexpr std::array<CounterRow<CacheCounters>, 23> cache_counters = {{
     {"write_backs", &CacheCounters::write_backs, "dirty lines sent to the level below"},
     {"invalidations", &CacheCounters::invalidations,
      "lines dropped because a shared word in them was written"},
+    {"back_invalidations", &CacheCounters::back_invalidations,
+     "lines dropped because an inclusive level below dropped theirs"},
+    {"clean_victims", &CacheCounters::clean_victims, "clean lines sent to the exclusive level below"},
+    {"moved_up", &CacheCounters::moved_up, "lines read from this exclusive level, and no longer in it"},
     {"discarded", &CacheCounters::discarded, "dirty lines made clean because their contents were dead"},
     {"prefetches", &CacheCounters::prefetches, "fills begun by prefetch operations"},
     {"prefetches_dropped", &CacheCounters::prefetches_dropped,
-     "prefetches, also of hardware, dropped because every MSHR was busy"},
+     "prefetches, also of hardware, dropped because every MSHR was busy or no other line could make room"},
     {"busy_cycles", &CacheCounters::busy_cycles, "port or bank cycles taken"},
     {"dropped", &CacheCounters::dropped, "dirty lines of data that died with the frame, never written back"},
     {"written_through", &CacheCounters::written_through,

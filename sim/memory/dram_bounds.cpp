@@ -15,7 +15,7 @@ double real(integer x) {
     return static_cast<double>(x);
 }
 double bursts_of_line(const Config& config) {
-    return real(config.l2.line_bytes) / real(config.memory.bus_bytes * config.memory.burst_length);
+    return real(config.last_cache().line_bytes) / real(config.memory.bus_bytes * config.memory.burst_length);
 }
 
 } // namespace
@@ -31,7 +31,7 @@ double dram_peak(const MemoryConfig& c) {
 DramBound dram_bandwidth_bound(const Config& config, const std::string& stream) {
     const MemoryConfig& c = config.memory;
     const DramTiming t(c);
-    const double line = real(config.l2.line_bytes), bursts = bursts_of_line(config);
+    const double line = real(config.last_cache().line_bytes), bursts = bursts_of_line(config);
     const double awake = c.refresh == "all-bank" ? dram_awake(c) : 1;
     const double in_turn = d(std::max(t.burst, t.column[0][0][at(Near::rank)])); // burst to burst
     DramBound bound{line / (bursts * in_turn) * real(c.channels), "bus"};

@@ -40,7 +40,7 @@ DramOutcome summary(const Config& config, const M& memory, std::uint64_t request
     o.reads = latencies.size();
     o.clocks = static_cast<double>(o.counters.last_clock);
     o.bytes_per_clock =
-        static_cast<double>(requests * static_cast<std::uint64_t>(config.l2.line_bytes)) / o.clocks;
+        static_cast<double>(requests * static_cast<std::uint64_t>(config.last_cache().line_bytes)) / o.clocks;
     if (latencies.empty())
         return o;
     std::sort(latencies.begin(), latencies.end());

@@ -50,7 +50,7 @@ const std::vector<DramStreamKind>& dram_stream_kinds() {
 
 DramStream make_dram_stream(const std::string& kind, const Config& c, std::uint64_t bytes,
                             std::uint64_t stride, std::uint64_t seed) {
-    auto line = static_cast<std::uint64_t>(c.l2.line_bytes);
+    auto line = static_cast<std::uint64_t>(c.last_cache().line_bytes);
     std::uint64_t lines = bytes / line;
     if (lines < 3)
         throw ConfigError(fmt::format("{} bytes hold no three lines of {} bytes; raise them", bytes, line));

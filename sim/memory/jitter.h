@@ -1,6 +1,6 @@
 // Noise: what an L1 asks of the level below it arrives 0 or 1 cycle later than it would (Alameldeen and Wood
 // 2003), so that designs can be told from chance: runs that differ in nothing but the seed say how far two
-// results must lie apart to mean anything. A function of (seed, tile, sequence within the tile), and so of
+// results must lie apart to mean anything. A function of (seed, L2, sequence above it), and so of
 // the machine's own order alone.
 #pragma once
 
@@ -11,8 +11,10 @@ namespace sim {
 
 class Jitter final : public Below {
 public:
-    Jitter(const Config& config, std::uint32_t tile, Below& below)
-        : key_(mix(static_cast<std::uint64_t>(config.sim.jitter) << 32U | tile)), below_(below) {}
+    /// Above the tile's `number`th L2.
+    Jitter(const Config& config, std::uint32_t tile, std::uint32_t number, Below& below)
+        : key_(mix(static_cast<std::uint64_t>(config.sim.jitter) << 32U | number << 16U | tile)),
+          below_(below) {}
 
     /// A line that an L1 misses or prefetches.
     Answer read(const Access& a) override {

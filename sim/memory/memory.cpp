@@ -18,8 +18,8 @@ Memory::Memory(const Config& config, std::uint64_t disorder)
       back_(wide(config.memory.controller_cycles) - there_),
       burst_shift_(static_cast<unsigned>(
           std::countr_zero(wide(config.memory.bus_bytes * config.memory.burst_length)))),
-      parts_(static_cast<std::uint32_t>(config.l2.line_bytes >> burst_shift_)), mapping_(config.memory),
-      timing_(config.memory), shortest_(shortest_read(config)),
+      parts_(static_cast<std::uint32_t>(config.last_cache().line_bytes >> burst_shift_)),
+      mapping_(config.memory), timing_(config.memory), shortest_(shortest_read(config)),
       lines_(wide(config.memory.channels * config.memory.ranks)) {
     channels_.reserve(wide(config.memory.channels));
     for (std::uint32_t i = 0; i < wide(config.memory.channels); ++i)
@@ -104,7 +104,7 @@ std::uint64_t Memory::shortest_read(const Config& config) {
 std::uint64_t Memory::longest_service(const Config& config, std::uint64_t requests) {
     const MemoryConfig& c = config.memory;
     DramTiming t(c);
-    std::uint64_t bursts = wide(config.l2.line_bytes / (c.bus_bytes * c.burst_length));
+    std::uint64_t bursts = wide(config.last_cache().line_bytes / (c.bus_bytes * c.burst_length));
     // Each burst on its own: opened, turned around, closed; in between, refreshes of every rank.
     Clock each = t.tRC + t.tRCD + t.precharge[1] + t.column[0][1][at(Near::channel)] +
                  t.column[1][0][at(Near::group)] + t.data[0] + t.burst + t.tFAW;

@@ -1,6 +1,6 @@
-// The memory as the L2 sees it: lines become bursts, core cycles memory clocks, and each burst goes to its
-// channel. Pseudo channels of HBM are channels here, with command buses of their own (those of a real pair
-// share one). Requests come in nearly nondecreasing order of time.
+// The memory as the last cache sees it: lines become bursts, core cycles memory clocks, and each burst goes
+// to its channel. Pseudo channels of HBM are channels here, with command buses of their own (those of a real
+// pair share one). Requests come in nearly nondecreasing order of time.
 #pragma once
 
 #include "sim/config/config.h"
@@ -18,7 +18,7 @@ public:
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    /// A line of the L2; returns the core cycle at which its last byte is back at the L2.
+    /// A line of the last cache; returns the core cycle at which its last byte is back there.
     cycle read(std::uint64_t address, cycle t);
     /// Returns the core cycle at which the write queues have taken the line.
     cycle write(std::uint64_t address, cycle t);

@@ -45,6 +45,14 @@ public:
             unlink(oldest_);
         link(i);
     }
+    /// A reference after which an exclusive cache does not have the line.
+    void leave(std::uint64_t line) {
+        auto [found, made] = index_.try_emplace(line, static_cast<std::uint32_t>(lines_.size()));
+        if (made)
+            lines_.push_back({line});
+        if (lines_[found->second].there)
+            unlink(found->second);
+    }
     /// The line is dropped because it was written elsewhere; `present`: it was in the cache.
     void invalidate(std::uint64_t line, bool present) {
         auto found = index_.find(line);

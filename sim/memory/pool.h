@@ -120,9 +120,20 @@ public:
         return {free_at_[first], first};
     }
     void hold(std::size_t entry, cycle until) { free_at_[entry] = until; }
+    /// Until nobody knows when; close() says so.
+    void hold_open(std::size_t entry) {
+        free_at_[entry] = ~cycle{0};
+        ++open_;
+    }
+    void close(std::size_t entry, cycle until) {
+        free_at_[entry] = until;
+        --open_;
+    }
+    bool open() const { return open_ != 0; }
 
 private:
     std::vector<cycle> free_at_;
+    std::size_t open_ = 0;
 };
 
 } // namespace sim

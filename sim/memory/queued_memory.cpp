@@ -24,8 +24,9 @@ QueuedMemory::QueuedMemory(const Config& config)
       back_(wide(config.memory.controller_cycles) - there_),
       burst_shift_(static_cast<unsigned>(
           std::countr_zero(wide(config.memory.bus_bytes * config.memory.burst_length)))),
-      parts_(static_cast<std::uint32_t>(config.l2.line_bytes >> burst_shift_)), mapping_(config.memory),
-      timing_(config.memory), lines_(wide(config.memory.channels * config.memory.ranks)) {
+      parts_(static_cast<std::uint32_t>(config.last_cache().line_bytes >> burst_shift_)),
+      mapping_(config.memory), timing_(config.memory),
+      lines_(wide(config.memory.channels * config.memory.ranks)) {
     const MemoryConfig& c = config.memory;
     if (parts_ > c.read_queue || parts_ > c.write_queue)
         throw ConfigError(fmt::format("a line of the L2 is {} bursts, more than memory.{}_queue, {}, holds; "

@@ -1,6 +1,6 @@
-// The way out of a tile: what its last cache asks for becomes requests, which are served when the window has
-// ended (sim/machine/beyond.h holds that cache's MSHRs and write-back buffer, for that is where their times
-// are known).
+// The way out of a tile: what a last cache of it asks for becomes requests, which are served when the window
+// has ended (sim/machine/beyond.h holds that cache's MSHRs and write-back buffer, for that is where their
+// times are known).
 #pragma once
 
 #include "sim/memory/attribution.h"
@@ -11,38 +11,71 @@
 
 namespace sim {
 
+/// What left a tile since it was last emptied, through any of its exits.
+struct Leaving {
+    std::vector<Request> requests;
+    std::uint64_t sequence = 0;
+};
+
 class TileExit final : public Below {
 public:
-    TileExit(std::uint32_t tile, Tickets& tickets, Attribution& attribution)
-        : tile_(tile), tickets_(tickets), attribution_(attribution) {}
+    /// The tile's `exit`th; `to_memory`: no cache lies beyond.
+    TileExit(std::uint32_t tile, std::uint32_t exit, bool to_memory, Leaving& leaving, Tickets& tickets,
+             Attribution& attribution)
+        : tile_(tile), exit_(exit), to_memory_(to_memory), leaving_(leaving), tickets_(tickets),
+          attribution_(attribution) {}
 
     Answer read(const Access& a) override {
-        ++attribution_.cell(a.address, a.column).memory_reads;
-        Request r{a.at, tile_, 0, std::exchange(followed_, Request::nothing), a.address, tickets_.open()};
+        if (to_memory_)
+            ++attribution_.cell(a.address, a.column).memory_reads;
+        Request r = request(a);
+        r.write = std::exchange(followed_.write, Request::nothing);
+        r.bytes = followed_.bytes;
+        r.whole = followed_.whole;
+        r.read = a.address;
+        r.ticket = tickets_.open();
         leave(r);
         return {r.ticket, Cause::memory};
     }
     Answer write(const Access& a) override {
-        ++attribution_.cell(a.address, a.column).memory_writes;
+        if (to_memory_)
+            ++attribution_.cell(a.address, a.column).memory_writes;
+        Request r = request(a);
+        r.write = a.address;
+        r.bytes = a.bytes;
+        r.whole = a.whole;
         if (a.followed)
-            followed_ = a.address;
+            followed_ = r;
         else
-            leave({a.at, tile_, 0, a.address});
+            leave(r);
         return {a.at, Cause::memory};
     }
-    /// What left the tile since the caller last emptied it.
-    std::vector<Request>& leaving() { return leaving_; }
-
-private:
-    void leave(Request r) {
-        r.sequence = ++sequence_;
-        leaving_.push_back(r);
+    /// Word to the caches beyond.
+    void tell(Request::Kind kind, std::uint64_t address, cycle at, std::size_t column) {
+        Request r = request({address, 0, at, column});
+        r.write = address;
+        r.kind = kind;
+        leave(r);
     }
 
-    std::uint32_t tile_;
-    std::uint64_t followed_ = Request::nothing; // a write whose read has not come yet
-    std::vector<Request> leaving_;
-    std::uint64_t sequence_ = 0;
+private:
+    Request request(const Access& a) const {
+        Request r{};
+        r.at = a.at;
+        r.tile = tile_;
+        r.exit = exit_;
+        r.column = a.column;
+        return r;
+    }
+    void leave(Request r) {
+        r.sequence = ++leaving_.sequence;
+        leaving_.requests.push_back(r);
+    }
+
+    std::uint32_t tile_, exit_;
+    bool to_memory_;
+    Request followed_{}; // a write whose read has not come yet
+    Leaving& leaving_;
     Tickets& tickets_;
     Attribution& attribution_;
 };

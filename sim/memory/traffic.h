@@ -10,29 +10,36 @@
 
 namespace sim {
 
-/// A level counts what arrives at it. Bytes are counts times the line of the level above (L2) or of the L2
-/// (memory).
+/// A level counts what arrives at it. Bytes are counts times the line of the level above, from
+/// the L2 on.
 struct Traffic {
     std::uint64_t l1_reads = 0, l1_writes = 0, l1_misses = 0, l1_write_backs = 0;
     std::uint64_t l2_reads = 0, l2_writes = 0, l2_misses = 0, l2_write_backs = 0;
     std::uint64_t memory_reads = 0, memory_writes = 0;
+    std::uint64_t l3_reads = 0, l3_writes = 0, l3_misses = 0, l3_write_backs = 0;
+    std::uint64_t l4_reads = 0, l4_writes = 0, l4_misses = 0, l4_write_backs = 0;
+    std::uint64_t l5_reads = 0, l5_writes = 0, l5_misses = 0, l5_write_backs = 0;
 };
 
 /// Where a cache of a level counts.
 struct TrafficOfLevel {
     std::uint64_t Traffic::*reads, Traffic::*writes, Traffic::*misses, Traffic::*write_backs;
 };
-inline constexpr std::array<TrafficOfLevel, 2> traffic_of_level = {{
+inline constexpr std::array<TrafficOfLevel, 5> traffic_of_level = {{
     {&Traffic::l1_reads, &Traffic::l1_writes, &Traffic::l1_misses, &Traffic::l1_write_backs},
     {&Traffic::l2_reads, &Traffic::l2_writes, &Traffic::l2_misses, &Traffic::l2_write_backs},
+    {&Traffic::l3_reads, &Traffic::l3_writes, &Traffic::l3_misses, &Traffic::l3_write_backs},
+    {&Traffic::l4_reads, &Traffic::l4_writes, &Traffic::l4_misses, &Traffic::l4_write_backs},
+    {&Traffic::l5_reads, &Traffic::l5_writes, &Traffic::l5_misses, &Traffic::l5_write_backs},
 }};
 
 struct TrafficColumn {
     const char* name;
     std::uint64_t Traffic::*count;
     const char* meaning;
+    unsigned level = 0; // that it needs, from 0; memory: 0
 };
-inline constexpr std::array<TrafficColumn, 10> traffic_columns = {{
+inline constexpr std::array<TrafficColumn, 22> traffic_columns = {{
     {"l1_reads", &Traffic::l1_reads, "L1 read accesses: one a machine load and line it touches"},
     {"l1_writes", &Traffic::l1_writes, "L1 write accesses"},
     {"l1_misses", &Traffic::l1_misses, "L1 accesses that began a fill from the L2"},
@@ -41,6 +48,18 @@ inline constexpr std::array<TrafficColumn, 10> traffic_columns = {{
     {"l2_writes", &Traffic::l2_writes, "lines written back to the L2, and released words"},
     {"l2_misses", &Traffic::l2_misses, "L2 reads and writes that did not find their line"},
     {"l2_write_backs", &Traffic::l2_write_backs, "dirty lines that left the L2"},
+    {"l3_reads", &Traffic::l3_reads, "lines asked of the L3", 2},
+    {"l3_writes", &Traffic::l3_writes, "lines and writes sent down to the L3", 2},
+    {"l3_misses", &Traffic::l3_misses, "L3 reads and writes that did not find their line", 2},
+    {"l3_write_backs", &Traffic::l3_write_backs, "dirty lines that left the L3", 2},
+    {"l4_reads", &Traffic::l4_reads, "lines asked of the L4", 3},
+    {"l4_writes", &Traffic::l4_writes, "lines and writes sent down to the L4", 3},
+    {"l4_misses", &Traffic::l4_misses, "L4 reads and writes that did not find their line", 3},
+    {"l4_write_backs", &Traffic::l4_write_backs, "dirty lines that left the L4", 3},
+    {"l5_reads", &Traffic::l5_reads, "lines asked of the L5", 4},
+    {"l5_writes", &Traffic::l5_writes, "lines and writes sent down to the L5", 4},
+    {"l5_misses", &Traffic::l5_misses, "L5 reads and writes that did not find their line", 4},
+    {"l5_write_backs", &Traffic::l5_write_backs, "dirty lines that left the L5", 4},
     {"memory_reads", &Traffic::memory_reads, "lines read from memory"},
     {"memory_writes", &Traffic::memory_writes, "lines written to memory"},
 }};

@@ -154,12 +154,12 @@ int DramTable::run() const {
         razor::check_writable(json_);
 
     const Units unit(config);
-    const double peak = dram_peak(m), line = static_cast<double>(config.l2.line_bytes);
+    const double peak = dram_peak(m), line = static_cast<double>(config.last_cache().line_bytes);
     fmt::print(
         "{}: {} channels of {} ranks of {} banks, {:.2f} GB/s at most; {} lines of {} bytes a row, {} reads "
         "under way at most\n",
         m.preset, m.channels, m.ranks, m.bank_groups * m.banks, unit.gigabytes(peak), load.requests,
-        config.l2.line_bytes, load.in_flight);
+        config.last_cache().line_bytes, load.in_flight);
     std::vector<Row> rows;
     json bounds = json::array();
     for (const std::string& s : streams) {

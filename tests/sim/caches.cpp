@@ -3,21 +3,13 @@
 #include "sim/memory/cache.h"
 #include "tests/sim/cache_oracle.h"
 #include "tests/sim/machines.h"
+#include "tests/sim/references.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
-#include <random>
 
 namespace sim::test {
 namespace {
-
-struct Reference {
-    std::uint64_t address;
-    std::uint32_t bytes;
-    bool write;
-};
 
 /// Answers at once, and keeps what was asked.
 class InstantMemory final : public Below {
@@ -111,21 +103,6 @@ void compare(const Config& c, const std::vector<Reference>& stream) {
     EXPECT_TRUE(h.memory.asked == l2.out);
 }
 
-/// Mostly near what was used before, now and then anywhere, sometimes in a row.
-std::vector<Reference> synthetic(std::size_t count) {
-    std::mt19937_64 random(11);
-    std::vector<Reference> out(count);
-    std::uint64_t at = 0, region = 0;
-    for (Reference& r : out) {
-        const std::uint64_t dice = random() % 100;
-        if (dice < 2)
-            region = random() % 64 * 65536;
-        at = dice < 40 ? at + 8 : region + random() % (dice < 90 ? 4096U : 262144U) / 4 * 4;
-        r = {at, 4, random() % 3 == 0};
-    }
-    return out;
-}
-
 Config machine(integer size, integer ways, integer line, integer l2_size, integer l2_ways, integer l2_line,
                const std::string& replacement) {
     Config c = simple();
@@ -181,28 +158,8 @@ TEST(CacheOracle, SyntheticStream) {
     }
 }
 
-/// Reads and writes of a Dinero trace (`label hexaddress bytes`); pages are numbered as they come, so that
-/// addresses are small.
-std::vector<Reference> read_trace(const std::string& file) {
-    std::vector<Reference> out;
-    std::map<std::uint64_t, std::uint64_t> pages;
-    FILE* pipe = popen(("gzip -dc " + file).c_str(), "r");
-    if (pipe == nullptr)
-        return out;
-    int label = 0;
-    std::uint64_t address = 0;
-    std::uint32_t bytes = 0;
-    while (std::fscanf(pipe, "%d %lx %u", &label, &address, &bytes) == 3)
-        if (label != 2) {
-            const std::uint64_t page = pages.try_emplace(address / 4096, pages.size()).first->second;
-            out.push_back({page * 4096 + address % 4096, std::max(bytes, 1U), label == 1});
-        }
-    pclose(pipe);
-    return out;
-}
-
 TEST(CacheOracle, RecordedTrace) {
-    const std::string file = RAZOR_SOURCE_DIR "/../shared/scenes/traces/simple_app.din.gz";
+    const std::string file = recorded_trace;
     if (!std::filesystem::exists(file))
         GTEST_SKIP() << "no " << file;
     const std::vector<Reference> stream = read_trace(file);

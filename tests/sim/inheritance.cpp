@@ -185,6 +185,8 @@ TEST(Printing, RoundTripsValuesAndMarks) {
         const Parameter& p = parameters()[i];
         EXPECT_EQ(print_value(p, again.config), print_value(p, first.config)) << p.key;
         EXPECT_EQ(again.origins[i].comment, first.origins[i].comment) << p.key;
+        if (!applies(parameters()[i], again.config))
+            continue;
         EXPECT_EQ(again.origins[i].layer, Origin::file) << p.key;
     }
     EXPECT_EQ(print_machine(again.config), print_machine(first.config));

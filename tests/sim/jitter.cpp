@@ -52,11 +52,11 @@ TEST(Jitter, AChainIsLongerByWhatWasAdded) {
             for (int i = 0; i < 1000; ++i)
                 s = load(here, p + i * 64, 4, s);
             begin = when(s);
-            added = running_hart->tile->jitter.cycles();
+            added = running_hart->tile->jitters.front().cycles();
             for (int i = 0; i < 1000; ++i)
                 s = load(here, p + i * 64, 4, s);
             end = when(s);
-            added = running_hart->tile->jitter.cycles() - added;
+            added = running_hart->tile->jitters.front().cycles() - added;
         });
         EXPECT_EQ(r.l2_total().misses, 1000U);
         return std::pair(end - begin, added);

@@ -74,15 +74,55 @@ Config random_machine(std::mt19937& random) {
     c.l2.bank_bytes = power(0, 7);
     c.l2.mshrs = pick(1, 32);
     c.l2.write_back_buffer = pick(1, 8);
+    c.chip.tiles = pick(1, 3);
+    if (pick(0, 2) == 0 && c.chip.cores % 2 == 0)
+        c.l2.share = pick(0, 1) == 0 ? "core" : "2";
+    unsigned levels = 2;
+    for (CacheConfig* level : {&c.l3, &c.l4, &c.l5}) {
+        if (pick(0, 1) == 0)
+            break;
+        const CacheConfig& above = c.cache(levels - 1);
+        ++levels;
+        level->line_bytes = std::min<integer>(1024, above.line_bytes * power(0, 1));
+        level->ways = pick(1, 16);
+        policies(*level);
+        level->size_bytes = level->line_bytes * level->ways * power(0, 9);
+        level->latency = pick(10, 60);
+        level->banks = power(0, 4);
+        level->bank_bytes = power(0, 7);
+        level->mshrs = pick(1, 32);
+        level->write_back_buffer = pick(1, 8);
+        level->share = "tile";
+        level->inclusion = std::array{"none", "inclusive"}[random() % 2];
+    }
+    if (CacheConfig* last = std::array{&c.l2, &c.l3, &c.l4, &c.l5}[levels - 2];
+        levels > 2 && pick(0, 1) == 0) {
+        last->share = "chip";
+        last->prefetcher = pick(0, 1) == 0 ? "none" : "next";
+    }
+    c.l2.inclusion = std::array{"none", "inclusive"}[random() % 2];
+    if (pick(0, 3) == 0) { // each evicts into the next
+        c.l1.write_policy = c.l2.write_policy = "back";
+        c.l1.write_miss = c.l2.write_miss = "allocate";
+        c.l2.prefetcher = "none";
+        c.l2.inclusion = "exclusive";
+        c.l2.size_bytes = c.l2.size_bytes / c.l2.line_bytes * c.l1.line_bytes;
+        c.l2.line_bytes = c.l1.line_bytes;
+    }
+    for (unsigned level = 1, upper = 1; level < c.tile_levels(); ++level)
+        if (c.cache(level).inclusion == "inclusive")
+            for (; upper <= level; ++upper)
+                std::array<CacheConfig*, 5>{&c.l1, &c.l2, &c.l3, &c.l4, &c.l5}[upper]->prefetcher = "none";
+    const integer line_bytes = c.last_cache().line_bytes;
     c.memory.clock_ps = pick(200, 3000);
     c.memory.channels = power(0, 3);
     c.memory.ranks = power(0, 2);
     c.memory.bank_groups = power(0, 2);
     c.memory.banks = power(0, 3);
-    c.memory.row_bytes = std::max(c.l2.line_bytes, power(9, 13));
+    c.memory.row_bytes = std::max(line_bytes, power(9, 13));
     c.memory.bus_bytes = power(0, 3);
     c.memory.burst_length = power(1, 3);
-    while (c.memory.bus_bytes * c.memory.burst_length > c.l2.line_bytes)
+    while (c.memory.bus_bytes * c.memory.burst_length > line_bytes)
         c.memory.burst_length /= 2;
     if (c.memory.burst_length < 2)
         c.memory.bus_bytes = 2, c.memory.burst_length = 2;
@@ -98,7 +138,6 @@ Config random_machine(std::mt19937& random) {
     c.memory.write_low = pick(0, c.memory.write_high - 1);
     c.sim.quantum = std::array<integer, 5>{0, 1, 10, 100, 5000}[random() % 5];
     c.sim.window = pick(0, 2) == 0 ? power(0, 12) : 0;
-    c.chip.tiles = pick(1, 3);
     c.core.spin_period = pick(4, 300);
     c.coherence.visibility_cycles = power(0, 14);
     c.coherence.atomic_cycles = pick(0, 1000);
@@ -119,6 +158,7 @@ TEST(Properties, RandomMachinesKeepTheLaws) {
     for (int trial = 0; trial < wanted; ++trial) {
         Config c = random_machine(random);
         SCOPED_TRACE(print_machine(c));
+        ASSERT_NO_THROW(check_consistency(c, "random"));
         Memory memory;
         int workers = 1 + static_cast<int>(random() % u(c.all_threads()));
         auto* counter = reinterpret_cast<word*>(memory.data);
@@ -144,6 +184,9 @@ TEST(Properties, BrokenNumbersAreNoticed) {
     EXPECT_NO_THROW(check_laws(good));
     Report r = good;
     ++r.l2[0].reads;
+    EXPECT_THROW(check_laws(r), std::logic_error);
+    r = good;
+    ++r.misplaced_lines;
     EXPECT_THROW(check_laws(r), std::logic_error);
     r = good;
     ++r.threads[0].stacks[0][0];

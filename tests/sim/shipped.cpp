@@ -20,6 +20,8 @@ std::string missing(const std::string& file) {
     for (std::size_t i = 0; i < parameters().size(); ++i) {
         const Origin& origin = machine.origins[i];
         const std::string& key = parameters()[i].key;
+        if (!applies(parameters()[i], machine.config))
+            continue;
         const bool of_this_file = origin.layer == Origin::file && origin.file_name == machine.name;
         if (origin.layer == Origin::preset && !inherits)
             out += key + " is left to a default\n";
