@@ -222,7 +222,7 @@ TEST_F(Razor, LaterFramesFindTheTopologyAnalysed) {
     EXPECT_GT(once.at("counters").at("pages_requested"), 0);
     const nlohmann::json& frames = last.at("host").at("frames");
     ASSERT_EQ(frames.size(), 3U);
-    for (int n = 0; n < 3; ++n) {
+    for (std::size_t n = 0; n < 3; ++n) {
         EXPECT_GT(frames[n].at("render_seconds"), 0) << n;
         EXPECT_EQ(frames[n].at("topology_page_seconds") > 0, n == 0) << n;
     }
