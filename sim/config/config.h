@@ -1,5 +1,5 @@
-// A machine, as its file describes it: plain values, in the units that the parameter table (parameters.cpp)
-// states.
+// A machine, as its file describes it: plain values, in the units that the parameter table
+// (parameter_table.cpp) states.
 #pragma once
 
 #include "isa/simulated/port.h"

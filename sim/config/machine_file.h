@@ -1,4 +1,4 @@
-// Machine files: TOML, one table a section, every key in the table of parameters.cpp. `inherit =
+// Machine files: TOML, one table a section, every key in the table of parameter_table.cpp. `inherit =
 // "other.toml"` (relative to the file; or a list of files, of which the last wins) takes all values of other
 // files first. Layers, each over the one before: defaults, inherited files, the file, overrides.
 #pragma once
