@@ -13,7 +13,7 @@ triangles made over twice the pixels covered, over the square of the target edge
 Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
 schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
 by a line through the logarithms of error and time of the two fixed levels beside it; "-" where none has as small, or
-as large, an error.
+as large, an error. "/object": the same for levels that each instance has of its own.
 """
 import argparse
 import json
@@ -26,6 +26,8 @@ import tempfile
 
 import view
 
+LADDERS = ["fixed", "object"]  # one level, K coarser: "fixed:K"
+RAYS = ["camera", "shadow", "first_camera", "first_shadow"]
 SCHEMES = ["recursive", "discrete", "patch", "paper", "camera", "fixed", "fixed:1", "fixed:2", "fixed:3"]
 
 
@@ -70,7 +72,8 @@ def main():
                          "made_over_needed": camera["counters"]["triangles_made"] / needed,
                          "blended": counters["blended_tests"] / max(counters["block_tests"], 1),
                          "grid_bytes": whole["built"]["grid_bytes"]})
-    compare_with_fixed(rows)
+    for ladder in LADDERS:
+        compare_with(ladder, rows)
     show(rows)
     if options.json:
         with open(options.json, "w") as file:
@@ -92,16 +95,16 @@ def level_of_detail(scheme, edge):
     return "--lod", scheme
 
 
-def compare_with_fixed(rows):
-    """Adds each scheme's times over those of a fixed level of equal error."""
-    fixed = sorted((r for r in rows if r["scheme"].startswith("fixed") and r["rmse"] > 0), key=lambda r: r["rmse"])
+def compare_with(ladder, rows):
+    """Adds each scheme's times over those of a level of equal error of the ladder."""
+    levels = sorted((r for r in rows if r["scheme"].startswith(ladder) and r["rmse"] > 0), key=lambda r: r["rmse"])
     for r in rows:
-        for low, high in zip(fixed, fixed[1:]):
+        for low, high in zip(levels, levels[1:]):
             if low["rmse"] <= r["rmse"] <= high["rmse"] and low["rmse"] < high["rmse"]:
                 part = math.log(r["rmse"] / low["rmse"]) / math.log(high["rmse"] / low["rmse"])
-                for rays in ("camera", "shadow", "first_camera", "first_shadow"):
+                for rays in RAYS:
                     a, b = (max(f[rays + "_seconds"], 1e-9) for f in (low, high))
-                    r[rays + "_over_fixed"] = r[rays + "_seconds"] / (a * (b / a) ** part)
+                    r[f"{rays}_over_{ladder}"] = r[rays + "_seconds"] / (a * (b / a) ** part)
                 break
 
 
@@ -122,18 +125,20 @@ def errors(options, folder, pictures, references):
 
 
 def show(rows):
-    def ratio(r, rays):
-        return f"{r[rays + '_over_fixed']:.2f}" if rays + "_over_fixed" in r else "-"
+    ladders = [ladder for ladder in LADDERS if any(r["scheme"].startswith(ladder + ":") for r in rows)]
 
-    print(f"{'scheme':10} {'error':>9} {'noisy':>9} {'camera s':>9} {'/fixed':>6} {'shadow s':>9} {'/fixed':>6} "
-          f"{'first s':>8} {'/fixed':>6} {'shadow s':>9} {'/fixed':>6} {'triangles':>10} "
-          f"{'made/needed':>11} {'blended':>8} {'grids MB':>9}")
+    def ratio(r, rays, ladder):
+        return f"{r[f'{rays}_over_{ladder}']:.2f}" if f"{rays}_over_{ladder}" in r else "-"
+
+    headings = [heading for rays in ("camera", "shadow", "first", "shadow")
+                for heading in (f"{rays + ' s':>8}", *(f"{'/' + ladder:>7}" for ladder in ladders))]
+    print(f"{'scheme':10} {'error':>9} {'noisy':>9} {' '.join(headings)} {'triangles':>10} {'made/needed':>11} "
+          f"{'blended':>8} {'grids MB':>9}")
     for r in rows:
-        print(f"{r['scheme']:10} {r['rmse']:9.5f} {r['noise']:9.5f} {r['camera_seconds']:9.3f} {ratio(r, 'camera'):>6} "
-              f"{r['shadow_seconds']:9.3f} {ratio(r, 'shadow'):>6} "
-              f"{r['first_camera_seconds']:8.3f} {ratio(r, 'first_camera'):>6} "
-              f"{r['first_shadow_seconds']:9.3f} {ratio(r, 'first_shadow'):>6} "
-              f"{r['triangles']:10d} {r['made_over_needed']:11.2f} {r['blended']:8.1%} {r['grid_bytes'] / 1e6:9.1f}")
+        times = [figure for rays in RAYS
+                 for figure in (f"{r[rays + '_seconds']:8.3f}", *(f"{ratio(r, rays, l):>7}" for l in ladders))]
+        print(f"{r['scheme']:10} {r['rmse']:9.5f} {r['noise']:9.5f} {' '.join(times)} {r['triangles']:10d} "
+              f"{r['made_over_needed']:11.2f} {r['blended']:8.1%} {r['grid_bytes'] / 1e6:9.1f}")
 
 
 if __name__ == "__main__":

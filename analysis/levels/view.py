@@ -13,7 +13,7 @@ def add_options(parser, size, repeat):
     parser.add_argument("--from", dest="origin", metavar="X,Y,Z", help="where the camera stands")
     parser.add_argument("--to", metavar="X,Y,Z", help="what it looks at")
     parser.add_argument("--fov", type=float, metavar="DEGREES")
-    parser.add_argument("--array", metavar="NX,NY,NZ", help="copies of a table of instances")
+    parser.add_argument("--array", metavar="NX,NY,NZ", help="copies of the model, or of a table of instances")
     parser.add_argument("--spacing", metavar="X,Y,Z", help="from one copy to the next")
     parser.add_argument("--razor", help="the renderer; without it, that of the PATH or of build/release")
     parser.add_argument("--json", metavar="FILE")
@@ -35,6 +35,9 @@ def described(options):
     """The scene with every default filled in, seen from where the options say."""
     text, _ = run([options.razor, "render", *options.scene, "--size", options.size, "--spp", str(options.spp),
                    "--print-config"])
+    if options.array and "[[object]]" not in text:
+        text += "".join(f"\n[[object]]\nmesh = {name}\n" + "array = []\nspacing = []\n" * (n == 0)
+                        for n, name in enumerate(re.findall(r"(?m)^\[\[mesh\]\]\nname = (.*)$", text)))
     for key, numbers in (("position", options.origin), ("target", options.to), ("array", options.array),
                          ("spacing", options.spacing)):
         if numbers:

@@ -27,7 +27,7 @@ public:
           random_(options.seed) {
         frame.build_all(kernels);
         surface_ = std::make_unique<FieldSurface>(frame);
-        const bool one = lod == Lod::recursive || lod == Lod::fixed;
+        const bool one = lod == Lod::recursive || one_level(lod);
         const int last = one ? surface_->finest_level() : surface_->coarsest_level();
         for (int level = surface_->finest_level(); level <= last; ++level) {
             // At 2^level all that is born below it is gone, and nothing else moves.
@@ -93,7 +93,7 @@ private:
                 ray.slope[k] = static_cast<float>(slope * axis[k]);
             ray.growth = static_cast<float>(std::clamp(growth, slope - cap, cap - slope));
         }
-        if (lod_ == Lod::fixed) {
+        if (one_level(lod_)) {
             ray.growth = 0;
             ray.slope = {};
             ray.base = least_target_edge;

@@ -309,7 +309,7 @@ void Frame::Impl::place_view(const Scene& scene) {
         put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
     }
     h.sample_seed = hashed(s.seed);
-    h.fixed_target = s.lod == Lod::fixed ? least_target_edge : 0.0F;
+    h.fixed_target = one_level(s.lod.lod) ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper ? 1 : 0;
     h.one_field = s.lod == Lod::camera ? 1 : 0;
     h.level_choice = s.lod == Lod::patch ? by_patch : s.lod == Lod::paper ? by_stretch : by_leaf;

@@ -99,6 +99,21 @@ void place_instance(const Affine& world, const glm::dvec3& mesh_origin, const gl
             placed.offset[k] = 0;
 }
 
+/// Gives all instances of a mesh the finest level that one of them has.
+void share_levels(std::vector<Instance>& instances, const std::vector<FlatInstance>& flat,
+                  std::size_t meshes) {
+    std::vector<double> least(meshes, std::numeric_limits<double>::infinity());
+    for (const Instance& i : instances) {
+        double& length = least[static_cast<std::size_t>(i.mesh)];
+        length = std::min(length, i.mesh_edge_length);
+    }
+    for (std::size_t n = 0; n < instances.size(); ++n) {
+        Instance& i = instances[n];
+        i.mesh_edge_length = least[static_cast<std::size_t>(i.mesh)];
+        i.edge_length = std::clamp(i.mesh_edge_length * flat[n].scale, 1e-30, 1e30);
+    }
+}
+
 } // namespace
 
 FlatGraph lay_out(const Scene& scene, std::span<const Box> mesh_bounds) {
@@ -142,6 +157,8 @@ SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
         placed.edge_length = std::clamp(std::ldexp(length, i.level_offset) * i.scale, 1e-30, 1e30);
         g.instances.push_back(placed);
     }
+    if (scene.settings.lod == Lod::fixed)
+        share_levels(g.instances, flat.instances, scene.meshes.size());
     if (std::find(seen.begin(), seen.end(), true) != seen.end())
         g.graph = build_hierarchy(flat, seen);
     g.reach = glm::length(all.high - all.low) + glm::length(scene.camera.position - g.origin);

@@ -48,7 +48,9 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
            "--lod", lod_,
            "levels of detail: recursive (every ray its own), discrete (the same without blending), "
            "patch (one level a patch and ray), paper (pairs of levels along each ray), camera (all rays the "
-           "camera's), fixed (the finest) or fixed:K (K levels coarser)")
+           "camera's), object (each instance at the level of its nearest point), fixed (each mesh at the "
+           "finest "
+           "of its instances'), object:K or fixed:K (K levels coarser)")
         ->type_name("NAME");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");

@@ -100,12 +100,18 @@ enum class Lod : std::uint8_t {
     patch,     // every ray each patch at one level: with cracks between patches, to compare with
     paper,     // "Razor" (Djeu et al., TOG 2011): with holes, to compare with
     camera,    // all rays what the camera's rays see
-    fixed,     // all rays the same level of each mesh
+    object,    // all rays one level of each instance, that of its nearest point
+    fixed,     // all rays one level of each mesh, the finest that any instance of it has with `object`
 };
+
+/// Whether rays see the finest level everywhere.
+constexpr bool one_level(Lod lod) {
+    return lod == Lod::object || lod == Lod::fixed;
+}
 
 struct LevelOfDetail {
     Lod lod = Lod::recursive;
-    int coarser = 0; // fixed: levels above each mesh's finest, each doubling the target edge
+    int coarser = 0; // one level: so many above the finest, each doubling the target edge
 
     bool operator==(const LevelOfDetail&) const = default;
     bool operator==(Lod other) const { return lod == other; }

@@ -17,21 +17,15 @@ inline constexpr std::array<Word<Scheme>, 2> scheme_words{{
     {"bilinear", Scheme::bilinear},
 }};
 
-inline constexpr std::array<Word<LevelOfDetail>, 14> lod_words{{
-    {"recursive", {Lod::recursive}},
-    {"discrete", {Lod::discrete}},
-    {"patch", {Lod::patch}},
-    {"paper", {Lod::paper}},
-    {"camera", {Lod::camera}},
-    {"fixed", {Lod::fixed}},
-    {"fixed:1", {Lod::fixed, 1}},
-    {"fixed:2", {Lod::fixed, 2}},
-    {"fixed:3", {Lod::fixed, 3}},
-    {"fixed:4", {Lod::fixed, 4}},
-    {"fixed:5", {Lod::fixed, 5}},
-    {"fixed:6", {Lod::fixed, 6}},
-    {"fixed:7", {Lod::fixed, 7}},
-    {"fixed:8", {Lod::fixed, 8}},
+inline constexpr std::array<Word<LevelOfDetail>, 23> lod_words{{
+    {"recursive", {Lod::recursive}}, {"discrete", {Lod::discrete}},  {"patch", {Lod::patch}},
+    {"paper", {Lod::paper}},         {"camera", {Lod::camera}},      {"object", {Lod::object}},
+    {"object:1", {Lod::object, 1}},  {"object:2", {Lod::object, 2}}, {"object:3", {Lod::object, 3}},
+    {"object:4", {Lod::object, 4}},  {"object:5", {Lod::object, 5}}, {"object:6", {Lod::object, 6}},
+    {"object:7", {Lod::object, 7}},  {"object:8", {Lod::object, 8}}, {"fixed", {Lod::fixed}},
+    {"fixed:1", {Lod::fixed, 1}},    {"fixed:2", {Lod::fixed, 2}},   {"fixed:3", {Lod::fixed, 3}},
+    {"fixed:4", {Lod::fixed, 4}},    {"fixed:5", {Lod::fixed, 5}},   {"fixed:6", {Lod::fixed, 6}},
+    {"fixed:7", {Lod::fixed, 7}},    {"fixed:8", {Lod::fixed, 8}},
 }};
 
 /// The word for `value`, which must be in the table.

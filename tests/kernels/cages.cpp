@@ -171,7 +171,7 @@ Scene scene_of(const Mesh& mesh, double edges_across) {
     s.camera.target = centre;
     s.camera.fov_degrees = 50;
     s.settings = {
-        .lod = Lod::fixed, .width = 32, .height = 32, .samples = 1, .light_samples = 2, .sky_samples = 2};
+        .lod = Lod::object, .width = 32, .height = 32, .samples = 1, .light_samples = 2, .sky_samples = 2};
     return s;
 }
 

@@ -217,6 +217,38 @@ TEST(Instances, TargetEdgesFollowOffsetsRatesAndScale) {
         0U);
 }
 
+TEST(Instances, OfOneFixedLevelShareTheirMeshsFinest) {
+    Scene scene = scene_of(cube_cage(), 40);
+    scene.meshes[0].edge_length = 0; // as the camera sees it
+    scene.meshes.push_back(scene.meshes[0]);
+    const glm::dvec3 away = glm::normalize(scene.camera.target - scene.camera.position);
+    Placement other = place({.translate = away * 900.0});
+    other.mesh = 1;
+    scene.graph.groups = {{"scene",
+                           {place({.translate = away * 40.0}), place({}),
+                            place({.scale = glm::dvec3(4), .translate = away * 300.0}), other}}};
+    const auto edges = [&](LevelOfDetail lod, float InstanceRecord::*of) {
+        scene.settings.lod = lod;
+        Frame frame(scene, {});
+        const auto& instances = frame.header().instances;
+        std::vector<float> lengths;
+        for (int i = 0; i < 4; ++i)
+            lengths.push_back(instances.get()[i].*of);
+        return lengths;
+    };
+    const std::vector<float> own = edges(Lod::object, &InstanceRecord::edge_length);
+    EXPECT_GT(own[0], own[1]);
+    EXPECT_GT(own[2], own[0]);
+    EXPECT_GT(own[3], own[2]);
+    EXPECT_EQ(edges(Lod::fixed, &InstanceRecord::edge_length),
+              (std::vector{own[1], own[1], 4 * own[1], own[3]}));
+    EXPECT_EQ(edges(Lod::fixed, &InstanceRecord::mesh_edge_length),
+              (std::vector{own[1], own[1], own[1], own[3]}));
+    EXPECT_EQ(edges({Lod::fixed, 2}, &InstanceRecord::mesh_edge_length)[0], 4 * own[1]);
+    EXPECT_EQ(edges({Lod::object, 2}, &InstanceRecord::edge_length)[0], 4 * own[0]);
+    EXPECT_EQ(edges(Lod::recursive, &InstanceRecord::edge_length), own);
+}
+
 TEST(Instances, ShareTopologyAndItsPages) {
     const auto statistics = [](int copies) {
         Scene scene = scene_of(urchin_cage(), 40);
