@@ -69,6 +69,15 @@ struct MemoryConfig {
     integer burst_clocks() const { return burst_length / transfers_per_clock; }
 };
 
+/// Between the tiles and what lies beyond them.
+struct NetworkConfig {
+    std::string topology;
+    integer link_bytes = 0, hop_cycles = 0, columns = 0;
+    integer request_bytes = 0, reply_bytes = 0, write_bytes = 0; // besides the line
+
+    bool ideal() const { return topology == "ideal"; }
+};
+
 /// How the renderer uses the machine.
 struct KdTreeConfig {
     std::string share;
@@ -79,6 +88,7 @@ struct EnergyConfig {
     double instruction_pj = 0;
     double logic_pj = 0, add_pj = 0, multiply_pj = 0, fused_pj = 0, divide_pj = 0; // of a lane
     double l1_access_pj = 0, l1_line_pj = 0, l2_line_pj = 0;
+    double network_pj = 0; // of a byte and hop
     double core_mw = 0, tile_mw = 0;
 };
 
@@ -94,6 +104,7 @@ struct Config {
     L1Config l1;
     CacheConfig l2, l3, l4, l5; // without bytes: no such level
     CoherenceConfig coherence;
+    NetworkConfig network;
     MemoryConfig memory;
     KdTreeConfig kdtree;
     EnergyConfig energy;

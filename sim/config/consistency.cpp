@@ -230,12 +230,22 @@ void check_caches(const std::string& what, const Config& config) {
                          lines, most_lines));
 }
 
+void check_network(const std::string& what, const Config& config) {
+    const integer columns = config.network.columns, tiles = config.chip.tiles;
+    if (config.network.topology == "mesh" && columns != 0 && tiles % columns != 0)
+        fail(what,
+             fmt::format("network.columns is {}, which does not divide chip.tiles, {}: every row of a mesh "
+                         "is full; make it a divisor, or 0",
+                         columns, tiles));
+}
+
 } // namespace
 
 void check_consistency(const Config& c, const std::string& what) {
     check_caches(what, c);
     check_core(what, c);
     check_memory(what, c);
+    check_network(what, c);
     if (c.all_threads() > 65536)
         fail(what, fmt::format("chip.tiles x chip.cores x chip.threads is {}; it must be at most 65536",
                                c.all_threads()));

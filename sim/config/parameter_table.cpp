@@ -216,6 +216,29 @@ void add_caches(Table& t) {
           "that a write or read-modify-write takes longer where the word is reached from several tiles");
 }
 
+void add_network(Table& t) {
+    using C = NetworkConfig;
+    auto s = &Config::network;
+    t.add(
+        "network.topology", s, &C::topology, {"ideal", "crossbar", "ring", "mesh"},
+        "between tiles and what lies beyond them; ideal: neither time nor limit; crossbar: from any port to "
+        "any other in one hop; ring: both ways round, the shorter one; mesh: along the row, then the column");
+    t.add("network.link_bytes", s, &C::link_bytes, "bytes/cycle", 32, 1, 1024,
+          "width of a link or port, one way");
+    t.add("network.hop_cycles", s, &C::hop_cycles, "cycles", 3, 0, 1000,
+          "a router and the link behind it; the crossbar");
+    t.add(
+        "network.columns", s, &C::columns, "", 0, 0, 1024,
+        "nodes of a row of a mesh, a divisor of chip.tiles; 0: as near a square as there is, rows no longer "
+        "than columns");
+    t.add("network.request_bytes", s, &C::request_bytes, "bytes", 8, 1, 256,
+          "of a request for a line, or a word about one to a cache beyond the tiles");
+    t.add("network.reply_bytes", s, &C::reply_bytes, "bytes", 8, 0, 256,
+          "that come back with a line besides it");
+    t.add("network.write_bytes", s, &C::write_bytes, "bytes", 8, 0, 256,
+          "that go with what is written besides it");
+}
+
 /// Energies of events of a part, and its power at rest; 0: not counted.
 template <class Section>
 void add_energies(
@@ -348,6 +371,7 @@ void add_energy(Table& t) {
          {"l1_line_pj", &C::l1_line_pj, 0, "a line filled or written back"},
          {"l2_line_pj", &C::l2_line_pj, 0,
           "an access, fill or write-back, the way to the tile's cores included"},
+         {"network_pj", &C::network_pj, 0, "a byte over a hop of the network"},
          {"core_mw", &C::core_mw, 0, "a core with its L1, whatever it does: leakage and clock"},
          {"tile_mw", &C::tile_mw, 0, "a tile's L2, likewise"}});
 }
@@ -386,6 +410,7 @@ std::vector<Parameter> make_parameter_table() {
     add_core(t);
     add_classes(t);
     add_caches(t);
+    add_network(t);
     add_memory(t);
     add_kdtree(t);
     add_energy(t);

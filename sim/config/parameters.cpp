@@ -130,6 +130,8 @@ const std::string& nearest_key(std::string_view key) {
 }
 
 bool applies(const Parameter& p, const Config& config) {
+    if (p.key.starts_with("network."))
+        return p.key == "network.topology" || !config.network.ideal();
     if (p.key.size() < 3 || p.key[0] != 'l' || p.key[2] != '.')
         return true;
     const auto level = static_cast<unsigned>(p.key[1] - '1');

@@ -56,7 +56,7 @@ public:
             if (std::uint64_t free = ~word(number) & open; free != 0)
                 return number * 64 + static_cast<unsigned>(std::countr_zero(free));
     }
-    /// Takes the first `count` free slots from `from` on, adjacent or not.
+    /// Takes the first `count` free slots, 64 at most, from `from` on, adjacent or not.
     Span take(Slot from, std::uint32_t count) {
         std::uint64_t number = from / 64;
         std::uint64_t open = ~std::uint64_t{0} << (from % 64);

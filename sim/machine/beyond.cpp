@@ -10,11 +10,18 @@ namespace sim {
 namespace {
 
 bool after(const Request& a, const Request& b) {
-    return std::tie(a.at, a.tile, a.sequence, a.stage) > std::tie(b.at, b.tile, b.sequence, b.stage);
+    return std::tie(a.at, a.tile, a.sequence, a.stage, a.to) >
+           std::tie(b.at, b.tile, b.sequence, b.stage, b.to);
 }
 
 std::size_t wide(integer x) {
     return static_cast<std::size_t>(x);
+}
+
+constexpr std::uint64_t disorder = 4096; // memory clocks by which a request may be earlier than another
+/// In core cycles, and with room for what else comes out of order.
+std::uint64_t disorder_cycles(const Config& c) {
+    return disorder / 2 * wide(c.memory.clock_ps) / wide(c.chip.clock_ps);
 }
 
 /// Requests of one exit that wait until it is known when an MSHR or a place in the buffer is free, in the
@@ -42,7 +49,8 @@ Beyond::Beyond(const Config& config, Reply reply)
     : exits_(wide(config.chip.cores / config.cores_sharing(config.tile_levels() - 1))),
       tiles_sharing_(wide(config.cores_sharing(config.cache_levels() - 1) / config.chip.cores)),
       line_bytes_(static_cast<std::uint32_t>(config.cache(config.tile_levels() - 1).line_bytes)),
-      memory_(config, 4096), config_(config), reply_(std::move(reply)) {
+      memory_(config, disorder), ways_(config, served_, disorder_cycles(config)), config_(config),
+      reply_(std::move(reply)) {
     const CacheConfig& last = config.cache(config.tile_levels() - 1);
     ports_.assign(wide(config.chip.tiles) * exits_,
                   Port{OrderedPool(wide(last.mshrs)), OrderedPool(wide(last.write_back_buffer)), {}});
@@ -55,7 +63,8 @@ void Beyond::connect(std::deque<Tile>& tiles) {
         return;
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         if (t % tiles_sharing_ == 0)
-            caches_.emplace_back(config_, level, served_, site_, memory_, tickets_, tiles[t].attribution);
+            caches_.emplace_back(config_, level, static_cast<std::uint32_t>(caches_.size()), served_, site_,
+                                 memory_, ways_, tickets_, tiles[t].attribution);
         for (Cache& upper : tiles[t].caches[level - 1])
             caches_.back().cache.add_above(upper);
     }
@@ -102,7 +111,8 @@ void Beyond::serve_from_memory(Request r) {
             r.at = buffer.at;
             return push(r);
         }
-        port.write_backs.hold(buffer.entry, memory_.write(r.write, r.at));
+        port.write_backs.hold(buffer.entry,
+                              memory_.write(r.write, ways_.write(asker(r), r.write, r.bytes, r.at)));
         r.write = Request::nothing;
     }
     if (r.read == Request::nothing)
@@ -112,7 +122,8 @@ void Beyond::serve_from_memory(Request r) {
         r.at = mshr.at;
         return push(r);
     }
-    cycle ready = memory_.read(r.read, r.at);
+    cycle ready = memory_.read(r.read, ways_.ask(asker(r), r.read, r.at));
+    ready = ways_.answer(asker(r), r.read, line_bytes_, ready);
     port.mshrs.hold(mshr.entry, ready);
     reply_(r.tile, r.ticket, {ready, Cause::memory});
 }
@@ -129,16 +140,25 @@ void Beyond::serve_from_cache(Request r) {
         read(r);
 }
 
-/// A line is written elsewhere, or dead.
-void Beyond::tell(const Request& r) {
-    SharedCache& own = cache_of(r);
+/// A line is written elsewhere, or dead: word of it goes to each cache that may have it, and acts there.
+void Beyond::tell(Request r) {
+    const std::size_t own = r.tile / tiles_sharing_;
+    if (r.stage == Request::arrives) {
+        r.stage = Request::writes;
+        const cycle sent = r.at;
+        for (r.to = 0; r.to < caches_.size(); ++r.to)
+            if ((r.to == own) == (r.kind == Request::discard)) {
+                r.at = ways_.tell(r.tile, r.to, r.write, sent);
+                push(r);
+            }
+        return;
+    }
+    SharedCache& shared = caches_[r.to];
+    shared.charge((*tiles_)[r.tile].attribution);
     if (r.kind == Request::discard)
-        return own.cache.discard(r.write);
-    for (SharedCache& shared : caches_)
-        if (&shared != &own) {
-            shared.charge((*tiles_)[r.tile].attribution);
-            shared.cache.invalidate(r.write, r.at + own.cache.latency(), r.column);
-        }
+        shared.cache.discard(r.write);
+    else
+        shared.cache.invalidate(r.write, r.at + shared.cache.latency(), r.column);
 }
 
 void Beyond::arrive(Request r) {
@@ -157,7 +177,7 @@ void Beyond::arrive(Request r) {
         w.read = Request::nothing;
         w.mshr = buffer.entry;
         w.stage = Request::writes;
-        w.at = cache.book({r.write, r.bytes, r.at, r.column});
+        w.at = cache.book({r.write, r.bytes, ways_.write(asker(r), r.write, r.bytes, r.at), r.column});
         push(w);
         r.write = Request::nothing;
     }
@@ -173,7 +193,7 @@ void Beyond::arrive(Request r) {
     port.mshrs.hold_open(mshr.entry);
     r.mshr = mshr.entry;
     r.stage = Request::reads;
-    r.at = cache.book({r.read, line_bytes_, r.at, r.column});
+    r.at = cache.book({r.read, line_bytes_, ways_.ask(asker(r), r.read, r.at), r.column});
     push(r);
 }
 
@@ -196,6 +216,7 @@ void Beyond::read(Request r) {
         r.at = answer.ready;
         return push(r);
     }
+    answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
     Port& port = port_of(r);
     port.mshrs.close(r.mshr, answer.ready);
     reply_(r.tile, r.ticket, answer);

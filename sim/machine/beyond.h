@@ -1,15 +1,17 @@
 // What lies beyond the tiles: the MSHRs and write-back buffers of the tiles' last caches, a level of caches
 // that tiles share, if there is one, and memory. Requests are served between windows, in the order (cycle,
-// tile, sequence). Where tiles share a cache, a request that arrives takes its bank, in this order, and acts
-// when the bank begins with it. What an inclusive cache drops there leaves the tiles at the end of the
-// window, in which they may still have used it. Not modelled: that a bank stands still while a miss waits for
-// an MSHR.
+// tile, sequence). Requests go over the network (sim/network/ways.h), as do answers; an MSHR is held until
+// the answer is back, a place in the buffer until what is written has arrived and been taken. Where tiles
+// share a cache, a request that arrives takes its bank, in this order, and acts when the bank begins with it.
+// What an inclusive cache drops there leaves the tiles at the end of the window, in which they may still have
+// used it. Not modelled: that a bank stands still while a miss waits for an MSHR.
 #pragma once
 
 #include "sim/memory/below.h"
 #include "sim/memory/cache.h"
 #include "sim/memory/memory.h"
 #include "sim/memory/pool.h"
+#include "sim/network/ways.h"
 
 #include <deque>
 #include <functional>
@@ -22,29 +24,35 @@ struct Tile;
 /// The memory as a cache beyond the tiles sees it.
 class MemoryPort final : public Below {
 public:
-    explicit MemoryPort(Memory& memory) : memory_(memory) {}
+    MemoryPort(Memory& memory, Ways& ways, std::uint32_t cache)
+        : memory_(memory), ways_(ways), cache_{Ways::Asker::cache, cache} {}
     /// Whose traffic follows.
     void charge(Attribution& attribution) { attribution_ = &attribution; }
 
     Answer read(const Access& a) override {
         ++attribution_->cell(a.address, a.column).memory_reads;
-        return {memory_.read(a.address, a.at), Cause::memory};
+        const cycle ready = memory_.read(a.address, ways_.ask(cache_, a.address, a.at));
+        return {ways_.answer(cache_, a.address, a.bytes, ready), Cause::memory};
     }
     Answer write(const Access& a) override {
         ++attribution_->cell(a.address, a.column).memory_writes;
-        return {memory_.write(a.address, a.at), Cause::memory};
+        return {memory_.write(a.address, ways_.write(cache_, a.address, a.bytes, a.at)), Cause::memory};
     }
 
 private:
     Memory& memory_;
+    Ways& ways_;
+    Ways::Asker cache_;
     Attribution* attribution_ = nullptr;
 };
 
 /// A cache of several tiles.
 struct SharedCache {
-    SharedCache(const Config& config, unsigned level, const cycle& earliest, const SiteAtHand& site,
-                Memory& memory, Tickets& tickets, Attribution& attribution)
-        : port(memory), cache(config, level, false, earliest, site, port, tickets, attribution) {
+    SharedCache(const Config& config, unsigned level, std::uint32_t number, const cycle& earliest,
+                const SiteAtHand& site, Memory& memory, Ways& ways, Tickets& tickets,
+                Attribution& attribution)
+        : port(memory, ways, number),
+          cache(config, level, false, earliest, site, port, tickets, attribution) {
         port.charge(attribution);
     }
     void charge(Attribution& attribution) {
@@ -70,7 +78,7 @@ public:
     void serve(cycle end);
     static constexpr cycle everything = ~cycle{0};
     /// Memory writes what it has queued; returns the cycle from which on it and all requests are at rest.
-    cycle drain() { return std::max(served_, memory_.drain()); }
+    cycle drain() { return std::max({served_, ways_.network().quiet(), memory_.drain()}); }
     /// What follows counts by itself from this memory clock on.
     void count_from(std::uint64_t clock) { memory_.count_refreshes(clock); }
     /// The frame is over: dirty lines that `keep` says so of are written back.
@@ -83,6 +91,7 @@ public:
     /// When the earliest request waits to be served; ~0: none does.
     cycle next() const { return waiting_.empty() ? ~cycle{0} : waiting_.front().at; }
     const Memory& memory() const { return memory_; }
+    const Network& network() const { return ways_.network(); }
     const std::deque<SharedCache>& caches() const { return caches_; }
     std::uint64_t misplaced() const;
 
@@ -98,7 +107,8 @@ private:
     void serve_from_memory(Request r);
     void serve_from_cache(Request r);
     void arrive(Request r);
-    void tell(const Request& r);
+    void tell(Request r);
+    Ways::Asker asker(const Request& r) const { return {Ways::Asker::tile, r.tile}; }
     void write(Request r);
     void read(Request r);
 
@@ -108,6 +118,7 @@ private:
     std::vector<Request> waiting_;      // a heap, earliest first
     cycle served_ = 0;
     Memory memory_;
+    Ways ways_;
     Config config_;
     Tickets tickets_; // none is ever open
     SiteAtHand site_;

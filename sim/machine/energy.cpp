@@ -68,6 +68,8 @@ std::vector<EnergyPart> energy_parts(const Report& r) {
         events(lower[level], c.reads + c.writes + c.fills + c.write_backs, e.l2_line_pj,
                "accessed, filled and written back; charged as those of the L2");
     }
+    if (!r.network.ideal())
+        events("network", r.network.counters.byte_hops, e.network_pj, "bytes times hops");
     events("memory rows", r.memory.activates, m.activate_pj, "opened and closed");
     events("memory reads", r.memory.read_bursts, m.read_pj, "bursts");
     events("memory writes", r.memory.write_bursts, m.write_pj, "bursts");

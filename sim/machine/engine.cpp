@@ -442,6 +442,7 @@ Report Engine::report() const {
         attributions.push_back(&tile.attribution);
     r.traffic = Attribution::traffic(attributions);
     r.touched = lines_.touched();
+    r.network = beyond_.network().report();
     r.memory = beyond_.memory().counters();
     r.memory_by_rank = beyond_.memory().rank_counters();
     r.work.resize(labels_.columns());
@@ -481,7 +482,8 @@ Report Engine::report() const {
         t.stacks = h.stacks;
         r.threads.push_back(std::move(t));
     }
-    r.drained = std::max(r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)));
+    r.drained = std::max({r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)),
+                          beyond_.network().quiet()});
     for (const Tile& tile : tiles_)
         for (unsigned level = 1; level < tile_levels_; ++level)
             for (const Cache& cache : tile.caches[level])

@@ -1,7 +1,7 @@
 // One run: all state of the machine, and what the timing port does with it. Time advances in windows: every
 // tile runs to the window's end by itself; what left it is served then, in order of time. Not modelled:
 // instruction fetch, TLBs, order between a load and an earlier store to the same place inside
-// an issue window, coherence beyond shared words, the network between tiles and memory.
+// an issue window, coherence beyond shared words.
 #pragma once
 
 #include "isa/services.h"

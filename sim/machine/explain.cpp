@@ -89,6 +89,13 @@ Explanations make() {
     add_counters(out, "l2_by_cache[]", cache_counters); // where a tile has several
     for (unsigned level = 2; level < most_levels; ++level)
         add_level(out, fmt::format("l{}", level + 1), fmt::format("l{}_by_cache", level + 1), cache_counters);
+    add_counters(out, "network", network_counters); // all of it absent where the network is ideal
+    add("network.busiest_link", "",
+        "the link that moved most: of a unit, from it or to it, or between routers");
+    add("network.busiest_utilisation", "", "of the drained cycles, those in which that link moved a flit");
+    add("network.mean_utilisation", "", "the same of all links together");
+    add("network.links[].link", "", "its name");
+    add("network.links[].flits", "", "that it moved, one a cycle at most");
     add_level(out, "memory", "memory_by_rank", memory_counters);
     add("memory.last_clock", "memory clocks", "in which the last burst ended");
     add("bandwidth.*.achieved_gb_s", "GB/s", "moved by all of the level's parts, over the run");

@@ -152,6 +152,17 @@ json instructions_by_class(const Report& r) {
     return out;
 }
 
+json network(const Report& r) {
+    json out = counters(r.network.counters, network_counters);
+    const LinkUse& most = r.network.busiest();
+    out["busiest_link"] = most.link;
+    out["busiest_utilisation"] = ratio(most.flits, r.drained);
+    out["mean_utilisation"] = ratio(r.network.counters.link_flits, r.network.links.size() * r.drained);
+    for (const LinkUse& l : r.network.links)
+        out["links"].push_back({{"link", l.link}, {"flits", l.flits}});
+    return out;
+}
+
 json energy(const Report& r) {
     const std::vector<EnergyPart> parts = energy_parts(r);
     const EnergyTotal all = total(r, parts);
@@ -194,6 +205,8 @@ std::string print_json(const Report& r, bool with_host) {
         for (const CacheCounters& c : r.caches(level))
             out[fmt::format("{}_by_{}", name, by)].push_back(counters(c, cache_counters));
     }
+    if (!r.network.ideal())
+        out["network"] = network(r);
     out["memory"] = counters(r.memory, memory_counters);
     out["memory"]["last_clock"] = r.memory.last_clock;
     for (const MemoryCounters& c : r.memory_by_rank)

@@ -2,6 +2,7 @@
 #include "sim/machine/limits.h"
 #include "sim/machine/report.h"
 #include "sim/machine/windows.h"
+#include "sim/network/topology.h"
 
 #include <fmt/core.h>
 
@@ -169,6 +170,55 @@ void check_levels(const Report& r) {
     check_memory(r);
 }
 
+/// Every line that leaves a tile, or a cache beyond the tiles, is a message, and every message is on its
+/// links.
+void check_network(const Report& r) {
+    const NetworkCounters& n = r.network.counters;
+    equal("an ideal network has no links", r.config.network.ideal() ? 1 : 0, r.network.ideal() ? 1 : 0);
+    if (r.network.ideal())
+        return equal("messages of an ideal network", n.messages(), 0);
+    const NetworkConfig& c = r.config.network;
+    const auto wide = [](integer x) { return static_cast<std::uint64_t>(x); };
+    const unsigned last = r.config.tile_levels() - 1, levels = r.config.cache_levels();
+    const CacheCounters sent = r.cache_total(last);
+    const bool beyond = last + 1 != levels;
+    const std::uint64_t from_memory = beyond ? r.memory.reads : 0, to_memory = beyond ? r.memory.writes : 0;
+    equal("requests = lines that left tiles and caches beyond them read", n.requests,
+          sent.fills + from_memory);
+    equal("replies = requests", n.replies, n.requests);
+    equal("messages that write = write-backs + writes through of tiles and caches beyond them", n.writes,
+          sent.write_backs + sent.written_through + to_memory);
+    equal("bytes = data + headers", n.bytes,
+          n.data_bytes + (n.requests + n.words) * wide(c.request_bytes) + n.replies * wide(c.reply_bytes) +
+              n.writes * wide(c.write_bytes));
+    const std::uint64_t read = sent.fills * wide(r.config.cache(last).line_bytes) +
+                               from_memory * wide(r.config.last_cache().line_bytes);
+    at_most("lines read <= data", read, n.data_bytes);
+    at_most("data <= lines read and written", n.data_bytes,
+            read + n.writes * wide(r.config.last_cache().line_bytes));
+    at_most("bytes <= flits x width", n.bytes, n.flits * wide(c.link_bytes));
+    at_most("flits are full but for a message's last", n.flits * wide(c.link_bytes),
+            n.bytes + n.messages() * wide(c.link_bytes - 1));
+    equal("cycles of messages = queued + hops + flits", n.latency_cycles,
+          n.queue_cycles + n.hops * wide(c.hop_cycles) + n.flits);
+    const std::size_t units = Topology(r.config).units();
+    std::uint64_t left = 0, arrived = 0, all = 0;
+    for (std::size_t i = 0; i < r.network.links.size(); ++i) {
+        const std::uint64_t flits = r.network.links[i].flits;
+        (i < units ? left : i < 2 * units ? arrived : all) += flits;
+        at_most("flits of a link <= cycles", flits, r.drained);
+    }
+    equal("flits leave a unit", left, n.flits);
+    equal("flits arrive at a unit", arrived, n.flits);
+    equal("flits of all links = sum over messages", left + arrived + all, n.link_flits);
+    const bool crossbar = c.topology == "crossbar";
+    equal("ways through a crossbar = messages", crossbar ? n.hops : 0, crossbar ? n.messages() : 0);
+    const std::uint64_t crossed = (crossbar ? n.flits : all) * wide(c.link_bytes);
+    at_most("bytes x hops <= flits of links between routers x width", n.byte_hops, crossed);
+    at_most("these are full but for a message's last", crossed,
+            n.byte_hops + n.hops * wide(c.link_bytes - 1));
+}
+
 /// Noise: 0 or 1 cycle for each line that an L1 asks for.
 void check_jitter(const Report& r, const CacheCounters& l1) {
     equal("lines that may be delayed = L1 fills", r.jitter.lines, r.config.sim.jitter != 0 ? l1.fills : 0);
@@ -276,6 +326,7 @@ void check_laws(const Report& r) {
     check_use(r, l1);
     check_stacks(r);
     check_buffers(r, l1);
+    check_network(r);
     check_jitter(r, l1);
     check_intervals(r, l1, r.l2_total());
     if (exact(r.config))

@@ -69,6 +69,9 @@ std::vector<Limit> limits(const Report& r) {
         out.insert(out.begin() + 1 + level,
                    {banks[level], busiest(r.caches(level)) / wide(c.cache(level).banks),
                     "the cache of the level that was accessed most"});
+    if (!r.network.ideal())
+        out.insert(out.begin() + 1 + c.tile_levels(),
+                   {"network", r.network.busiest().flits, "the link that moved most, a flit a cycle"});
     std::uint64_t port = 0;
     for (const auto& ports : r.port_instructions)
         for (std::uint64_t instructions : ports)

@@ -6,6 +6,7 @@
 #include "sim/core/stalls.h"
 #include "sim/memory/counters.h"
 #include "sim/memory/traffic.h"
+#include "sim/network/counters.h"
 
 #include <array>
 #include <string>
@@ -124,6 +125,7 @@ struct Report {
     std::vector<CacheCounters> l2, l3, l4, l5;                 // by cache, tile after tile
     std::uint64_t misplaced_lines = 0; // against inclusive and exclusive levels, before the frame's end
     JitterReport jitter;
+    NetworkReport network;
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<TrafficRow> traffic;            // where there was any

@@ -125,11 +125,29 @@ void memory(std::string& out, const Report& r) {
                        m.batches, m.turnarounds, m.rank_switches, m.refreshes);
 }
 
+/// Nothing where it is ideal.
+void network(std::string& out, const Report& r) {
+    if (r.network.ideal())
+        return;
+    const NetworkCounters& n = r.network.counters;
+    out += fmt::format(
+        "network  {} messages ({} requests, {} replies, {} writes, {} words) of {} bytes, {}\n", n.messages(),
+        n.requests, n.replies, n.writes, n.words, n.bytes, r.config.network.topology);
+    out += fmt::format("         a message: {:.2f} hops, {:.1f} cycles, of which {:.1f} queued\n",
+                       ratio(n.hops, n.messages()), ratio(n.latency_cycles, n.messages()),
+                       ratio(n.queue_cycles, n.messages()));
+    const LinkUse& most = r.network.busiest();
+    out += fmt::format("         links in use: {:.1f} % of the time, the busiest ({}) {:.1f} %\n",
+                       100 * ratio(n.link_flits, r.network.links.size() * r.drained), most.link,
+                       100 * ratio(most.flits, r.drained));
+}
+
 void levels(std::string& out, const Report& r) {
     out += "\ncaches          reads       writes         hits       misses  miss rate  write-backs\n";
     level(out, "L1", r.l1_total());
     for (unsigned i = 1; i < r.config.cache_levels(); ++i)
         level(out, fmt::format("L{}", i + 1).c_str(), r.cache_total(i));
+    network(out, r);
     memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";
     for (const Bandwidth& b : bandwidths(r))

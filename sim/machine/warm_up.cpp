@@ -60,6 +60,9 @@ void take_away(Report& r, const Report& warm) {
         reduce(r.caches(level), warm.caches(level), cache_counters);
     r.jitter.lines -= warm.jitter.lines;
     r.jitter.cycles -= warm.jitter.cycles;
+    reduce(r.network.counters, warm.network.counters, network_counters);
+    for (std::size_t i = 0; i < r.network.links.size(); ++i)
+        r.network.links[i].flits -= warm.network.links[i].flits;
     reduce(r.memory, warm.memory, memory_counters);
     reduce(r.memory_by_rank, warm.memory_by_rank, memory_counters);
     const std::uint64_t begin = to_memory_clocks(r.config, warm.cycles);

@@ -1,6 +1,7 @@
 #include "sim/machine/windows.h"
 
 #include "sim/memory/memory.h"
+#include "sim/network/ways.h"
 
 #include <algorithm>
 
@@ -23,7 +24,10 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
 
 std::uint64_t shortest_answer(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
-    return c.beyond_tiles(last) ? wide(c.cache(last).latency) : Memory::shortest_read(c);
+    const Ways::Shortest way = Ways::shortest(c);
+    // A cache's bank takes its turn when the request is there: only what follows can be counted on.
+    return c.beyond_tiles(last) ? wide(c.cache(last).latency) + way.back
+                                : way.there + Memory::shortest_read(c) + way.back;
 }
 
 std::uint64_t window_cycles(const Config& c) {

@@ -65,6 +65,7 @@ struct Request {
     /// MSHRs.
     enum Stage : std::uint8_t { arrives, writes, reads } stage = arrives;
     std::size_t mshr = 0;
+    std::uint32_t to = 0; // cache beyond the tiles that word of a line goes to
 };
 
 } // namespace sim

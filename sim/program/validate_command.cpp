@@ -167,7 +167,8 @@ std::vector<ValidationRow> elsewhere() {
          "test_sim, Core, Stores, Pairing", State::tests},
         {"coherence of shared words", "hand-derived cycles", "2 %", "test_sim, Sharing and Tiles",
          State::tests},
-        {"network", "ping-pong, all-to-all, bisection", "2 %", "there is no network model", State::unbuilt},
+        {"network: what tiles and memory do over it", "laws, hand-derived cycles, other host threads",
+         "exact", "test_sim, Network", State::tests},
         {"order: another tie-break among equal times", "the same run", "bit-equal", "", State::unbuilt},
         {"order: the other compiler", "the same run", "bit-equal", "this program is one compiler's",
          State::tests},
@@ -210,6 +211,7 @@ int ValidateCommand::run() const {
     };
     fmt::print("{:<10} {:<52} {:<14} {}\n", "result", "what", "bar", "measured");
     add(check_core());
+    add(check_network());
     add(check_dram());
     std::vector<ValidationRow> frames;
     FrameChecks().run(frames);

@@ -4,6 +4,7 @@
 #include "sim/memory/dram_bounds.h"
 #include "sim/memory/dram_load.h"
 #include "sim/validation/core_forms.h"
+#include "sim/validation/network_forms.h"
 
 #include <fmt/format.h>
 
@@ -60,6 +61,23 @@ std::vector<ValidationRow> check_core() {
                         fmt::format("{} for {}", r.cycles, form.cycles),
                         right ? ValidationRow::State::passed : ValidationRow::State::missed});
     }
+    return rows;
+}
+
+std::vector<ValidationRow> check_network() {
+    std::vector<ValidationRow> rows;
+    for (const NetworkPing& p : network_pings()) {
+        std::size_t wrong = 0;
+        std::string first;
+        for (std::size_t tile = 0; tile < p.expected.size(); ++tile)
+            if (p.measured[tile] != p.expected[tile] && wrong++ == 0)
+                first = fmt::format("tile {}: {} cycles for {}", tile, p.measured[tile], p.expected[tile]);
+        rows.push_back(exact("network: ping-pong with memory, " + p.name,
+                             "hops x cycles a hop + flits, both ways", p.expected.size(), wrong, first));
+    }
+    for (const NetworkLoad& l : network_loads())
+        rows.push_back(compare("network: " + l.name, "closed form: " + l.by, static_cast<double>(l.run()),
+                               static_cast<double>(l.expected), 0.02, "cycles"));
     return rows;
 }
 

@@ -32,6 +32,7 @@ void add_figures(std::set<std::string>& out, const char* share) {
         level->share = level == &c.l5 ? "chip" : "tile";
     }
     c.chip.tiles = 2;
+    c.network.topology = "mesh";
     c.core.issue_width = 2;
     c.core.pairing = "any | any";
     c.core.shared_classes = "divide";

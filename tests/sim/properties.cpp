@@ -74,7 +74,7 @@ Config random_machine(std::mt19937& random) {
     c.l2.bank_bytes = power(0, 7);
     c.l2.mshrs = pick(1, 32);
     c.l2.write_back_buffer = pick(1, 8);
-    c.chip.tiles = pick(1, 3);
+    c.chip.tiles = pick(0, 2) == 0 ? pick(4, 9) : pick(1, 3);
     if (pick(0, 2) == 0 && c.chip.cores % 2 == 0)
         c.l2.share = pick(0, 1) == 0 ? "core" : "2";
     unsigned levels = 2;
@@ -114,6 +114,12 @@ Config random_machine(std::mt19937& random) {
             for (; upper <= level; ++upper)
                 std::array<CacheConfig*, 5>{&c.l1, &c.l2, &c.l3, &c.l4, &c.l5}[upper]->prefetcher = "none";
     const integer line_bytes = c.last_cache().line_bytes;
+    c.network.topology = std::array{"ideal", "crossbar", "ring", "mesh"}[random() % 4];
+    c.network.link_bytes = pick(1, 100);
+    c.network.hop_cycles = pick(0, 20);
+    c.network.request_bytes = pick(1, 40);
+    c.network.reply_bytes = pick(0, 40);
+    c.network.write_bytes = pick(0, 40);
     c.memory.clock_ps = pick(200, 3000);
     c.memory.channels = power(0, 3);
     c.memory.ranks = power(0, 2);

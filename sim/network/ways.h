@@ -1,0 +1,68 @@
+// The ways of requests: from a tile to the bank that answers for a line, of the cache beyond the tiles that
+// it shares, or to the line's memory channel; from such a cache to the channel; and back. With
+// network.topology = "ideal" they take no time and nothing is counted. A line in several channels goes by
+// the one of its first burst. Requests reach a channel or a bank in the order in which they were sent, at the
+// cycles at which they come.
+// Not modelled: acknowledgements of writes; what an inclusive cache beyond the tiles recalls from them; words
+// that workers share, whose way is coherence.remote_cycles.
+#pragma once
+
+#include "sim/memory/dram_mapping.h"
+#include "sim/network/network.h"
+
+namespace sim {
+
+class Ways {
+public:
+    /// Who asks: a tile, or a cache beyond the tiles, by number.
+    struct Asker {
+        enum Kind : std::uint8_t { tile, cache } kind;
+        std::uint32_t number;
+    };
+    /// Core cycles that no way between a tile and what it asks is shorter than: there, and back with a line.
+    struct Shortest {
+        std::uint64_t there = 0, back = 0;
+    };
+
+    /// Nobody sends before `earliest`. Nothing reaches memory more than `disorder` core cycles before what
+    /// reached it earlier: it waits until then.
+    Ways(const Config& config, const cycle& earliest, std::uint64_t disorder);
+
+    bool ideal() const { return ideal_; }
+    /// A message that leaves at `t` for what answers the asker; returns when it is there. Of a read:
+    cycle ask(Asker who, std::uint64_t address, cycle t) {
+        return ideal_ ? t : reach(Network::Message::request, who, address, 0, t);
+    }
+    /// Of a write of so many bytes.
+    cycle write(Asker who, std::uint64_t address, std::uint32_t bytes, cycle t) {
+        return ideal_ ? t : reach(Network::Message::write, who, address, bytes, t);
+    }
+    /// The line that was read comes back.
+    cycle answer(Asker who, std::uint64_t address, std::uint32_t bytes, cycle t) {
+        return ideal_ ? t
+                      : network_.send(Network::Message::reply, target(who, address), source(who, address),
+                                      bytes, t);
+    }
+    /// A tile's word about a line to a cache beyond the tiles.
+    cycle tell(std::uint32_t tile, std::uint32_t cache, std::uint64_t address, cycle t) {
+        return ideal_ ? t : network_.send(Network::Message::word, tile, bank(cache, address), 0, t);
+    }
+    const Network& network() const { return network_; }
+
+    static Shortest shortest(const Config& config);
+
+private:
+    cycle reach(Network::Message kind, Asker who, std::uint64_t address, std::uint32_t bytes, cycle t);
+    std::size_t bank(std::size_t cache, std::uint64_t address) const;
+    std::size_t source(Asker who, std::uint64_t address) const;
+    std::size_t target(Asker who, std::uint64_t address) const;
+
+    bool ideal_;
+    Network network_;
+    DramMapping mapping_;
+    unsigned line_shift_; // of the last cache
+    std::uint64_t line_mask_;
+    cycle disorder_, latest_ = 0;
+};
+
+} // namespace sim
