@@ -38,8 +38,8 @@ void fill_pass(int a, int b, int pass, std::int32_t* out) {
     *out = count;
 }
 
-/// What the last pass, as filled, does to vertices as they lie (layout.h).
-void fill_rows(int a, const std::int32_t* pass, std::int32_t* out) {
+/// What a pass, as filled, does to vertices as they lie (layout.h).
+void fill_rows(int a, int step, const std::int32_t* pass, std::int32_t* out) {
     const int width = (1 << a) + 1;
     std::fill_n(out, row_vertices, blend_none);
     std::fill_n(out + row_vertices, row_vertices, -1);
@@ -47,7 +47,7 @@ void fill_rows(int a, const std::int32_t* pass, std::int32_t* out) {
     for (int n = 0; n < *pass; ++n) {
         const int vertex = list[n];
         const int along = vertex - list[pass_vertices + n];
-        out[vertex] = along == 1 ? blend_along_u : along == width ? blend_along_v : blend_diagonal;
+        out[vertex] = along == step ? blend_along_u : along == step * width ? blend_along_v : blend_diagonal;
         out[row_vertices + vertex] = list[3 * pass_vertices + n];
     }
 }
@@ -57,9 +57,11 @@ void fill_rows(int a, const std::int32_t* pass, std::int32_t* out) {
 void fill_blend_table(std::int32_t* table) {
     for (int a = 0; a <= block_log2; ++a)
         for (int b = 0; b <= block_log2; ++b) {
-            for (int pass = 0; pass < blend_passes; ++pass)
-                fill_pass(a, b, pass, table + blend_pass(a, b, pass));
-            fill_rows(a, table + blend_pass(a, b, blend_passes - 1), table + blend_rows(a, b));
+            for (int pass = 0; pass < blend_passes; ++pass) {
+                std::int32_t* list = table + blend_pass(a, b, pass);
+                fill_pass(a, b, pass, list);
+                fill_rows(a, 1 << (block_log2 - 1 - pass), list, table + blend_rows(a, b, pass));
+            }
         }
 }
 

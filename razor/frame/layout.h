@@ -309,7 +309,8 @@ struct ItemList {
     std::int32_t finer; // leaves: the node for rays that this level is too coarse for; -1: it is fine enough
                         // for all
     float coarse;       // leaves: the target edge length from which on it is fine enough
-    std::int32_t padding[4];
+    float coarsest;     // leaves: what is finer is bounded for target edge lengths up to this
+    std::int32_t padding[3];
     float low[3], high[3]; // leaves: of all that is finer or can move, scene coordinates
     std::int32_t padding2[10];
 };
@@ -364,14 +365,15 @@ inline constexpr int pass_words = line_bytes / 4 + 4 * pass_vertices;
 constexpr int blend_pass(int log2_u, int log2_v, int pass) {
     return ((log2_u * (block_log2 + 1) + log2_v) * blend_passes + pass) * pass_words;
 }
-// Most are in the last pass: for that, all vertices of the block as they lie in it, with what their parents
-// are (BlendParents) and their sides.
+// Beside the lists, for each pass all vertices of the block as they lie in it, with what their parents are
+// (BlendParents) and their sides: nothing is gathered then.
 enum BlendParents : std::int32_t { blend_none = 0, blend_along_u = 1, blend_along_v = 2, blend_diagonal = 3 };
 inline constexpr int row_vertices = 96; // a block's at most, in whole lines
-constexpr int blend_rows(int log2_u, int log2_v) {
-    return blend_pass(block_log2 + 1, 0, 0) + (log2_u * (block_log2 + 1) + log2_v) * 2 * row_vertices;
+constexpr int blend_rows(int log2_u, int log2_v, int pass) {
+    return blend_pass(block_log2 + 1, 0, 0) +
+           ((log2_u * (block_log2 + 1) + log2_v) * blend_passes + pass) * 2 * row_vertices;
 }
-inline constexpr int blend_table_words = blend_rows(block_log2 + 1, 0);
+inline constexpr int blend_table_words = blend_rows(block_log2 + 1, 0, 0);
 
 /// By what it is decided which level a ray sees of a block: its own box and those beside it in a leaf, its
 /// patch's (razor/kernels/patch_levels.h), or how far along the ray it is (razor/kernels/paper_levels.h).

@@ -99,50 +99,40 @@ inline Births births_in(pointer<BlockHeader> block) {
     return b;
 }
 
-/// The vertices of one pass, one a lane.
-inline void blend_pass_of(const Field& f, const Births& births, sint birth, pointer<std::int32_t> pass,
-                          pointer<float> anchors, pointer<float> out, sint stride) {
-    pointer<float> x = out + block_header_words;
-    sint n = load(pass);
-    for (sint from = 0; branch(from < n); from += isa::width) {
-        vmask m = first_lanes(n - from);
-        BlendStep v = load_step(pass, from, m);
-        vvec anchor = gather_vertex(anchors, stride, v.vertex, m);
-        vvec a = gather_vertex(x, stride, v.one, m);
-        vvec b = gather_vertex(x, stride, v.other, m);
-        vint born = births.on_sides(birth, v.side);
-        vfloat weight = weight_of(target_at(f, anchor), born);
-        vvec q = blend_vertex(weight, anchor, a, b);
-        scatter_vec(x, stride, v.vertex, q, m);
-        scatter(out + blend_weights, v.vertex, weight, m);
-    }
-}
-
-/// Both parents of vertices as they lie, along u, v, or the diagonal; beyond them whatever is in the slot.
-inline vvec load_parents(pointer<float> x, sint stride, sint width, int way, const vmask& along_u,
+/// Both parents of vertices as they lie, `along_u` words apart along u, and so on; beyond them whatever is in
+/// the slot.
+struct ParentSteps {
+    sint along_u, along_v, diagonal;
+};
+inline vvec load_parents(pointer<float> x, sint stride, const ParentSteps& to, const vmask& along_u,
                          const vmask& along_v) {
     vvec p;
     for (int k = 0; k < 3; ++k) {
-        vfloat q = load_vector(x + (width + 1) * way);
-        vfloat v = load_vector(x + width * way);
+        vfloat q = load_vector(x + to.diagonal);
+        vfloat v = load_vector(x + to.along_v);
         q = select(along_v, v, q);
-        vfloat u = load_vector(x + way);
+        vfloat u = load_vector(x + to.along_u);
         (k == 0 ? p.x : k == 1 ? p.y : p.z) = select(along_u, u, q);
         x = x + stride;
     }
     return p;
 }
 
-/// The same for the last pass, which has most vertices: all of the block as they lie, so that nothing is
+/// The vertices of one pass, born at `birth` inside: all of the block as they lie, so that nothing is
 /// gathered.
-inline void blend_rows_of(const Field& f, const Births& births, pointer<std::int32_t> rows, sint quads_u,
-                          pointer<float> anchors, pointer<float> out, sint stride) {
-    sint width = quads_u + 1;
+[[gnu::noinline]] inline void blend_pass_of(const Field& f, const Births& births, sint birth, sint step,
+                                            pointer<std::int32_t> rows, sint quads_u, pointer<float> anchors,
+                                            pointer<float> out, sint stride) {
+    sint down = step * (quads_u + 1);
+    ParentSteps after{step, down, down + step};
+    ParentSteps before{-step, -down, -after.diagonal};
     for (sint from = 0; branch(from < stride); from += isa::width) {
         vmask m = first_lanes(stride - from);
         vint parents = load_vector(rows + from, m);
-        vint side = load_vector(rows + (from + row_vertices), m);
         m = m & (parents != vint(blend_none));
+        if (branch(none(m)))
+            continue;
+        vint side = load_vector(rows + (from + row_vertices), m);
         vmask along_u = parents == vint(blend_along_u);
         vmask along_v = parents == vint(blend_along_v);
         vvec anchor;
@@ -151,9 +141,9 @@ inline void blend_rows_of(const Field& f, const Births& births, pointer<std::int
         anchor.y = load_vector(at + stride, m);
         anchor.z = load_vector(at + stride * 2, m);
         pointer<float> x = out + block_header_words + from;
-        vvec a = load_parents(x, stride, width, -1, along_u, along_v);
-        vvec b = load_parents(x, stride, width, 1, along_u, along_v);
-        vint born = births.on_sides(births.inside, side);
+        vvec a = load_parents(x, stride, before, along_u, along_v);
+        vvec b = load_parents(x, stride, after, along_u, along_v);
+        vint born = births.on_sides(birth, side);
         vfloat weight = weight_of(target_at(f, anchor), born);
         vvec q = blend_vertex(weight, anchor, a, b);
         store_vector(x, q.x, m);
@@ -192,16 +182,16 @@ inline void blend_vertices(const Context& c, const Field& f, sint line, pointer<
     }
     Births births = births_in(block);
     sfloat most = largest_target(f, block);
-    pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
+    pointer<std::int32_t> rows = pass_rows(c, quads_u, quads_v);
     // Where nothing moves, anchors it is.
-    for (int p = 0; p < blend_passes - 1; ++p) {
+    for (int p = 0; p < blend_passes; ++p) {
+        int step = 1 << (block_log2 - 1 - p);
         sint birth = births.inside + (block_log2 - 1 - p);
-        if (branch(most > moving_from(birth + births.earliest)))
-            blend_pass_of(f, births, birth, pass, anchors, out, stride);
-        pass = pass + pass_words;
+        sbool moves = most > moving_from(birth + births.earliest);
+        if (branch(moves & (max(quads_u, quads_v) > step)))
+            blend_pass_of(f, births, birth, sint(step), rows, quads_u, anchors, out, stride);
+        rows = rows + 2 * row_vertices;
     }
-    if (branch(most > moving_from(births.inside + births.earliest)))
-        blend_rows_of(f, births, last_pass_rows(c, quads_u, quads_v), quads_u, anchors, out, stride);
 }
 
 /// The ends of the flat edge, longer than the block, that side s of block `line` hangs from: found in the

@@ -27,13 +27,13 @@ inline pointer<std::int32_t> blend_table(const Context& c, sint quads_u, sint qu
     pointer<std::int32_t> table = load(field(c.frame, &FrameHeader::blend_table));
     return table + shape * (blend_passes * pass_words);
 }
-/// The last pass for vertices as they lie in a block of this shape: parents, then sides.
-inline pointer<std::int32_t> last_pass_rows(const Context& c, sint quads_u, sint quads_v) {
+/// The passes for vertices as they lie in a block of this shape: parents, then sides of each.
+inline pointer<std::int32_t> pass_rows(const Context& c, sint quads_u, sint quads_v) {
     sint shape = log2_quads(quads_u) * (block_log2 + 1);
     shape = shape + log2_quads(quads_v);
     pointer<std::int32_t> table = load(field(c.frame, &FrameHeader::blend_table));
-    shape = shape * (2 * row_vertices);
-    return table + (shape + blend_rows(0, 0));
+    shape = shape * (blend_passes * 2 * row_vertices);
+    return table + (shape + blend_rows(0, 0, 0));
 }
 /// Some vertices of a pass, one a lane.
 struct BlendStep {

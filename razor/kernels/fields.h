@@ -171,13 +171,6 @@ inline Targets targets_in(const Context& c, const FieldBounds& all, const svec& 
     return t;
 }
 
-/// Bounds of all fields' target edge lengths in a box. Nowhere is a target less than `least` or more than
-/// `most`; and no field's own least is more than `greatest_least`. Growth of either sign: shrinking fields
-/// are bounded by what they begin with.
-struct CommonTargets {
-    sfloat least, greatest_least, most;
-};
-
 /// Bounds of all fields' |base + slope . (place - origin)| over a box, their roundings included.
 struct CommonBlur {
     sfloat least, most;
@@ -211,49 +204,65 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
     blur.least = max(max(least, -most) - margin, 0.0F);
     return blur;
 }
-inline CommonTargets common_targets_in(const FieldBounds& f, const svec& low, const svec& high,
-                                       sfloat slack) {
+
+/// No field's target edge length in the box is less. Growth of either sign: shrinking fields are bounded by
+/// what they begin with.
+inline sfloat least_target_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
     sfloat lows[3] = {low.x, low.y, low.z};
     sfloat highs[3] = {high.x, high.y, high.z};
     sfloat first[3] = {f.low.x, f.low.y, f.low.z};
     sfloat last[3] = {f.high.x, f.high.y, f.high.z};
-    sfloat nearest = 0.0F; // squares of distances
-    sfloat near_of_all = 0.0F;
-    sfloat furthest = 0.0F;
+    sfloat least = f.least_base;
+    if (branch(f.sloped))
+        least = common_blur_in(f, low, high, slack).least;
+    constexpr float down = 1.0F - 2.0e-6F;
+    constexpr float up = 1.0F + 2.0e-6F;
+    if (branch(f.least_growth < 0.0F)) {
+        sfloat furthest = 0.0F; // the square of a distance
+        for (int k = 0; k < 3; ++k) {
+            sfloat before = last[k] - lows[k];
+            sfloat after = highs[k] - first[k];
+            sfloat far = max(before, after);
+            furthest = fma(far, far, furthest);
+        }
+        sfloat far = sqrt(furthest) * up + slack;
+        far = max(far - f.least_radius, 0.0F);
+        return fma(f.least_growth, far, least) * down;
+    }
+    sfloat nearest = 0.0F;
     for (int k = 0; k < 3; ++k) {
         sfloat before = lows[k] - last[k];
         sfloat after = first[k] - highs[k];
         sfloat near = max(max(before, after), 0.0F);
         nearest = fma(near, near, nearest);
-        sfloat widest_before = lows[k] - first[k];
-        sfloat widest_after = last[k] - highs[k];
-        near = max(max(widest_before, widest_after), 0.0F);
-        near_of_all = fma(near, near, near_of_all);
-        sfloat far_before = last[k] - lows[k];
-        sfloat far_after = highs[k] - first[k];
-        sfloat far = max(far_before, far_after);
-        furthest = fma(far, far, furthest);
     }
-    constexpr float down = 1.0F - 2.0e-6F;
-    constexpr float up = 1.0F + 2.0e-6F;
     sfloat near = sqrt(nearest) * down - slack;
     near = max(near - f.most_radius, 0.0F);
-    sfloat every = sqrt(near_of_all) * up + slack;
-    every = max(every - f.least_radius, 0.0F);
+    return fma(f.least_growth, near, least) * down;
+}
+
+/// No field's target edge length in the box is more.
+inline sfloat most_target_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+    sfloat most = f.most_base;
+    if (branch(f.sloped))
+        most = common_blur_in(f, low, high, slack).most;
+    constexpr float up = 1.0F + 2.0e-6F;
+    if (branch(f.most_growth <= 0.0F))
+        return most * up;
+    sfloat lows[3] = {low.x, low.y, low.z};
+    sfloat highs[3] = {high.x, high.y, high.z};
+    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
+    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
+    sfloat furthest = 0.0F;
+    for (int k = 0; k < 3; ++k) {
+        sfloat before = last[k] - lows[k];
+        sfloat after = highs[k] - first[k];
+        sfloat far = max(before, after);
+        furthest = fma(far, far, furthest);
+    }
     sfloat far = sqrt(furthest) * up + slack;
     far = max(far - f.least_radius, 0.0F);
-    sfloat rising = max(f.most_growth, 0.0F);
-    sfloat falling = min(f.least_growth, 0.0F);
-    sfloat slowest = max(f.least_growth, 0.0F);
-    CommonBlur blur{f.least_base, f.most_base};
-    if (branch(f.sloped))
-        blur = common_blur_in(f, low, high, slack);
-    CommonTargets t;
-    sfloat fallen = fma(falling, far, blur.least);
-    t.least = fma(slowest, near, fallen) * down;
-    t.greatest_least = fma(rising, every, blur.most) * up;
-    t.most = fma(rising, far, blur.most) * up;
-    return t;
+    return fma(f.most_growth, far, most) * up;
 }
 
 } // namespace intersect_kernel

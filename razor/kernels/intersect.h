@@ -360,8 +360,7 @@ template <Features F, bool Mixed>
             svec high = load_svec(box + 3) + origin;
             sint absolute = load(field(header, &BlockHeader::absolute));
             sfloat begin = moving_from(absolute);
-            CommonTargets all_fields = common_targets_in(g.fields, low, high, g.slack);
-            sbool some = all_fields.most > begin;
+            sbool some = most_target_in(g.fields, low, high, g.slack) > begin;
             if (branch(some | (absolute < listed.level))) {
                 Targets t = targets_in(c, g.fields, low, high, g.slack);
                 moved = met & (t.most > vfloat(begin));

@@ -152,7 +152,9 @@ inline void make_leaf(const Context& c, const List& l) {
     Leaf leaf = survey(c, l);
     pointer<ItemList> header = l.header;
     store(field(header, &ItemList::level), leaf.level);
-    store(field(header, &ItemList::coarse), power_of_two(leaf.level));
+    sfloat coarse = power_of_two(leaf.level);
+    store(field(header, &ItemList::coarse), coarse);
+    store(field(header, &ItemList::coarsest), coarsest_target(coarse, leaf.high - leaf.low));
     pointer<float> low = field(header, &ItemList::low);
     store(low, leaf.low.x);
     store(low + 1, leaf.low.y);

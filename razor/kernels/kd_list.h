@@ -268,10 +268,7 @@ inline List refine_items(const Context& c, const List& old) {
             ++total;
         }
     }
-    sfloat coarse = load(field(old.header, &ItemList::coarse));
-    svec low = load_svec(field(old.header, &ItemList::low));
-    svec high = load_svec(field(old.header, &ItemList::high));
-    sfloat most = coarsest_target(coarse, high - low);
+    sfloat most = load(field(old.header, &ItemList::coarsest));
     sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
     most = select(fixed > 0.0F, fixed, most);
     List l = make_list(c, total, old.depth, old.low, old.high); // the same cell: no deeper in the tree

@@ -108,8 +108,8 @@ void dice_all(const WorkerArguments& w) {
             sint absolute = load(field(block, &BlockHeader::absolute));
             svec low = load_svec(field(block, &BlockHeader::box_low)) + origin;
             svec high = load_svec(field(block, &BlockHeader::box_high)) + origin;
-            CommonTargets t = common_targets_in(asked, low, high, slack);
-            sbool finer = t.least < power_of_two(absolute);
+            sfloat least = least_target_in(asked, low, high, slack);
+            sbool finer = least < power_of_two(absolute);
             if (branch(finer & (level > 0))) {
                 ensure_children(c, line, block);
                 sint child = load(field(block, &BlockHeader::child_line));

@@ -258,10 +258,14 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
                 sfloat coarse = load(field(list, &ItemList::coarse));
                 svec low = load_svec(field(list, &ItemList::low));
                 svec high = load_svec(field(list, &ItemList::high));
-                CommonTargets all = common_targets_in(g.fields, low, high, g.slack);
-                if (branch(all.greatest_least < coarse)) {
-                    deeper = g.alive;
-                } else if (branch(all.least < coarse)) {
+                if (branch(least_target_in(g.fields, low, high, g.slack) < coarse)) {
+                    // Where this is too coarse for a ray, all go on in the same cell, if what is finer is
+                    // bounded for what they ask: nobody is left behind, who would keep it from the mailbox.
+                    sfloat bound = load(field(list, &ItemList::coarsest));
+                    if (branch(most_target_in(g.fields, low, high, g.slack) <= bound)) {
+                        number = finer;
+                        continue;
+                    }
                     Targets t = targets_in(c, g.fields, low, high, g.slack);
                     deeper = g.alive & (t.least < vfloat(coarse));
                 }
