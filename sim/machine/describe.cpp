@@ -36,9 +36,13 @@ ChipFigures chip_figures(const Config& c) {
     const double cores = real(c.all_cores());
     f.instructions_per_second = cores * real(c.core.issue_width) * cycles_per_second;
     const auto fused = static_cast<std::size_t>(isa::timing::operation::fused);
-    // A class whose unit is not pipelined has one unit; others have as many as instructions issue.
-    const double fused_a_cycle =
-        c.interval[fused] > 1 ? 1 / real(c.interval[fused]) : real(c.core.issue_width);
+    // A class whose unit is not pipelined has one unit; others have as many as ports take them.
+    const Pairing pairing(c.core.pairing);
+    const auto ports = static_cast<integer>(pairing.of(vector_kind(fused)).size());
+    const integer slots = pairing.ports() == 0 ? c.core.issue_width : std::min(c.core.issue_width, ports);
+    double fused_a_cycle = c.interval[fused] > 1 ? 1 / real(c.interval[fused]) : real(slots);
+    if (shared_classes(c.core.shared_classes)[fused])
+        fused_a_cycle = std::min(fused_a_cycle, 1 / real(c.interval[fused] * c.core.shared_cores));
     f.flops_per_second = cores * fused_a_cycle * 2 * real(c.core.lanes) * cycles_per_second;
     f.l1_bytes = cores * real(c.l1.size_bytes);
     f.l1_bytes_per_second = cores * real(c.l1.ports * c.l1.port_bytes) * cycles_per_second;

@@ -33,6 +33,14 @@ TEST(Describe, RatesAreProductsOfTheParts) {
     EXPECT_DOUBLE_EQ(f.flops_per_second, 128 * 4e9 * 4 * 2);
     c.interval[static_cast<std::size_t>(operation::fused)] = 4;
     EXPECT_DOUBLE_EQ(chip_figures(c).flops_per_second, 128 * 4e9 * 4 * 2 / 4);
+    c.interval[static_cast<std::size_t>(operation::fused)] = 1;
+    c.core.issue_width = 4;
+    EXPECT_DOUBLE_EQ(chip_figures(c).flops_per_second, 4 * 128 * 4e9 * 4 * 2);
+    c.core.pairing = "any | any | scalar load store branch | scalar";
+    EXPECT_DOUBLE_EQ(chip_figures(c).flops_per_second, 2 * 128 * 4e9 * 4 * 2) << "two ports take it";
+    c.core.shared_classes = "add fused";
+    c.core.shared_cores = 8;
+    EXPECT_DOUBLE_EQ(chip_figures(c).flops_per_second, 16 * 4e9 * 4 * 2) << "a unit of eight cores";
     EXPECT_DOUBLE_EQ(f.memory_bytes_per_second, static_cast<double>(c.memory.channels * c.memory.bus_bytes) *
                                                     2e12 / static_cast<double>(c.memory.clock_ps));
     EXPECT_NE(chip_text(c).find("128 cores"), std::string::npos);
