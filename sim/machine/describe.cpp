@@ -2,6 +2,7 @@
 
 #include "sim/core/pairing.h"
 #include "sim/machine/windows.h"
+#include "sim/network/topology.h"
 
 #include <fmt/core.h>
 
@@ -49,12 +50,13 @@ ChipFigures chip_figures(const Config& c) {
     f.memory_bytes_per_second = real(c.memory.channels * c.memory.bus_bytes * c.memory.transfers_per_clock) *
                                 1e12 / real(c.memory.clock_ps);
     f.l1_ns = real(c.l1.latency) * cycle_ns;
+    f.network = network_figures(c);
     double ns = f.l1_ns;
     for (unsigned level = 1; level < c.cache_levels(); ++level) {
         const CacheConfig& cache = c.cache(level);
         const integer line = c.cache(level - 1).line_bytes, caches = c.all_cores() / c.cores_sharing(level);
         const integer bank_cycles = (line + cache.bank_bytes - 1) / cache.bank_bytes;
-        ns += real(cache.latency) * cycle_ns;
+        ns += (real(cache.latency) + (c.beyond_tiles(level) ? f.network.cycles : 0)) * cycle_ns;
         f.below.push_back({real(caches * cache.size_bytes),
                            real(caches * cache.banks * line) / real(bank_cycles) * cycles_per_second, ns,
                            caches});
@@ -65,7 +67,9 @@ ChipFigures chip_figures(const Config& c) {
     const integer bursts =
         std::max<integer>(1, c.last_cache().line_bytes / (c.memory.bus_bytes * c.memory.burst_length));
     const integer data = c.memory.tCL + bursts * c.memory.burst_clocks();
-    const double there = ns + real(c.memory.controller_cycles) * cycle_ns;
+    const bool beyond = c.beyond_tiles(c.cache_levels() - 1);
+    const double over = beyond ? f.network.memory_cycles : f.network.cycles;
+    const double there = ns + (over + real(c.memory.controller_cycles)) * cycle_ns;
     f.memory_open_ns = there + real(data * c.memory.clock_ps) * 1e-3;
     f.memory_closed_ns = there + real((c.memory.tRCD + data) * c.memory.clock_ps) * 1e-3;
     f.miss_bytes_per_second = real(f.below.back().caches * c.last_cache().mshrs * c.last_cache().line_bytes) /
@@ -104,6 +108,18 @@ std::string chip_text(const Config& c) {
                          size(real(cache.size_bytes)), whose, cache.ways, cache.line_bytes,
                          cache.inclusion == "none" ? "" : ", " + cache.inclusion, size(l.bytes),
                          rate(l.bytes_per_second, "GB/s"), l.ns));
+    }
+    if (!c.network.ideal()) {
+        const Topology t(c);
+        line("network",
+             fmt::format(
+                 "{}{} of {} bytes a cycle, {} cycles a hop; {} a link, {} across the middle, one way; a "
+                 "tile is {:.3g} hops from what answers it: {:.3g} ns there and back with a line",
+                 c.network.topology,
+                 c.network.topology == "mesh" ? fmt::format(", {} x {},", t.columns(), t.rows()) : "",
+                 c.network.link_bytes, c.network.hop_cycles, rate(f.network.link_bytes_per_second, "GB/s"),
+                 rate(f.network.bisection_bytes_per_second, "GB/s"), f.network.hops,
+                 f.network.cycles * real(c.chip.clock_ps) * 1e-3));
     }
     line("memory",
          fmt::format(

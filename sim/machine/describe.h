@@ -2,13 +2,14 @@
 #pragma once
 
 #include "sim/config/config.h"
+#include "sim/network/figures.h"
 
 #include <string>
 #include <vector>
 
 namespace sim {
 
-/// Rates are of the whole chip, latencies those of an idle machine.
+/// Rates are of the whole chip, latencies those of an idle machine, over ways of mean length.
 struct ChipFigures {
     double instructions_per_second = 0; // issue slots
     double flops_per_second = 0;        // 32-bit, a fused multiply-add counts twice
@@ -22,6 +23,7 @@ struct ChipFigures {
         integer caches = 0;
     };
     std::vector<Level> below; // the L2 and what follows it
+    NetworkFigures network;
     double miss_bytes_per_second =
         0; // what all MSHRs of the last level together can fetch from closed rows (Little's law)
 };

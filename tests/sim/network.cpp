@@ -2,6 +2,7 @@
 // it, and what must not depend on it.
 #include "sim/network/network.h"
 
+#include "sim/machine/describe.h"
 #include "sim/machine/energy.h"
 #include "sim/machine/limits.h"
 #include "sim/machine/windows.h"
@@ -551,6 +552,20 @@ TEST(Network, FiguresOfAChip) {
             EXPECT_NEAR(sum / 12, f.cycles + f.memory_cycles, 1e-9) << topology;
         }
     EXPECT_EQ(network_figures(simple()).cycles, 0);
+}
+
+TEST(Network, AChipsLatenciesHaveItsWays) {
+    for (const bool l3 : {false, true}) {
+        const Config c = l3 ? with_l3(network_machine("mesh", 6), 2) : network_machine("mesh", 6);
+        double sum = 0;
+        for (integer tile = 0; tile < 6; ++tile)
+            for (const std::int64_t bank : {0, 1})
+                sum += static_cast<double>(read_lines(c, 1, tile, 64, bank).cycles);
+        EXPECT_NEAR(sum / 12 * static_cast<double>(c.chip.clock_ps) * 1e-3, chip_figures(c).memory_closed_ns,
+                    1e-6);
+        EXPECT_NE(chip_text(c).find("mesh, 3 x 2"), std::string::npos);
+    }
+    EXPECT_EQ(chip_text(simple()).find("network"), std::string::npos);
 }
 
 TEST(Network, BrokenNumbersAreNoticed) {
