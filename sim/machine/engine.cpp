@@ -426,6 +426,7 @@ Interval Engine::sums() const {
     const MemoryCounters memory = beyond_.memory().counters();
     s.memory_reads = memory.reads;
     s.memory_writes = memory.writes;
+    s.network_bytes = beyond_.network().counters().bytes;
     return s;
 }
 

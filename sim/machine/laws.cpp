@@ -303,6 +303,7 @@ void check_intervals(const Report& r, const CacheCounters& l1, const CacheCounte
     equal("L2 misses = sum over intervals", l2.misses, sum.l2_misses);
     equal("memory reads = sum over intervals", r.memory.reads, sum.memory_reads);
     equal("memory writes = sum over intervals", r.memory.writes, sum.memory_writes);
+    equal("bytes on the network = sum over intervals", r.network.counters.bytes, sum.network_bytes);
     const Stack stack = r.stack();
     for (std::size_t cause = 0; cause < cause_count; ++cause)
         equal("the CPI stack = sum over intervals", stack[cause], sum.stack[cause]);

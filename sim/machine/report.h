@@ -92,10 +92,10 @@ struct ThreadReport {
 struct Interval {
     cycle begin = 0, end = 0;
     std::uint64_t vops = 0, instructions = 0, l1_accesses = 0, l1_misses = 0, l2_accesses = 0, l2_misses = 0,
-                  memory_reads = 0, memory_writes = 0;
+                  memory_reads = 0, memory_writes = 0, network_bytes = 0;
     Stack stack{}; // of all threads
 };
-inline constexpr std::array<CounterRow<Interval>, 8> interval_counters = {{
+inline constexpr std::array<CounterRow<Interval>, 9> interval_counters = {{
     {"vops", &Interval::vops, "vocabulary operations"},
     {"instructions", &Interval::instructions, "machine instructions"},
     {"l1_accesses", &Interval::l1_accesses, "L1 accesses, reads and writes"},
@@ -104,6 +104,7 @@ inline constexpr std::array<CounterRow<Interval>, 8> interval_counters = {{
     {"l2_misses", &Interval::l2_misses, "of these, misses"},
     {"memory_reads", &Interval::memory_reads, "lines read from memory"},
     {"memory_writes", &Interval::memory_writes, "lines written to memory"},
+    {"network_bytes", &Interval::network_bytes, "of messages on the network"},
 }};
 
 struct Report {

@@ -488,6 +488,23 @@ TEST(Network, HopelessNetworksStillEnd) {
     }
 }
 
+// Nobody waits for what is prefetched last, but its reply is still on its way.
+TEST(Network, AMachineIsNotQuietBeforeItsNetworkIs) {
+    Config c = network_machine("mesh", 4);
+    c.network.hop_cycles = 1000;
+    const Report r = run_on(
+        c,
+        [](std::byte* base, int w) {
+            if (w == 3)
+                isa::timing::prefetch(here, base, stamp{});
+        },
+        4);
+    EXPECT_LT(r.cycles, 100U);
+    EXPECT_EQ(r.drained, u(c.l1.latency + c.l2.latency + 4 * 1000 + c.memory.controller_cycles +
+                           c.memory.tRCD + c.memory.tCL + c.memory.burst_clocks()) +
+                             1 + 5);
+}
+
 TEST(Network, FramesBeforeTheLastAreTakenAway) {
     Config c = network_machine("mesh", 4);
     c.l1.size_bytes = c.l2.size_bytes = 4 * kib;
@@ -504,6 +521,28 @@ TEST(Network, FramesBeforeTheLastAreTakenAway) {
     };
     EXPECT_EQ(messages(3).requests, messages(1).requests); // caches are far too small to keep anything
     EXPECT_EQ(messages(3).link_flits, messages(1).link_flits);
+}
+
+// By the law that intervals sum to the run, and no two of them hold the same.
+TEST(Network, IntervalsHaveTheirBytes) {
+    Memory memory;
+    const Report r = Machine(network_machine("ring", 4))
+                         .run(memory.space, 4, {{"work"}},
+                              [&](int w) {
+                                  stamp s;
+                                  for (int i = 0; w == 1 && i < 100; ++i)
+                                      s = load(here, memory.data + i * 64, 4, s);
+                              },
+                              1, {.interval = 1000});
+    EXPECT_GT(r.intervals.size(), 5U);
+    std::uint64_t most = 0, sum = 0;
+    for (const Interval& i : r.intervals) {
+        most = std::max(most, i.network_bytes);
+        sum += i.network_bytes;
+    }
+    EXPECT_EQ(sum, 100 * (8 + 72U));
+    EXPECT_LT(most, sum / 3);
+    EXPECT_GT(r.intervals[2].network_bytes, 0U);
 }
 
 TEST(Network, EnergyIsThatOfBytesTimesHops) {
