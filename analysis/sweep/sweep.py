@@ -4,6 +4,11 @@
     analysis/sweep/sweep.py --machine configs/machines/tiny.toml --key l2.size_bytes --values 32KiB..512KiB -- --size 64x64 --spp 1
     analysis/sweep/sweep.py --machine M.toml --key memory.channels --values 1 2 8 --expect falling --csv channels.csv -- --scene S.toml
 
+With --reference the machine also runs once in the reference mode, and the table says how far each row is from its
+cycles, and what both took of the host:
+
+    analysis/sweep/sweep.py --reference --machine configs/machines/study.toml --key sim.quantum --values 1 10 100 1000 -- --size 64x64 --spp 1
+
 A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (-g settings too). Runs are deterministic;
 --jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
 """
@@ -35,6 +40,15 @@ COLUMNS = [
     ("busiest resource", 18, lambda r: f"{r['resource']} {r['utilisation']:.0%}"),
     ("largest wait", 18, lambda r: f"{r['wait']} {r['waiting']:.0%}"),
 ]
+
+
+# With --reference.
+ERRORS = [
+    ("error", 9, lambda r: f"{r['error']:+.2%}"),
+    ("host s", 9, lambda r: f"{r['host_seconds']:.1f}"),
+    ("M vops/s", 9, lambda r: f"{r['vops'] / r['host_seconds'] / 1e6:.2f}"),
+]
+REFERENCE = "reference"  # the value of that run's row
 
 
 class Mistake(Exception):
@@ -78,12 +92,13 @@ def simulator(given):
 
 def run(options, value, folder):
     report = os.path.join(folder, "report.json")
+    setting = "sim.mode=reference" if value == REFERENCE else f"{options.key}={value}"
     command = [simulator(options.simulator), "run", "--quiet", "--machine", options.machine, *options.more,
-               "-g", f"{options.key}={value}", "--json", report]
+               "-g", setting, "--json", report]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         lines = done.stderr.strip().splitlines() or [f"razor-sim ended with {done.returncode}"]
-        raise Mistake(f"{options.key}={value}: {lines[-1]}")
+        raise Mistake(f"{setting}: {lines[-1]}")
     with open(report, encoding="utf-8") as file:
         return json.load(file)
 
@@ -117,6 +132,7 @@ def figures(report, value):
         "utilisation": resources[busiest],
         "wait": wait,
         "waiting": share(waits[wait], worked),
+        "host_seconds": report["host"]["processor_seconds"],
         "tiles_a_worker": report["renderer"]["screen_tiles"] / report["workers"],
     }
 
@@ -136,10 +152,11 @@ def direction(rows, name, tolerance):
 
 
 def table(options, rows):
+    columns = COLUMNS[:1] + ERRORS + COLUMNS[2:] if options.reference else COLUMNS
     width = max(len(options.key), *(len(r["value"]) for r in rows)) + 1
-    print(f"{options.key:<{width}}" + "".join(f"{name:>{w}}" for name, w, _ in COLUMNS))
+    print(f"{options.key:<{width}}" + "".join(f"{name:>{w}}" for name, w, _ in columns))
     for row in rows:
-        print(f"{row['value']:<{width}}" + "".join(f"{text(row):>{w}}" for _, w, text in COLUMNS))
+        print(f"{row['value']:<{width}}" + "".join(f"{text(row):>{w}}" for _, w, text in columns))
 
 
 def parse(arguments):
@@ -155,6 +172,7 @@ def parse(arguments):
     parser.add_argument("--values", required=True, nargs="+", metavar="VALUE")
     parser.add_argument("--expect", choices=["falling", "rising"], help="what the cycles must do")
     parser.add_argument("--tolerance", type=float, default=0.5, metavar="PERCENT", help="of a step; 0.5 by default")
+    parser.add_argument("--reference", action="store_true", help="compare with a run in the reference mode")
     parser.add_argument("--jobs", type=int, default=1, metavar="N")
     parser.add_argument("--csv", metavar="FILE", help="the table, for programs")
     parser.add_argument("--simulator", metavar="PATH", help="razor-sim; else from the PATH or build/release")
@@ -186,22 +204,26 @@ def sweep(options):
     if options.csv and not os.access(os.path.dirname(options.csv) or ".", os.W_OK):
         raise Mistake(f"--csv {options.csv}: its folder cannot be written to")
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
-        folders = [tempfile.mkdtemp(dir=folder) for _ in options.values]
-        runs = [pool.submit(run, options, v, f) for v, f in zip(options.values, folders)]
+        values = [REFERENCE] * options.reference + options.values
+        folders = [tempfile.mkdtemp(dir=folder) for _ in values]
+        runs = [pool.submit(run, options, v, f) for v, f in zip(values, folders)]
         try:
-            rows = [figures(r.result(), v) for r, v in zip(runs, options.values)]
+            rows = [figures(r.result(), v) for r, v in zip(runs, values)]
         except Mistake:
             for r in runs:
                 r.cancel()
             raise
     for row in rows:
         row["of_first"] = share(row["cycles"], rows[0]["cycles"])
+        if options.reference:
+            row["error"] = row["of_first"] - 1
     if options.csv:
         write_csv(options.csv, options.key, rows)
     table(options, rows)
     few = [row["value"] for row in rows if row["tiles_a_worker"] < 4]
     if few:
         print(f"few screen tiles a worker at {', '.join(few)}: the last one to end decides the time; a larger --size says more")
+    rows = rows[options.reference:]
     cycles, rises, falls = direction(rows, "cycles", options.tolerance / 100)
     print(f"cycles      {cycles}")
     print(f"DRAM reads  {direction(rows, 'dram_reads', options.tolerance / 100)[0]}")

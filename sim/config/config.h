@@ -54,7 +54,7 @@ struct CoherenceConfig {
 };
 
 struct MemoryConfig {
-    std::string preset;
+    std::string preset, controller;
     integer clock_ps = 0, channels = 0, ranks = 0, bank_groups = 0, banks = 0, rows = 0, row_bytes = 0;
     integer bus_bytes = 0, burst_length = 0, transfers_per_clock = 0, command_buses = 0;
     integer tRCD = 0, tRP = 0, tRAS = 0, tRC = 0, tCL = 0, tCWL = 0, tCCD_S = 0, tCCD_L = 0, tRRD_S = 0;
@@ -93,7 +93,7 @@ struct EnergyConfig {
 };
 
 struct SimulationConfig {
-    std::string miss_causes;
+    std::string mode, miss_causes;
     integer quantum = 0, window = 0, jitter = 0, stack_kib = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "sim/core/pairing.h"
 #include "sim/memory/dram_mapping.h"
 #include "sim/memory/dram_timing.h"
+#include "sim/memory/queued_memory.h"
 
 #include <fmt/core.h>
 
@@ -93,6 +94,9 @@ void check_memory(const std::string& what, const Config& config) {
                          c.row_bytes, last, line));
     if (std::string mistake = DramMapping::mistake(c); !mistake.empty())
         fail(what, fmt::format("memory.mapping \"{}\" {}", c.mapping, mistake));
+    if (c.controller == "queued")
+        if (std::string mistake = QueuedMemory::mistake(config); !mistake.empty())
+            fail(what, mistake);
     at_least(what, "tCCD_L", c.tCCD_L, "tCCD_S", c.tCCD_S);
     at_least(what, "tRRD_L", c.tRRD_L, "tRRD_S", c.tRRD_S);
     at_least(what, "tWTR_L", c.tWTR_L, "tWTR_S", c.tWTR_S);
@@ -239,6 +243,23 @@ void check_network(const std::string& what, const Config& config) {
                          columns, tiles));
 }
 
+/// What the reference mode stands for.
+void check_mode(const std::string& what, const Config& config) {
+    if (config.sim.mode != "reference")
+        return;
+    const auto refuse = [&](const char* key, const std::string& value, const char* wanted) {
+        fail(what, fmt::format("{} is {}, for which sim.mode \"reference\" stands no more: there it is {}; "
+                               "make it that, or sim.mode \"fast\"",
+                               key, value, wanted));
+    };
+    if (config.memory.controller != "queued")
+        refuse("memory.controller", config.memory.controller, "queued");
+    if (config.sim.quantum > 1)
+        refuse("sim.quantum", fmt::format("{}", config.sim.quantum), "0 or 1");
+    if (config.sim.window != 0)
+        refuse("sim.window", fmt::format("{}", config.sim.window), "0");
+}
+
 } // namespace
 
 void check_consistency(const Config& c, const std::string& what) {
@@ -246,6 +267,7 @@ void check_consistency(const Config& c, const std::string& what) {
     check_core(what, c);
     check_memory(what, c);
     check_network(what, c);
+    check_mode(what, c);
     if (c.all_threads() > 65536)
         fail(what, fmt::format("chip.tiles x chip.cores x chip.threads is {}; it must be at most 65536",
                                c.all_threads()));

@@ -98,13 +98,14 @@ public:
         chain_.push_back(file);
         if (const toml::node* parent = root.get("inherit"))
             inherit(file, *parent);
-        for (const auto& [key, value] : root) {
-            if (key.str() == "inherit")
-                continue;
-            if (!value.is_table())
-                fail(file, key.source(), no_section(key.str()));
-            apply_section(std::string(key.str()), *value.as_table(), text, file);
-        }
+        for (bool first : {true, false}) // first what sets others, in whatever section
+            for (const auto& [key, value] : root) {
+                if (key.str() == "inherit")
+                    continue;
+                if (!value.is_table())
+                    fail(file, key.source(), no_section(key.str()));
+                apply_section(std::string(key.str()), *value.as_table(), text, file, first);
+            }
         chain_.pop_back();
     }
 
@@ -117,7 +118,7 @@ private:
     void inherit(const std::string& file, const toml::node& parent);
     void inherit_one(const std::string& file, const toml::node& parent);
     void apply_section(const std::string& name, const toml::table& section, const std::string& text,
-                       const std::string& file);
+                       const std::string& file, bool first);
     void set_origin(const Parameter& p, const Origin& origin);
     Origin& origin(const Parameter& p) {
         return machine_.origins[static_cast<std::size_t>(&p - parameters().data())];
@@ -162,32 +163,32 @@ void Reader::inherit_one(const std::string& file, const toml::node& parent) {
     apply(other.text, path);
 }
 
+/// Either what sets others, or the rest.
 void Reader::apply_section(const std::string& name, const toml::table& section, const std::string& text,
-                           const std::string& file) {
-    for (bool first : {true, false}) // first what sets others
-        for (const auto& [key, value] : section) {
-            std::string full = fmt::format("{}.{}", name, key.str());
-            const Parameter* p = find_parameter(full);
-            if (p == nullptr)
-                fail(file, key.source(),
-                     fmt::format("unknown key {}; the nearest known one is {}", full, nearest_key(full)));
-            if (sets_others(*p) != first)
-                continue;
-            std::string wrong = set(*p, machine_.config, value);
-            if (!wrong.empty())
-                fail(file, value.source(), wrong);
-            const toml::source_position end = value.source().end;
-            set_origin(*p, {Origin::file, fs::path(file).lexically_relative(folder_).string(),
-                            static_cast<int>(key.source().begin.line),
-                            std::string(comment_behind(line_of(text, end.line), end.column - 1))});
-        }
+                           const std::string& file, bool first) {
+    for (const auto& [key, value] : section) {
+        std::string full = fmt::format("{}.{}", name, key.str());
+        const Parameter* p = find_parameter(full);
+        if (p == nullptr)
+            fail(file, key.source(),
+                 fmt::format("unknown key {}; the nearest known one is {}", full, nearest_key(full)));
+        if (sets_others(*p) != first)
+            continue;
+        std::string wrong = set(*p, machine_.config, value);
+        if (!wrong.empty())
+            fail(file, value.source(), wrong);
+        const toml::source_position end = value.source().end;
+        set_origin(*p, {Origin::file, fs::path(file).lexically_relative(folder_).string(),
+                        static_cast<int>(key.source().begin.line),
+                        std::string(comment_behind(line_of(text, end.line), end.column - 1))});
+    }
 }
 
 /// Of the parameter, and of others that it sets.
 void Reader::set_origin(const Parameter& p, const Origin& origin) {
     if (sets_others(p))
         for (const Parameter& other : parameters())
-            if (std::get<ChoiceKind>(p.kind).sets_key(other.key))
+            if (std::get<ChoiceKind>(p.kind).sets_key(machine_.config, other.key))
                 this->origin(other) = origin;
     this->origin(p) = origin;
 }

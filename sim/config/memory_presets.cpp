@@ -1,6 +1,7 @@
 #include "sim/config/memory_presets.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -360,8 +361,8 @@ const std::vector<MemoryConfig>& memory_presets() {
     return presets;
 }
 
-bool memory_preset_sets(std::string_view key) {
-    return key.starts_with("memory.") && key != "memory.preset" && key != "memory.controller_cycles";
+bool memory_preset_sets(const Config&, std::string_view key) {
+    return key.starts_with("memory.") && key != "memory.preset" && !key.starts_with("memory.controller");
 }
 
 void apply_memory_preset(Config& config, const std::string& name) {
@@ -370,9 +371,9 @@ void apply_memory_preset(Config& config, const std::string& name) {
         std::find_if(all.begin(), all.end(), [&](const MemoryConfig& c) { return c.preset == name; });
     if (found == all.end())
         return;
-    integer controller_cycles = config.memory.controller_cycles;
-    config.memory = *found;
-    config.memory.controller_cycles = controller_cycles;
+    const MemoryConfig old = std::exchange(config.memory, *found);
+    config.memory.controller = old.controller;
+    config.memory.controller_cycles = old.controller_cycles;
 }
 
 } // namespace sim

@@ -271,7 +271,8 @@ void add_memory(Table& t) {
     for (const C& preset : memory_presets())
         presets.push_back(preset.preset);
     t.add("memory.preset", s, &C::preset, presets,
-          "sets all other memory keys but controller_cycles, before what its layer says of them");
+          "sets all other memory keys but controller and controller_cycles, before what its layer says of "
+          "them");
     auto& preset = std::get<ChoiceKind>(t.rows.back().kind);
     preset.sets = apply_memory_preset;
     preset.sets_key = memory_preset_sets;
@@ -346,6 +347,8 @@ void add_memory(Table& t) {
           "queued, at which a batch is sent");
     t.add("memory.write_low", s, &C::write_low, "bursts", d.write_low, 0, 4095,
           "queued, at which the batch ends");
+    t.add("memory.controller", s, &C::controller, {"immediate", "queued"},
+          "immediate: answers each request when it comes; queued: has queues, and decides in order of time");
     t.add("memory.controller_cycles", s, &C::controller_cycles, "core cycles", 10, 0, 100000,
           "from the last cache to the memory's command bus and back, together");
     t.add_text(
@@ -384,9 +387,28 @@ void add_kdtree(Table& t) {
         integer{1} << 20);
 }
 
+void apply_mode(Config& config, const std::string& name) {
+    const bool reference = name == "reference";
+    config.memory.controller = reference ? "queued" : "immediate";
+    if (reference)
+        config.sim.quantum = config.sim.window = 0;
+}
+
+bool mode_sets(const Config& chosen, std::string_view key) {
+    return key == "memory.controller" ||
+           (chosen.sim.mode == "reference" && (key == "sim.quantum" || key == "sim.window"));
+}
+
 void add_simulation(Table& t) {
     using C = SimulationConfig;
     auto s = &Config::sim;
+    t.add(
+        "sim.mode", s, &C::mode, {"fast", "reference"},
+        "fast sets memory.controller immediate; reference queued, sim.quantum and sim.window 0; before what "
+        "its layer says of them");
+    auto& mode = std::get<ChoiceKind>(t.rows.back().kind);
+    mode.sets = apply_mode;
+    mode.sets_key = mode_sets;
     t.add("sim.quantum", s, &C::quantum, "cycles", 1, 0, 100000,
           "threads of a tile run ahead of each other for so long at most; as long as a window or longer: "
           "each runs "

@@ -29,7 +29,7 @@ struct ChoiceKind {
     integer most_number = 0;          // whole numbers from 1 to this will do as well
     /// What the choice sets besides itself; such a key goes before all others of its layer.
     std::function<void(Config&, const std::string&)> sets = nullptr;
-    std::function<bool(std::string_view key)> sets_key = nullptr;
+    std::function<bool(const Config& chosen, std::string_view key)> sets_key = nullptr;
 };
 struct TextKind {
     std::function<std::string&(Config&)> at;

@@ -5,54 +5,49 @@
 // share a cache, a request that arrives takes its bank, in this order, and acts when the bank begins with it.
 // What an inclusive cache drops there leaves the tiles at the end of the window, in which they may still have
 // used it. Not modelled: that a bank stands still while a miss waits for an MSHR.
+//
+// By memory's controller (memory.controller) it is one of two: immediate_beyond.h, queued_beyond.h.
 #pragma once
 
 #include "sim/memory/below.h"
 #include "sim/memory/cache.h"
-#include "sim/memory/memory.h"
-#include "sim/memory/pool.h"
 #include "sim/network/ways.h"
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace sim {
 
 struct Tile;
 
-/// The memory as a cache beyond the tiles sees it.
+/// The way from a cache beyond the tiles to memory, where its traffic is counted.
 class MemoryPort final : public Below {
 public:
-    MemoryPort(Memory& memory, Ways& ways, std::uint32_t cache)
-        : memory_(memory), ways_(ways), cache_{Ways::Asker::cache, cache} {}
+    explicit MemoryPort(Below& memory) : memory_(memory) {}
     /// Whose traffic follows.
     void charge(Attribution& attribution) { attribution_ = &attribution; }
 
     Answer read(const Access& a) override {
         ++attribution_->cell(a.address, a.column).memory_reads;
-        const cycle ready = memory_.read(a.address, ways_.ask(cache_, a.address, a.at));
-        return {ways_.answer(cache_, a.address, a.bytes, ready), Cause::memory};
+        return memory_.read(a);
     }
     Answer write(const Access& a) override {
         ++attribution_->cell(a.address, a.column).memory_writes;
-        return {memory_.write(a.address, ways_.write(cache_, a.address, a.bytes, a.at)), Cause::memory};
+        return memory_.write(a);
     }
 
 private:
-    Memory& memory_;
-    Ways& ways_;
-    Ways::Asker cache_;
+    Below& memory_;
     Attribution* attribution_ = nullptr;
 };
 
 /// A cache of several tiles.
 struct SharedCache {
-    SharedCache(const Config& config, unsigned level, std::uint32_t number, const cycle& earliest,
-                const SiteAtHand& site, Memory& memory, Ways& ways, Tickets& tickets,
-                Attribution& attribution)
-        : port(memory, ways, number),
-          cache(config, level, false, earliest, site, port, tickets, attribution) {
+    SharedCache(const Config& config, unsigned level, const cycle& earliest, const SiteAtHand& site,
+                Below& memory, Tickets& tickets, Attribution& attribution)
+        : port(memory), cache(config, level, false, earliest, site, port, tickets, attribution) {
         port.charge(attribution);
     }
     void charge(Attribution& attribution) {
@@ -68,63 +63,67 @@ public:
     /// Answers a request's ticket: (tile, ticket, when and from where).
     using Reply = std::function<void(std::uint32_t, cycle, const Answer&)>;
 
-    Beyond(const Config& config, Reply reply);
+    /// The one that the machine's memory.controller wants.
+    static std::unique_ptr<Beyond> make(const Config& config, Reply reply);
+    Beyond(const Beyond&) = delete;
+    Beyond& operator=(const Beyond&) = delete;
+    virtual ~Beyond() = default;
+
     /// The tiles that requests come from; once, before any.
     void connect(std::deque<Tile>& tiles);
-
     /// Takes what a tile sends; empties the list.
     void accept(std::vector<Request>& leaving);
     /// Serves everything that arrives before cycle `end`. What arrives after this is later.
-    void serve(cycle end);
+    virtual void serve(cycle end) = 0;
     static constexpr cycle everything = ~cycle{0};
     /// Memory writes what it has queued; returns the cycle from which on it and all requests are at rest.
-    cycle drain() { return std::max({served_, ways_.network().quiet(), memory_.drain()}); }
-    /// What follows counts by itself from this memory clock on.
-    void count_from(std::uint64_t clock) { memory_.count_refreshes(clock); }
+    virtual cycle drain() = 0;
+    /// What follows counts by itself from this cycle on.
+    virtual void count_from(cycle t) = 0;
     /// The frame is over: dirty lines that `keep` says so of are written back.
     template <class Keep> void write_back(cycle t, std::size_t column, Keep keep) {
         for (SharedCache& shared : caches_)
             shared.cache.finish(std::max(t, served_ + shared.cache.latency()), column, keep);
     }
     /// Nothing follows: memory writes what it has queued.
-    void finish() { memory_.finish(); }
-    /// When the earliest request waits to be served; ~0: none does.
-    cycle next() const { return waiting_.empty() ? ~cycle{0} : waiting_.front().at; }
-    const Memory& memory() const { return memory_; }
+    virtual void finish() = 0;
+    /// No request is answered by what happens before this cycle; ~0: none waits for an answer.
+    virtual cycle next() = 0;
+    /// Of memory: sums over all ranks, and each: rank r of channel c at c x ranks + r.
+    virtual MemoryCounters counters() const = 0;
+    virtual std::vector<MemoryCounters> rank_counters() const = 0;
     const Network& network() const { return ways_.network(); }
     const std::deque<SharedCache>& caches() const { return caches_; }
     std::uint64_t misplaced() const;
 
-private:
-    struct Port {
-        OrderedPool mshrs, write_backs;
-        std::vector<Request> held; // until it is known when an MSHR is free
-    };
+protected:
+    Beyond(const Config& config, Reply reply);
+    /// Memory, as a cache here sees it, and the way there.
+    virtual Below& memory_below(std::uint32_t cache) = 0;
     void push(const Request& r);
     Request pop();
-    Port& port_of(const Request& r) { return ports_[r.tile * exits_ + r.exit]; }
-    SharedCache& cache_of(const Request& r) { return caches_[r.tile / tiles_sharing_]; }
-    void serve_from_memory(Request r);
-    void serve_from_cache(Request r);
-    void arrive(Request r);
-    void tell(Request r);
+    std::size_t port_of(const Request& r) const { return r.tile * exits_ + r.exit; }
     Ways::Asker asker(const Request& r) const { return {Ways::Asker::tile, r.tile}; }
-    void write(Request r);
-    void read(Request r);
+    SharedCache& cache_of(const Request& r) { return caches_[r.tile / tiles_sharing_]; }
+    void charge(const Request& r);
+    void tell(Request r);
+
+    static constexpr std::uint64_t disorder =
+        4096; // memory clocks by which a request may be earlier than another
 
     std::size_t exits_, tiles_sharing_; // of a tile; of a cache
     std::uint32_t line_bytes_;          // of the tiles' last caches
-    std::vector<Port> ports_;           // by tile and exit
     std::vector<Request> waiting_;      // a heap, earliest first
     cycle served_ = 0;
-    Memory memory_;
     Ways ways_;
     Config config_;
-    Tickets tickets_; // none is ever open
-    SiteAtHand site_;
+    Tickets tickets_; // of what caches here ask memory for
     std::deque<SharedCache> caches_;
-    std::deque<Tile>* tiles_ = nullptr;
     Reply reply_;
+
+private:
+    SiteAtHand site_;
+    std::deque<Tile>* tiles_ = nullptr;
 };
 
 } // namespace sim

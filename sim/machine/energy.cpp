@@ -73,7 +73,10 @@ std::vector<EnergyPart> energy_parts(const Report& r) {
     events("memory rows", r.memory.activates, m.activate_pj, "opened and closed");
     events("memory reads", r.memory.read_bursts, m.read_pj, "bursts");
     events("memory writes", r.memory.write_bursts, m.write_pj, "bursts");
-    events("memory refreshes", r.memory.refreshes, m.refresh_pj, "of a rank");
+    const bool by_bank = m.controller == "queued" && m.refresh == "per-bank";
+    const auto refreshed = static_cast<double>(by_bank ? m.bank_groups * m.banks : 1);
+    events("memory refreshes", r.memory.refreshes, m.refresh_pj / refreshed,
+           by_bank ? "of a bank" : "of a rank");
     power("memory at rest", m.channels * m.ranks, m.background_mw, "cycles until memory was quiet");
     power("cores at rest", r.config.all_cores(), e.core_mw, "cycles until memory was quiet");
     power("tiles at rest", r.config.chip.tiles, e.tile_mw, "cycles until memory was quiet");

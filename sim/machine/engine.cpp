@@ -65,10 +65,10 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       base_(space.base()), window_cycles_(window_cycles(config)), shortest_read_(shortest_answer(config)),
       reach_(reach_cycles(config)), space_(space), labels_(with_frame_end(labels)),
       lines_(space, line_shift_), homes_(space, config.chip.tiles),
-      beyond_(config,
-              [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
-                  tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);
-              }),
+      beyond_(Beyond::make(config,
+                           [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
+                               tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);
+                           })),
       host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), options_(options),
       worker_(worker), intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
@@ -95,7 +95,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             }
         }
     }
-    beyond_.connect(tiles_);
+    beyond_->connect(tiles_);
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)
         harts_[wide(placement.number(placement.of(w)))].worker = w;
@@ -127,7 +127,7 @@ void Engine::describe_kinds() {
 
 /// The earliest cycle at which anything wants to happen; ~0: never.
 cycle Engine::next_event() const {
-    cycle next = beyond_.next();
+    cycle next = beyond_->next();
     for (const Tile& tile : tiles_) {
         next = std::min(next, tile.scheduler.next());
         for (const Tile::Deed& d : tile.deeds)
@@ -250,8 +250,8 @@ bool Engine::run_window() {
     if (!failure_)
         perform_deeds();
     for (Tile& tile : tiles_)
-        beyond_.accept(tile.leaving.requests);
-    beyond_.serve(window_end_);
+        beyond_->accept(tile.leaving.requests);
+    beyond_->serve(window_end_);
     set_floors(window_end_);
     for (Tile& tile : tiles_) {
         answer_parked(tile);
@@ -315,22 +315,22 @@ Report Engine::run() {
         finish_frame();
         if (last)
             break;
-        cycle quiet = std::max({cycles_, window_end_, beyond_.drain()});
+        cycle quiet = std::max({cycles_, window_end_, beyond_->drain()});
         for (const Tile& tile : tiles_)
             for (unsigned level = 1; level < tile_levels_; ++level)
                 for (const Cache& cache : tile.caches[level])
                     quiet = std::max(quiet, cache.quiet());
-        for (const SharedCache& shared : beyond_.caches())
+        for (const SharedCache& shared : beyond_->caches())
             quiet = std::max(quiet, shared.cache.quiet());
         begin_frame((quiet + window_cycles_ - 1) / window_cycles_ * window_cycles_);
         if (frame + 2 == options_.frames) {
-            beyond_.count_from(to_memory_clocks(config_, cycles_));
+            beyond_->count_from(cycles_);
             warm = report();
         }
         if (options_.next_frame)
             options_.next_frame(frame + 1);
     }
-    beyond_.finish();
+    beyond_->finish();
     Report r = report();
     r.all_vops = r.core.vops;
     r.all_instructions = r.core.instructions;
@@ -345,15 +345,15 @@ Report Engine::run() {
 void Engine::finish_frame() {
     auto serve_all = [this] {
         for (Tile& tile : tiles_)
-            beyond_.accept(tile.leaving.requests);
-        beyond_.serve(Beyond::everything);
+            beyond_->accept(tile.leaving.requests);
+        beyond_->serve(Beyond::everything);
     };
     serve_all();
     for (unsigned level = 1; level < tile_levels_; ++level)
         for (const Tile& tile : tiles_)
             for (const Cache& cache : tile.caches[level])
                 misplaced_lines_ += cache.misplaced();
-    misplaced_lines_ += beyond_.misplaced();
+    misplaced_lines_ += beyond_->misplaced();
     for (Hart& h : harts_) {
         settle_loads(h);
         await_stores(h);
@@ -386,7 +386,7 @@ void Engine::finish_frame() {
                 cache.finish(cycles_, frame_end, lasting);
         serve_all();
     }
-    beyond_.write_back(cycles_, frame_end, lasting);
+    beyond_->write_back(cycles_, frame_end, lasting);
 }
 
 std::string Engine::describe_deadlock() const {
@@ -423,10 +423,10 @@ Interval Engine::sums() const {
             s.l2_misses += l2.counters().misses;
         }
     }
-    const MemoryCounters memory = beyond_.memory().counters();
+    const MemoryCounters memory = beyond_->counters();
     s.memory_reads = memory.reads;
     s.memory_writes = memory.writes;
-    s.network_bytes = beyond_.network().counters().bytes;
+    s.network_bytes = beyond_->network().counters().bytes;
     return s;
 }
 
@@ -443,9 +443,9 @@ Report Engine::report() const {
         attributions.push_back(&tile.attribution);
     r.traffic = Attribution::traffic(attributions);
     r.touched = lines_.touched();
-    r.network = beyond_.network().report();
-    r.memory = beyond_.memory().counters();
-    r.memory_by_rank = beyond_.memory().rank_counters();
+    r.network = beyond_->network().report();
+    r.memory = beyond_->counters();
+    r.memory_by_rank = beyond_->rank_counters();
     r.work.resize(labels_.columns());
     for (const Tile& tile : tiles_) {
         for (const Jitter& jitter : tile.jitters) {
@@ -484,13 +484,13 @@ Report Engine::report() const {
         r.threads.push_back(std::move(t));
     }
     r.drained = std::max({r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)),
-                          beyond_.network().quiet()});
+                          beyond_->network().quiet()});
     for (const Tile& tile : tiles_)
         for (unsigned level = 1; level < tile_levels_; ++level)
             for (const Cache& cache : tile.caches[level])
                 r.drained = std::max(r.drained, cache.quiet());
     r.misplaced_lines = misplaced_lines_;
-    for (const SharedCache& shared : beyond_.caches()) {
+    for (const SharedCache& shared : beyond_->caches()) {
         r.caches(tile_levels_).push_back(shared.cache.counters());
         r.drained = std::max(r.drained, shared.cache.quiet());
     }

@@ -289,7 +289,7 @@ private:
     LineMap lines_;
     Homes homes_;
     Published published_; // words that several tiles reach
-    Beyond beyond_;
+    std::unique_ptr<Beyond> beyond_;
     std::deque<Tile> tiles_;
     std::deque<Hart> harts_;
     HostThreads host_threads_; // tile t runs on number t % count

@@ -55,6 +55,7 @@ Explanations make() {
     const auto add = [&out](const char* path, const char* unit, const char* meaning) {
         out.push_back({path, unit, meaning});
     };
+    add("mode", "", "of the simulation, that made all that follows: fast or reference (sim.mode)");
     add("workers", "", "workers, each on a hardware thread of its own");
     add("warm_up_cycles", "cycles", "before what counts: all other figures but the host's are from then on");
     add("cycles", "cycles", "until the last worker had returned and its last result was there");

@@ -177,6 +177,7 @@ json energy(const Report& r) {
 std::string print_json(const Report& r, bool with_host) {
     json out;
     out["machine"] = configuration(r.config);
+    out["mode"] = r.config.sim.mode;
     out["workers"] = r.workers;
     out["warm_up_cycles"] = r.warm_up;
     out["cycles"] = r.cycles;

@@ -100,9 +100,28 @@ std::uint64_t refreshes(const MemoryConfig& c, std::uint64_t end) {
     return count;
 }
 
+/// Those of a channel that were issued in order of time. They are put off, or wait for rows to close, and go
+/// on while other channels are busy: `due` until its last burst at the least, `all` until the run's end at
+/// the most.
+void check_refreshes(const MemoryConfig& c, std::uint64_t issued, std::uint64_t due, std::uint64_t all) {
+    const auto turns = static_cast<std::uint64_t>(c.refresh == "per-bank" ? c.bank_groups * c.banks : 1);
+    const std::uint64_t apart =
+        static_cast<std::uint64_t>(c.ranks) * (turns + 1 + static_cast<std::uint64_t>(c.refresh_postponed));
+    at_most("refreshes <= those due until the end, and few more", issued, all * turns + apart);
+    at_most("refreshes due <= those issued, and those put off", due * turns, issued + apart);
+}
+
+/// Little's law: what waited in a queue, on average, is no more than there are places.
+void check_queue(const MemoryConfig& c, const MemoryCounters& channel) {
+    const std::uint64_t moved = channel.read_bursts * static_cast<std::uint64_t>(c.tCL + c.burst_clocks());
+    at_most("clocks in the read queue <= places x clocks", channel.read_clocks - moved,
+            static_cast<std::uint64_t>(c.read_queue) * channel.last_clock);
+}
+
 void check_memory(const Report& r) {
     const MemoryConfig& c = r.config.memory;
     auto ranks = static_cast<std::size_t>(c.ranks);
+    const bool queued = c.controller == "queued";
     const std::uint64_t begin = to_memory_clocks(r.config, r.warm_up);
     MemoryCounters sum;
     for (std::size_t channel = 0; channel < r.memory_by_rank.size(); channel += ranks) {
@@ -112,8 +131,16 @@ void check_memory(const Report& r) {
             all += r.memory_by_rank[channel + rank];
         }
         check_commands(c, all, ranks, r.warm_up == 0);
-        equal("refreshes = clocks / tREFI", all.refreshes,
-              all.last_clock == 0 ? 0 : refreshes(c, begin + all.last_clock) - refreshes(c, begin));
+        const std::uint64_t due =
+            all.last_clock == 0 ? 0 : refreshes(c, begin + all.last_clock) - refreshes(c, begin);
+        if (queued) {
+            const std::uint64_t end = begin + to_memory_clocks(r.config, r.drained);
+            check_refreshes(c, all.refreshes, due, refreshes(c, end) - refreshes(c, begin));
+            check_queue(c, all);
+        } else {
+            equal("refreshes = clocks / tREFI", all.refreshes, due);
+            equal("reads wait for no queue", all.read_wait_clocks, 0);
+        }
         at_most("bus clocks of a channel <= clocks", all.busy_clocks, all.last_clock);
         at_most("turnarounds < bursts", all.turnarounds, all.read_bursts + all.write_bursts);
         at_most("turnarounds <= 2 x the lesser of read and written bursts", all.turnarounds,

@@ -108,7 +108,7 @@ void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool 
         return in_tile(*h.tile);
     for (Tile& tile : tiles_)
         in_tile(tile);
-    if (beyond_.caches().size() > 1)
+    if (beyond_->caches().size() > 1)
         exit_of(h).tell(Request::invalidate, address, t, h.column);
 }
 

@@ -19,6 +19,9 @@ void overview(std::string& out, const Report& r) {
     if (r.warm_up != 0)
         out += fmt::format(
             "warm-up               {:>14}   cycles before these, in no figure but the host's\n", r.warm_up);
+    out += fmt::format("mode                  {:>14}   memory {}\n", r.config.sim.mode,
+                       r.config.memory.controller == "queued" ? "has queues and decides in order of time"
+                                                              : "answers each request when it comes");
     out += fmt::format("workers               {:>14}   on {} tiles x {} cores x {} threads\n", r.workers,
                        r.config.chip.tiles, r.config.chip.cores, r.config.chip.threads);
     out += fmt::format("order of threads      {:>14}   {}\n",

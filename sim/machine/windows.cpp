@@ -1,6 +1,6 @@
 #include "sim/machine/windows.h"
 
-#include "sim/memory/memory.h"
+#include "sim/memory/memory_lines.h"
 #include "sim/network/ways.h"
 
 #include <algorithm>
@@ -25,9 +25,13 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
 std::uint64_t shortest_answer(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
     const Ways::Shortest way = Ways::shortest(c);
+    const std::uint64_t memory = MemoryLines::shortest_read(c) + way.back;
+    const bool queued = c.memory.controller == "queued";
+    if (!c.beyond_tiles(last)) // what has waited for queues is decided when it has long been there
+        return queued ? memory : way.there + memory;
     // A cache's bank takes its turn when the request is there: only what follows can be counted on.
-    return c.beyond_tiles(last) ? wide(c.cache(last).latency) + way.back
-                                : way.there + Memory::shortest_read(c) + way.back;
+    const std::uint64_t cache = wide(c.cache(last).latency) + way.back;
+    return queued ? std::min(cache, memory) : cache;
 }
 
 std::uint64_t window_cycles(const Config& c) {

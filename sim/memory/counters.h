@@ -61,10 +61,11 @@ struct MemoryCounters {
     std::uint64_t row_hits = 0, row_empties = 0, row_conflicts = 0, activates = 0, reopened = 0,
                   precharges = 0, refreshes = 0;
     std::uint64_t batches = 0, turnarounds = 0, rank_switches = 0;
-    std::uint64_t busy_clocks = 0, read_clocks = 0, queue_clocks = 0, write_wait_clocks = 0;
+    std::uint64_t busy_clocks = 0, read_clocks = 0, queue_clocks = 0, read_wait_clocks = 0,
+                  write_wait_clocks = 0;
     std::uint64_t last_clock = 0; // in which the last burst ended; of a sum, the latest
 };
-inline constexpr std::array<CounterRow<MemoryCounters>, 20> memory_counters = {{
+inline constexpr std::array<CounterRow<MemoryCounters>, 21> memory_counters = {{
     {"reads", &MemoryCounters::reads, "lines read"},
     {"writes", &MemoryCounters::writes, "lines written"},
     {"read_bursts", &MemoryCounters::read_bursts, "bursts read, of bus_bytes x burst_length bytes"},
@@ -78,7 +79,8 @@ inline constexpr std::array<CounterRow<MemoryCounters>, 20> memory_counters = {{
     {"reopened", &MemoryCounters::reopened,
      "of these, once more for a burst whose row was closed before it was served"},
     {"precharges", &MemoryCounters::precharges, "rows closed, those closed by a refresh not counted"},
-    {"refreshes", &MemoryCounters::refreshes, "refreshes of a rank, until the last burst"},
+    {"refreshes", &MemoryCounters::refreshes,
+     "refreshes of a rank, or of single banks, until the last burst; in order of time: while memory is used"},
     {"batches", &MemoryCounters::batches, "times that queued writes were sent (with a channel's first rank)"},
     {"turnarounds", &MemoryCounters::turnarounds,
      "neighbouring bursts of different direction (with a channel's first rank)"},
@@ -90,6 +92,8 @@ inline constexpr std::array<CounterRow<MemoryCounters>, 20> memory_counters = {{
      "memory clocks from a read burst's arrival to its last data, summed"},
     {"queue_clocks", &MemoryCounters::queue_clocks,
      "of these, beyond what its own commands take in an idle memory"},
+    {"read_wait_clocks", &MemoryCounters::read_wait_clocks,
+     "memory clocks that read bursts waited for a place in the queue before, summed (queued controller)"},
     {"write_wait_clocks", &MemoryCounters::write_wait_clocks,
      "memory clocks that written bursts waited for a place in the queue, summed"},
 }};

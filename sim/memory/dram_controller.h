@@ -53,7 +53,7 @@ public:
         plan();
         return step_.at;
     }
-    /// Writes no longer wait for company.
+    /// Writes that are queued no longer wait for company.
     void flush();
     bool empty() const { return queue_[0].size + queue_[1].size == 0; }
 

@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <bit>
 
 namespace sim {
 namespace {
@@ -18,21 +17,24 @@ std::uint64_t wide(integer x) {
 
 } // namespace
 
-QueuedMemory::QueuedMemory(const Config& config)
-    : core_ps_(wide(config.chip.clock_ps)), memory_ps_(wide(config.memory.clock_ps)),
-      there_(wide(config.memory.controller_cycles) / 2),
-      back_(wide(config.memory.controller_cycles) - there_),
-      burst_shift_(static_cast<unsigned>(
-          std::countr_zero(wide(config.memory.bus_bytes * config.memory.burst_length)))),
-      parts_(static_cast<std::uint32_t>(config.last_cache().line_bytes >> burst_shift_)),
-      mapping_(config.memory), timing_(config.memory),
-      lines_(wide(config.memory.channels * config.memory.ranks)) {
+std::string QueuedMemory::mistake(const Config& config) {
     const MemoryConfig& c = config.memory;
-    if (parts_ > c.read_queue || parts_ > c.write_queue)
-        throw ConfigError(fmt::format("a line of the L2 is {} bursts, more than memory.{}_queue, {}, holds; "
-                                      "make it that many at least",
-                                      parts_, parts_ > c.read_queue ? "read" : "write",
-                                      parts_ > c.read_queue ? c.read_queue : c.write_queue));
+    const integer parts = config.last_cache().line_bytes / (c.bus_bytes * c.burst_length);
+    if (parts > c.read_queue)
+        return fmt::format("memory.read_queue is {}, but a line of the last cache is {} bursts; make it that "
+                           "many at least",
+                           c.read_queue, parts);
+    if (parts > c.write_queue - c.write_low) // no more are sent than down to write_low
+        return fmt::format("memory.write_queue is {}, {} more than memory.write_low, but a line of the last "
+                           "cache is {} bursts; make it {} at least",
+                           c.write_queue, c.write_queue - c.write_low, parts, c.write_low + parts);
+    return "";
+}
+
+QueuedMemory::QueuedMemory(const Config& config) : MemoryLines(config) {
+    if (const std::string what = mistake(config); !what.empty())
+        throw ConfigError(what);
+    const MemoryConfig& c = config.memory;
     channels_.reserve(wide(c.channels));
     for (std::uint32_t i = 0; i < wide(c.channels); ++i)
         channels_.emplace_back(i, c, timing_);
@@ -41,9 +43,7 @@ QueuedMemory::QueuedMemory(const Config& config)
 }
 
 bool QueuedMemory::has_room(Column kind, std::uint64_t burst) const {
-    auto channel = [&](std::uint32_t part) {
-        return mapping_.locate((burst + part) << burst_shift_).channel;
-    };
+    auto channel = [&](std::uint32_t part) { return place(burst + part).channel; };
     for (std::uint32_t i = 0; i < parts_; ++i) {
         std::uint32_t c = channel(i);
         if (channels_[c].has_room(kind, parts_))
@@ -58,13 +58,11 @@ bool QueuedMemory::has_room(Column kind, std::uint64_t burst) const {
 }
 
 void QueuedMemory::send(Column kind, std::uint64_t address, std::uint64_t id, cycle t) {
-    std::uint64_t burst = address >> burst_shift_ & ~std::uint64_t{parts_ - 1};
+    std::uint64_t burst = first_burst(address);
     for (std::uint32_t i = 0; i < parts_; ++i) {
-        DramPlace p = mapping_.locate((burst + i) << burst_shift_);
-        if (i == 0) {
-            MemoryCounters& n = lines_[p.channel * lines_.size() / channels_.size() + p.rank];
-            ++(kind == Column::read ? n.reads : n.writes);
-        }
+        DramPlace p = place(burst + i);
+        if (i == 0)
+            ++(kind == Column::read ? counters_of(p).reads : counters_of(p).writes);
         channels_[p.channel].enqueue(kind, p, burst + i, id, arrival(t));
         collect(channels_[p.channel]);
         next_[p.channel] = channels_[p.channel].next_event();
@@ -73,7 +71,7 @@ void QueuedMemory::send(Column kind, std::uint64_t address, std::uint64_t id, cy
 
 bool QueuedMemory::read(std::uint64_t id, std::uint64_t address, cycle t) {
     advance_to(t);
-    if (!has_room(Column::read, address >> burst_shift_ & ~std::uint64_t{parts_ - 1}))
+    if (!has_room(Column::read, first_burst(address)))
         return false;
     std::uint32_t slot = free_;
     if (slot == none) {
@@ -83,6 +81,7 @@ bool QueuedMemory::read(std::uint64_t id, std::uint64_t address, cycle t) {
         free_ = reading_[slot].next_free;
     }
     reading_[slot] = {id, number_++, 0, parts_, none};
+    ++undecided_;
     send(Column::read, address, slot, t);
     deliver();
     return true;
@@ -90,7 +89,7 @@ bool QueuedMemory::read(std::uint64_t id, std::uint64_t address, cycle t) {
 
 bool QueuedMemory::write(std::uint64_t address, cycle t) {
     advance_to(t);
-    if (!has_room(Column::write, address >> burst_shift_ & ~std::uint64_t{parts_ - 1}))
+    if (!has_room(Column::write, first_burst(address)))
         return false;
     send(Column::write, address, 0, t);
     return true;
@@ -104,6 +103,7 @@ void QueuedMemory::collect(DramController& c) {
         if (--line.left != 0)
             continue;
         answers_.push_back({line.number, {line.id, leave(line.last) + back_}});
+        --undecided_;
         line.next_free = free_;
         free_ = slot;
     }
@@ -138,9 +138,7 @@ cycle QueuedMemory::next_event() {
     Clock next = *std::min_element(next_.begin(), next_.end());
     if (next == DramController::never)
         return never;
-    // arrival(t) > next
-    std::uint64_t t = next * memory_ps_ / core_ps_ + 1;
-    return t > there_ ? t - there_ : 0;
+    return first_after(next);
 }
 
 void QueuedMemory::flush() {
@@ -150,33 +148,27 @@ void QueuedMemory::flush() {
     }
 }
 
-void QueuedMemory::finish() {
+cycle QueuedMemory::finish() {
     flush();
+    Clock end = 0;
     for (DramController& c : channels_) {
         while (!c.empty())
             c.advance_to(c.next_event() + 1);
-        for (const MemoryCounters& n : c.counters())
+        for (const MemoryCounters& n : c.counters()) {
             c.advance_to(n.last_clock);
+            end = std::max(end, n.last_clock);
+        }
         collect(c);
         next_[static_cast<std::size_t>(&c - channels_.data())] = c.next_event();
     }
     deliver();
+    return leave(end);
 }
 
-std::vector<MemoryCounters> QueuedMemory::rank_counters() const {
-    std::vector<MemoryCounters> out = lines_;
-    auto to = out.begin();
-    for (const DramController& c : channels_)
-        for (const MemoryCounters& rank : c.counters())
-            *to++ += rank;
-    return out;
-}
-
-MemoryCounters QueuedMemory::counters() const {
-    MemoryCounters sum;
-    for (const MemoryCounters& rank : rank_counters())
-        sum += rank;
-    return sum;
+void QueuedMemory::count_wait(Column kind, std::uint64_t address, cycle since, cycle until) {
+    MemoryCounters& n = counters_of(place(first_burst(address)));
+    (kind == Column::read ? n.read_wait_clocks : n.write_wait_clocks) +=
+        (arrival(until) - arrival(since)) * parts_;
 }
 
 void QueuedMemory::set_log(std::vector<DramCommand>* log) {

@@ -211,6 +211,7 @@ int ValidateCommand::run() const {
     };
     fmt::print("{:<10} {:<52} {:<14} {}\n", "result", "what", "bar", "measured");
     add(check_core());
+    add(check_reference());
     add(check_network());
     add(check_dram());
     std::vector<ValidationRow> frames;

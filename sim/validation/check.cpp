@@ -5,6 +5,7 @@
 #include "sim/memory/dram_load.h"
 #include "sim/validation/core_forms.h"
 #include "sim/validation/network_forms.h"
+#include "sim/validation/reference_forms.h"
 
 #include <fmt/format.h>
 
@@ -52,16 +53,28 @@ int exit_code(const std::vector<ValidationRow>& rows) {
                : 0;
 }
 
-std::vector<ValidationRow> check_core() {
+namespace {
+
+std::vector<ValidationRow> check_forms(const std::string& of, const std::vector<CoreForm>& forms) {
     std::vector<ValidationRow> rows;
-    for (const CoreForm& form : core_forms()) {
+    for (const CoreForm& form : forms) {
         const Report r = form.run();
         const bool right = r.cycles == form.cycles && r.core.instructions == form.instructions;
-        rows.push_back({"core: " + form.name, "closed form", "exact cycles",
+        rows.push_back({of + ": " + form.name, "closed form", "exact cycles",
                         fmt::format("{} for {}", r.cycles, form.cycles),
                         right ? ValidationRow::State::passed : ValidationRow::State::missed});
     }
     return rows;
+}
+
+} // namespace
+
+std::vector<ValidationRow> check_core() {
+    return check_forms("core", core_forms());
+}
+
+std::vector<ValidationRow> check_reference() {
+    return check_forms("reference mode", reference_forms());
 }
 
 std::vector<ValidationRow> check_network() {

@@ -68,6 +68,12 @@ std::vector<Named> hierarchies() {
     five.l3 = cache(five.l3, 16 * kib, 4, 64, "2", "inclusive");
     five.l4 = cache(five.l4, 24 * kib, 6, 64, "tile", "exclusive");
     five.l5 = cache(five.l5, 64 * kib, 8, 128, "chip", "none");
+    for (std::size_t i = 0, all = out.size(); i < all; ++i) // caches that wait for their memory
+        if (out[i].config.tile_levels() != out[i].config.cache_levels()) {
+            out.push_back(out[i]);
+            out.back().name += ", queued memory";
+            out.back().config.memory.controller = "queued";
+        }
     return out;
 }
 
@@ -77,9 +83,9 @@ public:
     explicit Caches(const Config& c)
         : config_(c), space_(1 << 20),
           lines_(space_, static_cast<unsigned>(std::countr_zero(u(c.l1.line_bytes)))),
-          beyond_(c, [this](std::uint32_t tile, cycle ticket, const Answer& a) {
+          beyond_(Beyond::make(c, [this](std::uint32_t tile, cycle ticket, const Answer& a) {
               tiles_[tile].tickets.answer(ticket, a.ready, a.from);
-          }) {
+          })) {
         for (std::uint32_t t = 0; t < u(c.chip.tiles); ++t) {
             Tile& tile = tiles_.emplace_back(c, t, 1000, lines_, 1);
             for (std::size_t core = 0; core < u(c.chip.cores); ++core) {
@@ -88,15 +94,15 @@ public:
                     l1_.emplace_back(c, 0, false, tile.earliest, site_, l2, tile.tickets, tile.attribution));
             }
         }
-        beyond_.connect(tiles_);
+        beyond_->connect(tiles_);
     }
     void access(std::uint64_t core, std::uint64_t address, bool write) {
         now_ += 100000;
         Tile& tile = tiles_[core / u(config_.chip.cores)];
         tile.earliest = now_;
         ASSERT_FALSE(l1_[core].access(address / u(config_.l1.line_bytes), write, 1, now_, 0).refused);
-        beyond_.accept(tile.leaving.requests);
-        beyond_.serve(Beyond::everything);
+        beyond_->accept(tile.leaving.requests);
+        beyond_->serve(Beyond::everything);
         tile.tickets.forget(now_);
     }
     std::vector<CacheCounters> counters(unsigned level) {
@@ -105,7 +111,7 @@ public:
             for (const Cache& c : l1_)
                 out.push_back(c.counters());
         else if (level == config_.tile_levels())
-            for (const SharedCache& shared : beyond_.caches())
+            for (const SharedCache& shared : beyond_->caches())
                 out.push_back(shared.cache.counters());
         else
             for (const Tile& tile : tiles_)
@@ -114,14 +120,14 @@ public:
         return out;
     }
     std::uint64_t misplaced() const {
-        std::uint64_t lines = beyond_.misplaced();
+        std::uint64_t lines = beyond_->misplaced();
         for (const Tile& tile : tiles_)
             for (unsigned level = 1; level < config_.tile_levels(); ++level)
                 for (const Cache& c : tile.caches[level])
                     lines += c.misplaced();
         return lines;
     }
-    MemoryCounters memory() const { return beyond_.memory().counters(); }
+    MemoryCounters memory() const { return beyond_->counters(); }
 
 private:
     Config config_;
@@ -131,7 +137,7 @@ private:
     LineMap lines_;
     std::deque<Tile> tiles_;
     std::deque<Cache> l1_;
-    Beyond beyond_;
+    std::unique_ptr<Beyond> beyond_;
 };
 
 HierarchyOracle oracle(const Config& c) {

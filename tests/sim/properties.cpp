@@ -10,6 +10,32 @@
 namespace sim::test {
 namespace {
 
+/// The queued controller, in either mode.
+void add_queues(Config& c, std::mt19937& random) {
+    auto pick = [&](integer low, integer high) {
+        return low + static_cast<integer>(random() % u(high - low + 1));
+    };
+    MemoryConfig& m = c.memory;
+    m.controller = "queued";
+    const integer bursts = c.last_cache().line_bytes / (m.bus_bytes * m.burst_length);
+    m.read_queue = bursts + pick(0, 40);
+    m.write_queue = std::max(m.write_queue, m.write_low + bursts);
+    m.scheduler = pick(0, 1) == 0 ? "fr-fcfs" : "fcfs";
+    m.age_cap = pick(0, 1) == 0 ? 0 : pick(1, 3000);
+    m.page_policy = std::array{"open", "closed", "timeout"}[random() % 3];
+    m.page_timeout = pick(1, 500);
+    m.refresh_postponed = pick(0, 8);
+    if (const integer turns = m.ranks * m.bank_groups * m.banks;
+        pick(0, 1) == 0 && m.tREFI >= std::max<integer>(40 * turns, 2000)) {
+        m.refresh = "per-bank";
+        m.refresh_postponed = 0;
+    }
+    if (pick(0, 1) == 0) {
+        c.sim.mode = "reference";
+        c.sim.quantum = c.sim.window = 0;
+    }
+}
+
 Config random_machine(std::mt19937& random) {
     auto pick = [&](integer low, integer high) {
         return low + static_cast<integer>(random() % u(high - low + 1));
@@ -148,6 +174,8 @@ Config random_machine(std::mt19937& random) {
     c.coherence.visibility_cycles = power(0, 14);
     c.coherence.atomic_cycles = pick(0, 1000);
     c.coherence.remote_cycles = pick(0, 5000);
+    if (pick(0, 1) == 0)
+        add_queues(c, random);
     return c;
 }
 

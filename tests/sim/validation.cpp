@@ -28,6 +28,13 @@ TEST(Validation, ABarIsABar) {
     EXPECT_EQ(exit_code({row, missed, row}), 1);
 }
 
+TEST(Validation, TheReferenceModesFormsPass) {
+    const std::vector<ValidationRow> rows = check_reference();
+    EXPECT_EQ(rows.size(), 4U);
+    for (const ValidationRow& row : rows)
+        EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
+}
+
 TEST(Validation, ClosedFormsPass) {
     for (const std::vector<ValidationRow>& rows : {check_core(), check_network(), check_dram()}) {
         EXPECT_GT(rows.size(), 13U);

@@ -1,0 +1,160 @@
+#include "sim/machine/immediate_beyond.h"
+
+#include "sim/machine/windows.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace sim {
+namespace {
+
+std::size_t wide(integer x) {
+    return static_cast<std::size_t>(x);
+}
+
+/// Requests of one exit that wait until it is known when an MSHR or a place in the buffer is free, in the
+/// order in which they left.
+void hold(std::vector<Request>& held, const Request& r) {
+    auto later = std::upper_bound(held.begin(), held.end(), r,
+                                  [](const Request& a, const Request& b) { return a.sequence < b.sequence; });
+    held.insert(later, r);
+}
+/// The first that waits for a place in the buffer (or an MSHR) tries again at `free`, when one is.
+std::optional<Request> release(std::vector<Request>& held, bool buffer, cycle free) {
+    auto first = std::find_if(held.begin(), held.end(),
+                              [&](const Request& r) { return (r.write != Request::nothing) == buffer; });
+    if (first == held.end())
+        return std::nullopt;
+    Request r = *first;
+    held.erase(first);
+    r.at = std::max(r.at, free);
+    return r;
+}
+
+} // namespace
+
+ImmediateBeyond::ImmediateBeyond(const Config& config, Reply reply)
+    : Beyond(config, std::move(reply)), memory_(config, disorder) {
+    const CacheConfig& last = config.cache(config.tile_levels() - 1);
+    ports_.assign(wide(config.chip.tiles) * exits_,
+                  Port{OrderedPool(wide(last.mshrs)), OrderedPool(wide(last.write_back_buffer)), {}});
+}
+
+void ImmediateBeyond::count_from(cycle t) {
+    memory_.count_refreshes(to_memory_clocks(config_, t));
+}
+
+void ImmediateBeyond::serve(cycle end) {
+    while (!waiting_.empty() && waiting_.front().at < end) {
+        Request r = pop();
+        served_ = r.at;
+        if (caches_.empty())
+            serve_from_memory(r);
+        else
+            serve_from_cache(r);
+    }
+    if (end != everything)
+        served_ = std::max(served_, end);
+}
+
+void ImmediateBeyond::serve_from_memory(Request r) {
+    Port& port = ports_[port_of(r)];
+    if (r.write != Request::nothing) {
+        OrderedPool::Grant buffer = port.write_backs.take(r.at);
+        if (buffer.at > r.at) {
+            r.at = buffer.at;
+            return push(r);
+        }
+        port.write_backs.hold(buffer.entry,
+                              memory_.write(r.write, ways_.write(asker(r), r.write, r.bytes, r.at)));
+        r.write = Request::nothing;
+    }
+    if (r.read == Request::nothing)
+        return;
+    OrderedPool::Grant mshr = port.mshrs.take(r.at);
+    if (mshr.at > r.at) {
+        r.at = mshr.at;
+        return push(r);
+    }
+    cycle ready = memory_.read(r.read, ways_.ask(asker(r), r.read, r.at));
+    ready = ways_.answer(asker(r), r.read, line_bytes_, ready);
+    port.mshrs.hold(mshr.entry, ready);
+    reply_(r.tile, r.ticket, {ready, Cause::memory});
+}
+
+void ImmediateBeyond::serve_from_cache(Request r) {
+    charge(r);
+    if (r.kind != Request::lines)
+        tell(r);
+    else if (r.stage == Request::arrives)
+        arrive(r);
+    else if (r.stage == Request::writes)
+        write(r);
+    else
+        read(r);
+}
+
+void ImmediateBeyond::arrive(Request r) {
+    Port& port = ports_[port_of(r)];
+    Cache& cache = cache_of(r).cache;
+    if (r.write != Request::nothing) {
+        OrderedPool::Grant buffer = port.write_backs.take(r.at);
+        if (buffer.at > r.at) {
+            if (port.write_backs.open())
+                return hold(port.held, r);
+            r.at = buffer.at;
+            return push(r);
+        }
+        port.write_backs.hold_open(buffer.entry);
+        Request w = r;
+        w.read = Request::nothing;
+        w.mshr = buffer.entry;
+        w.stage = Request::writes;
+        w.at = cache.book({r.write, r.bytes, ways_.write(asker(r), r.write, r.bytes, r.at), r.column});
+        push(w);
+        r.write = Request::nothing;
+    }
+    if (r.read == Request::nothing)
+        return;
+    OrderedPool::Grant mshr = port.mshrs.take(r.at);
+    if (mshr.at > r.at) {
+        if (port.mshrs.open())
+            return hold(port.held, r);
+        r.at = mshr.at;
+        return push(r);
+    }
+    port.mshrs.hold_open(mshr.entry);
+    r.mshr = mshr.entry;
+    r.stage = Request::reads;
+    r.at = cache.book({r.read, line_bytes_, ways_.ask(asker(r), r.read, r.at), r.column});
+    push(r);
+}
+
+void ImmediateBeyond::write(Request r) {
+    Access a{r.write, r.bytes, r.at, r.column, r.whole};
+    Answer answer = cache_of(r).cache.serve_booked(a, true);
+    if (answer.refused) {
+        r.at = answer.ready;
+        return push(r);
+    }
+    Port& port = ports_[port_of(r)];
+    port.write_backs.close(r.mshr, answer.ready);
+    if (std::optional<Request> next = release(port.held, true, answer.ready))
+        push(*next);
+}
+
+void ImmediateBeyond::read(Request r) {
+    Answer answer = cache_of(r).cache.serve_booked({r.read, line_bytes_, r.at, r.column}, false);
+    if (answer.refused) {
+        r.at = answer.ready;
+        return push(r);
+    }
+    answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
+    Port& port = ports_[port_of(r)];
+    port.mshrs.close(r.mshr, answer.ready);
+    reply_(r.tile, r.ticket, answer);
+    if (std::optional<Request> next = release(port.held, false, answer.ready))
+        push(*next);
+}
+
+} // namespace sim

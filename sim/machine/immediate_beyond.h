@@ -1,0 +1,53 @@
+// Beyond the tiles, with a memory that answers at once: when a request is served, all its times are known.
+#pragma once
+
+#include "sim/machine/beyond.h"
+#include "sim/memory/memory.h"
+#include "sim/memory/pool.h"
+
+namespace sim {
+
+class ImmediateBeyond final : public Beyond {
+public:
+    ImmediateBeyond(const Config& config, Reply reply);
+
+    void serve(cycle end) override;
+    cycle drain() override { return std::max({served_, ways_.network().quiet(), memory_.drain()}); }
+    void count_from(cycle t) override;
+    void finish() override { memory_.finish(); }
+    cycle next() override { return waiting_.empty() ? ~cycle{0} : waiting_.front().at; }
+    MemoryCounters counters() const override { return memory_.counters(); }
+    std::vector<MemoryCounters> rank_counters() const override { return memory_.rank_counters(); }
+
+private:
+    struct MemoryBelow final : Below {
+        MemoryBelow(Memory& m, Ways& w, std::uint32_t cache)
+            : memory(m), ways(w), who{Ways::Asker::cache, cache} {}
+        Answer read(const Access& a) override {
+            const cycle ready = memory.read(a.address, ways.ask(who, a.address, a.at));
+            return {ways.answer(who, a.address, a.bytes, ready), Cause::memory};
+        }
+        Answer write(const Access& a) override {
+            return {memory.write(a.address, ways.write(who, a.address, a.bytes, a.at)), Cause::memory};
+        }
+        Memory& memory;
+        Ways& ways;
+        Ways::Asker who;
+    };
+    struct Port {
+        OrderedPool mshrs, write_backs;
+        std::vector<Request> held; // until it is known when an MSHR is free
+    };
+    Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(memory_, ways_, cache); }
+    void serve_from_memory(Request r);
+    void serve_from_cache(Request r);
+    void arrive(Request r);
+    void write(Request r);
+    void read(Request r);
+
+    std::vector<Port> ports_; // by tile and exit
+    Memory memory_;
+    std::deque<MemoryBelow> below_; // by cache
+};
+
+} // namespace sim

@@ -1,0 +1,15 @@
+// Programs in the reference mode whose cycles follow from the machine's own numbers: tests and
+// `razor-sim validate` compare them.
+#pragma once
+
+#include "sim/validation/core_forms.h"
+
+namespace sim {
+
+/// plain_core() in the reference mode, memory clocks being cycles; without refreshes, but for what asks for
+/// them.
+Config plain_reference();
+/// Reads of memory end to end; each in exact cycles.
+std::vector<CoreForm> reference_forms();
+
+} // namespace sim
