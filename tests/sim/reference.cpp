@@ -95,7 +95,8 @@ cycle empty(const Config& c) {
 
 TEST(Reference, OneReadOfAnIdleMemory) {
     const Config c = reference();
-    for (cycle window : {1, 7, 20, 1000}) { // its answer is decided windows later than it is asked for
+    for (const cycle window :
+         {1U, 7U, 20U, 1000U}) { // its answer is decided windows later than it is asked for
         Bench b(c);
         b.read(1, 0, 3);
         EXPECT_EQ(b.answers(window).at(1), 3 + empty(c));
@@ -272,7 +273,7 @@ TEST(Reference, ASharedCacheWaitsForItsMemory) {
 TEST(Reference, ASharedCachesMshrIsHeldUntilTheDataAreThere) {
     const Config c = sharing(1);
     const cycle l3 = u(c.l3.latency);
-    for (cycle window : {1, 20, 10000}) {
+    for (const cycle window : {1U, 20U, 10000U}) {
         Bench b(c);
         b.read(1, 0, 0);
         b.read(2, line, 1, 1);
