@@ -45,6 +45,9 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     count_records(scene);
     pages = std::make_unique<PageStore>(meshes, topologies, options.page_bytes);
     counters.resize(static_cast<std::size_t>(options.workers));
+    size_arenas();
+    const std::uint64_t arenas =
+        static_cast<std::uint64_t>(options.workers) * (grid_bytes + node_bytes + list_bytes);
     // OpenPatch entries, a table a tree, take memory only where a patch is opened.
     const std::uint64_t scene_bytes =
         static_cast<std::uint64_t>(clusters) *
@@ -55,8 +58,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(
-        pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + all_grids + all_nodes +
-        all_lists + 2 * scene_bytes + pixels * 64 + 4 * gibibyte +
+        pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + arenas +
+        2 * scene_bytes + pixels * 64 + 4 * gibibyte +
         static_cast<std::uint64_t>(options.workers + trees) * 64 * isa::address_space::granule);
     place_scene(scene);
     place_graph();

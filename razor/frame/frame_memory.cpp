@@ -69,6 +69,20 @@ void Frame::Impl::count_records(const Scene& scene) {
             fmt::format("{}: the meshes have more faces than can be numbered; leave some out", scene.name));
 }
 
+void Frame::Impl::size_arenas() {
+    const auto size = [&](std::uint64_t wanted, std::uint64_t all) {
+        const std::uint64_t granule = isa::address_space::granule;
+        const std::uint64_t most = share_of(all, options.workers) - granule; // room for colours
+        return wanted == 0 ? most : std::min((wanted + granule - 1) / granule * granule, most);
+    };
+    grid_bytes = size(options.grid_bytes, all_grids);
+    node_bytes = size(options.node_bytes, all_nodes);
+    list_bytes = size(options.list_bytes, all_lists);
+    grid_lines_each = static_cast<int>(grid_bytes / line_bytes);
+    nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
+    list_lines_each = static_cast<int>(list_bytes / line_bytes);
+}
+
 void Frame::Impl::place_scene(const Scene& scene) {
     header = region<FrameHeader>("scene graph", -1, 1);
     new (header) FrameHeader{};
@@ -231,17 +245,6 @@ void Frame::Impl::place_workers() {
         header->trees.get()[t].patches.set(
             coloured<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count), colour_patches));
     // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
-    auto size = [&](std::uint64_t wanted, std::uint64_t all) {
-        std::uint64_t granule = isa::address_space::granule;
-        std::uint64_t most = share_of(all, options.workers) - granule; // room for colours
-        return wanted == 0 ? most : std::min((wanted + granule - 1) / granule * granule, most);
-    };
-    std::uint64_t grid_bytes = size(options.grid_bytes, all_grids);
-    std::uint64_t node_bytes = size(options.node_bytes, all_nodes);
-    std::uint64_t list_bytes = size(options.list_bytes, all_lists);
-    grid_lines_each = static_cast<int>(grid_bytes / line_bytes);
-    nodes_each = static_cast<int>(node_bytes / sizeof(KdNode));
-    list_lines_each = static_cast<int>(list_bytes / line_bytes);
     for (int w = 0; w < options.workers; ++w) {
         auto* p =
             reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule, true));

@@ -52,6 +52,7 @@ struct Frame::Impl {
     std::vector<CountersByKind> counters; // one a worker
     int trees = 1;
     int nodes_each = 0, grid_lines_each = 0, list_lines_each = 0; // arena sizes of a worker
+    std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // the same
     Plan plan = plan_flat;
     std::int64_t undrawn = 0;
     struct {
@@ -91,6 +92,7 @@ struct Frame::Impl {
         return w * (nodes_each + coloured_lines * nodes_a_line) + colour(w, colour_nodes) * nodes_a_line;
     }
     void count_records(const Scene& scene);
+    void size_arenas();
     void place_scene(const Scene& scene);
     void place_graph();
     void place_points();

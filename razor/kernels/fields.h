@@ -205,40 +205,48 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
     return blur;
 }
 
-/// No field's target edge length in the box is less. Growth of either sign: shrinking fields are bounded by
-/// what they begin with.
-inline sfloat least_target_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+/// From every field's origin no place in the box is further, its radius taken off.
+inline sfloat furthest_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
     sfloat lows[3] = {low.x, low.y, low.z};
     sfloat highs[3] = {high.x, high.y, high.z};
     sfloat first[3] = {f.low.x, f.low.y, f.low.z};
     sfloat last[3] = {f.high.x, f.high.y, f.high.z};
-    sfloat least = f.least_base;
-    if (branch(f.sloped))
-        least = common_blur_in(f, low, high, slack).least;
-    constexpr float down = 1.0F - 2.0e-6F;
-    constexpr float up = 1.0F + 2.0e-6F;
-    if (branch(f.least_growth < 0.0F)) {
-        sfloat furthest = 0.0F; // the square of a distance
-        for (int k = 0; k < 3; ++k) {
-            sfloat before = last[k] - lows[k];
-            sfloat after = highs[k] - first[k];
-            sfloat far = max(before, after);
-            furthest = fma(far, far, furthest);
-        }
-        sfloat far = sqrt(furthest) * up + slack;
-        far = max(far - f.least_radius, 0.0F);
-        return fma(f.least_growth, far, least) * down;
+    sfloat furthest = 0.0F; // the square of a distance
+    for (int k = 0; k < 3; ++k) {
+        sfloat before = last[k] - lows[k];
+        sfloat after = highs[k] - first[k];
+        sfloat far = max(before, after);
+        furthest = fma(far, far, furthest);
     }
-    sfloat nearest = 0.0F;
+    sfloat far = sqrt(furthest) * (1.0F + 2.0e-6F) + slack;
+    return max(far - f.least_radius, 0.0F);
+}
+/// From no field's origin any place in the box is nearer.
+inline sfloat nearest_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+    sfloat lows[3] = {low.x, low.y, low.z};
+    sfloat highs[3] = {high.x, high.y, high.z};
+    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
+    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
+    sfloat nearest = 0.0F; // the square of a distance
     for (int k = 0; k < 3; ++k) {
         sfloat before = lows[k] - last[k];
         sfloat after = first[k] - highs[k];
         sfloat near = max(max(before, after), 0.0F);
         nearest = fma(near, near, nearest);
     }
-    sfloat near = sqrt(nearest) * down - slack;
-    near = max(near - f.most_radius, 0.0F);
-    return fma(f.least_growth, near, least) * down;
+    sfloat near = sqrt(nearest) * (1.0F - 2.0e-6F) - slack;
+    return max(near - f.most_radius, 0.0F);
+}
+
+/// No field's target edge length in the box is less. Growth of either sign: shrinking fields are bounded by
+/// what they begin with.
+inline sfloat least_target_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+    sfloat least = f.least_base;
+    if (branch(f.sloped))
+        least = common_blur_in(f, low, high, slack).least;
+    sfloat distance =
+        branch(f.least_growth < 0.0F) ? furthest_in(f, low, high, slack) : nearest_in(f, low, high, slack);
+    return fma(f.least_growth, distance, least) * (1.0F - 2.0e-6F);
 }
 
 /// No field's target edge length in the box is more.
@@ -249,20 +257,8 @@ inline sfloat most_target_in(const FieldBounds& f, const svec& low, const svec& 
     constexpr float up = 1.0F + 2.0e-6F;
     if (branch(f.most_growth <= 0.0F))
         return most * up;
-    sfloat lows[3] = {low.x, low.y, low.z};
-    sfloat highs[3] = {high.x, high.y, high.z};
-    sfloat first[3] = {f.low.x, f.low.y, f.low.z};
-    sfloat last[3] = {f.high.x, f.high.y, f.high.z};
-    sfloat furthest = 0.0F;
-    for (int k = 0; k < 3; ++k) {
-        sfloat before = last[k] - lows[k];
-        sfloat after = highs[k] - first[k];
-        sfloat far = max(before, after);
-        furthest = fma(far, far, furthest);
-    }
-    sfloat far = sqrt(furthest) * up + slack;
-    far = max(far - f.least_radius, 0.0F);
-    return fma(f.most_growth, far, most) * up;
+    sfloat distance = furthest_in(f, low, high, slack);
+    return fma(f.most_growth, distance, most) * up;
 }
 
 } // namespace intersect_kernel

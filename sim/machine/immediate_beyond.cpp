@@ -94,21 +94,32 @@ void ImmediateBeyond::serve_from_cache(Request r) {
         read(r);
 }
 
+std::optional<std::size_t> ImmediateBeyond::take(OrderedPool& pool, const Request& request) {
+    const OrderedPool::Grant grant = pool.take(request.at);
+    if (grant.at <= request.at) {
+        pool.hold_open(grant.entry);
+        return grant.entry;
+    }
+    Request later = request;
+    if (pool.open()) {
+        hold(ports_[port_of(later)].held, later);
+    } else {
+        later.at = grant.at;
+        push(later);
+    }
+    return std::nullopt;
+}
+
 void ImmediateBeyond::arrive(Request r) {
     Port& port = ports_[port_of(r)];
     Cache& cache = cache_of(r).cache;
     if (r.write != Request::nothing) {
-        OrderedPool::Grant buffer = port.write_backs.take(r.at);
-        if (buffer.at > r.at) {
-            if (port.write_backs.open())
-                return hold(port.held, r);
-            r.at = buffer.at;
-            return push(r);
-        }
-        port.write_backs.hold_open(buffer.entry);
+        const auto buffer = take(port.write_backs, r);
+        if (!buffer)
+            return;
         Request w = r;
         w.read = Request::nothing;
-        w.mshr = buffer.entry;
+        w.mshr = *buffer;
         w.stage = Request::writes;
         w.at = cache.book({r.write, r.bytes, ways_.write(asker(r), r.write, r.bytes, r.at), r.column});
         push(w);
@@ -116,15 +127,10 @@ void ImmediateBeyond::arrive(Request r) {
     }
     if (r.read == Request::nothing)
         return;
-    OrderedPool::Grant mshr = port.mshrs.take(r.at);
-    if (mshr.at > r.at) {
-        if (port.mshrs.open())
-            return hold(port.held, r);
-        r.at = mshr.at;
-        return push(r);
-    }
-    port.mshrs.hold_open(mshr.entry);
-    r.mshr = mshr.entry;
+    const auto mshr = take(port.mshrs, r);
+    if (!mshr)
+        return;
+    r.mshr = *mshr;
     r.stage = Request::reads;
     r.at = cache.book({r.read, line_bytes_, ways_.ask(asker(r), r.read, r.at), r.column});
     push(r);

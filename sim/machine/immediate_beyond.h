@@ -5,6 +5,8 @@
 #include "sim/memory/memory.h"
 #include "sim/memory/pool.h"
 
+#include <optional>
+
 namespace sim {
 
 class ImmediateBeyond final : public Beyond {
@@ -42,6 +44,9 @@ private:
     void serve_from_memory(Request r);
     void serve_from_cache(Request r);
     void arrive(Request r);
+    /// The request's entry of the pool, held until it is closed; nothing: the request comes again when one is
+    /// free.
+    std::optional<std::size_t> take(OrderedPool& pool, const Request& request);
     void write(Request r);
     void read(Request r);
 

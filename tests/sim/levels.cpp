@@ -1,9 +1,8 @@
 // Several levels of caches, shared, inclusive and exclusive: against a simulator of their own (exact
 // integers), and in exact cycles.
 #include "tests/sim/hierarchy_oracle.h"
-#include "tests/sim/kernels.h"
-#include "tests/sim/machines.h"
 #include "tests/sim/references.h"
+#include "tests/sim/unchanging.h"
 
 #include <array>
 #include <filesystem>
@@ -304,33 +303,16 @@ TEST(Levels, SharedWordsMoveBetweenL2sOfCores) {
 
 TEST(Levels, ReportsDoNotDependOnHostThreads) {
     for (const char* inclusion : {"none", "inclusive"})
-        for (const char* share : {"chip", "4"}) {
-            std::array<std::string, 4> reports;
-            const std::array<int, 4> host_threads = {1, 2, 3, 8};
-            for (std::size_t i = 0; i < reports.size(); ++i) {
-                Config c;
-                c.chip.tiles = 6;
-                c.chip.cores = 2;
-                c.core.window = 8;
-                c.sim.quantum = 1000;
-                c.sim.window = 200;
-                c.l2.share = "core";
-                c.l2.size_bytes = 4 * kib;
-                c.l3 = cache(c.l3, 8 * kib, 4, 64, share, inclusion);
-                Memory memory;
-                auto* counter = reinterpret_cast<word*>(memory.data);
-                auto* data = reinterpret_cast<std::int32_t*>(memory.more);
-                const Report r = Machine(c).run(
-                    memory.space, 24, {{"work"}},
-                    [&](int w) { mixed_work(data + 4096 * (w / 3), counter + w % 3 * 16, w, 10); },
-                    host_threads[i]);
-                EXPECT_GT(r.l3[0].hits, 0U);
-                reports[i] = print_json(r, false);
-            }
-            for (std::size_t i = 1; i < reports.size(); ++i)
-                EXPECT_EQ(reports[i], reports[0])
-                    << host_threads[i] << " host threads, " << inclusion << share;
-        }
+        for (const char* share : {"chip", "4"})
+            expect_equal_on_host_threads(
+                [&](int host_threads) {
+                    Config c = busy_tiles();
+                    c.l3 = cache(c.l3, 8 * kib, 4, 64, share, inclusion);
+                    const Report r = run_busy_tiles(c, host_threads);
+                    EXPECT_GT(r.l3[0].hits, 0U);
+                    return r;
+                },
+                std::string(inclusion) + share);
 }
 
 // What the program says is dead need not be written back from beyond the tiles either.
@@ -338,31 +320,12 @@ TEST(Levels, DiscardReachesBeyondTheTile) {
     for (const bool discarded : {false, true}) {
         Config c = three("chip");
         c.l1.size_bytes = c.l2.size_bytes = 4 * kib;
-        const Report r = run_on(c, [=](std::byte* base, int) {
-            for (int i = 0; i < 512; ++i)
-                isa::timing::store(here, base + i * 64, 4, stamp{}, stamp{});
-            stamp s;
-            for (int i = 512; i < 2048; ++i) // all of them are in the L3 now
-                s = load(here, base + i * 64, 4, s);
-            if (discarded)
-                for (int i = 0; i < 512; ++i)
-                    isa::timing::discard(here, base + i * 64, 64, s);
-            for (int i = 2048; i < 40000; ++i)
-                s = load(here, base + i * 64, 4, s);
-        });
+        const Report r = write_and_displace(c, discarded);
         EXPECT_EQ(r.memory.writes, discarded ? 0U : 512U);
     }
 }
 
 TEST(Levels, BadLevelsAreOneClearLine) {
-    const auto mistake = [](const std::string& text) -> std::string {
-        try {
-            parse_machine(text, "m.toml");
-        } catch (const ConfigError& e) {
-            return e.what();
-        }
-        return "";
-    };
     const std::string l3 = "[chip]\ntiles = 2\n[l3]\nsize_bytes = 1048576\n";
     EXPECT_EQ(mistake(l3), "");
     EXPECT_NE(mistake("[l4]\nsize_bytes = 1048576\n").find("give l3.size_bytes too"), std::string::npos);

@@ -37,12 +37,37 @@ inline Report run_on(const Config& c, const std::function<void(std::byte*, int)>
     Memory memory;
     return Machine(c).run(memory.space, workers, {{"work"}}, [&](int w) { worker(memory.data, w); });
 }
+/// Writes 512 lines, reads 1,536 more, says that the first are dead if `discarded`, and reads until none of
+/// them is in any cache.
+inline Report write_and_displace(const Config& c, bool discarded) {
+    return run_on(c, [=](std::byte* base, int) {
+        for (int i = 0; i < 512; ++i)
+            isa::timing::store(here, base + i * 64, 4, stamp{}, stamp{});
+        stamp s;
+        for (int i = 512; i < 2048; ++i)
+            s = load(here, base + i * 64, 4, s);
+        if (discarded)
+            for (int i = 0; i < 512; ++i)
+                isa::timing::discard(here, base + i * 64, 64, s);
+        for (int i = 2048; i < 40000; ++i)
+            s = load(here, base + i * 64, 4, s);
+    });
+}
 /// When a value is there; waits for the answer if that is not known yet.
 inline cycle when(const stamp& s) {
     return is_ticket(s.last) ? running_engine->await(*running_hart, s.last).last : s.last;
 }
 inline cycle u(integer x) {
     return static_cast<cycle>(x);
+}
+/// What is wrong with a machine file; nothing: "".
+inline std::string mistake(const std::string& text) {
+    try {
+        parse_machine(text, "m.toml");
+    } catch (const ConfigError& e) {
+        return e.what();
+    }
+    return "";
 }
 inline std::uint64_t cause(const Report& r, Cause c) {
     return r.stack()[static_cast<std::size_t>(c)];

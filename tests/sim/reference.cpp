@@ -2,8 +2,8 @@
 // by hand, in exact cycles (a memory clock is a cycle, no refreshes if not asked for); then whole machines.
 #include "sim/machine/beyond.h"
 #include "sim/machine/tile.h"
-#include "tests/sim/kernels.h"
-#include "tests/sim/machines.h"
+#include "sim/validation/reference_forms.h"
+#include "tests/sim/unchanging.h"
 
 #include <fmt/core.h>
 
@@ -13,12 +13,7 @@ namespace sim::test {
 namespace {
 
 Config reference(const std::function<void(Config&)>& change = {}) {
-    Config c = simple();
-    c.sim.mode = "reference";
-    c.sim.quantum = 0;
-    c.memory.controller = "queued";
-    c.memory.clock_ps = c.chip.clock_ps;
-    c.memory.tREFI = 0;
+    Config c = plain_reference();
     if (change)
         change(c);
     check_consistency(c, "test");
@@ -330,61 +325,51 @@ std::string digest(const Report& r) {
 // What memory decides in a later window than it was asked in depends on no window's length, as long as no
 // wait is longer than operations may lie behind their turns.
 TEST(Reference, WindowsUpToTheShortestRoundTripChangeNothing) {
-    for (const char* share : {"tile", "chip"}) {
-        std::map<integer, std::string> digests;
-        for (integer window : {1, 7, 20, 0}) {
-            Config c = reference([&](Config& m) {
-                m.sim.mode = "fast"; // with a window of its own
-                m.chip.cores = 2, m.chip.threads = 2, m.core.window = 1;
-                m.sim.window = window;
-                m.l1.mshrs = m.l1.write_back_buffer = m.l2.mshrs = m.l2.write_back_buffer = 256;
-                m.l2.size_bytes = 4096;
-                m.memory.read_queue = 8;
-                m.memory.write_queue = m.memory.write_high = 2, m.memory.write_low = 0;
-                m.memory.tREFI = 1000;
-                if (*share == 'c')
-                    m.l3 = sharing(4).l3;
-            });
-            Memory s;
-            auto* words = reinterpret_cast<word*>(s.data);
-            auto* plain = reinterpret_cast<std::int32_t*>(s.more);
-            const Report r = Machine(c).run(s.space, 4, {{"work"}},
-                                            [&](int w) { mixed_work(plain, words + w * 16, w, 60); });
-            EXPECT_GT(r.memory.refreshes, 10U);
-            if (*share == 't') {
-                EXPECT_GT(r.memory.read_wait_clocks, 0U);
-                EXPECT_GT(r.memory.write_wait_clocks, 0U);
-            }
-            digests[window] = digest(r);
-        }
-        for (const auto& [window, text] : digests)
-            EXPECT_EQ(text, digests[0]) << share << ", window " << window;
-    }
+    for (const char* share : {"tile", "chip"})
+        expect_equal_in_windows(
+            [&](integer window) {
+                Config c = reference([&](Config& m) {
+                    m.sim.mode = "fast"; // with a window of its own
+                    m.chip.cores = 2, m.chip.threads = 2, m.core.window = 1;
+                    m.sim.window = window;
+                    m.l1.mshrs = m.l1.write_back_buffer = m.l2.mshrs = m.l2.write_back_buffer = 256;
+                    m.l2.size_bytes = 4096;
+                    m.memory.read_queue = 8;
+                    m.memory.write_queue = m.memory.write_high = 2, m.memory.write_low = 0;
+                    m.memory.tREFI = 1000;
+                    if (*share == 'c')
+                        m.l3 = sharing(4).l3;
+                });
+                const Shared s;
+                const Report r = s.run(c, 4, [&](int w) { mixed_work(s.plain(), s.at(w), w, 60); });
+                EXPECT_GT(r.memory.refreshes, 10U);
+                if (*share == 't') {
+                    EXPECT_GT(r.memory.read_wait_clocks, 0U);
+                    EXPECT_GT(r.memory.write_wait_clocks, 0U);
+                }
+                return r;
+            },
+            share, digest);
 }
 
 TEST(Reference, ReportsDoNotDependOnHostThreads) {
-    for (const char* share : {"tile", "chip"}) {
-        std::map<int, std::string> reports;
-        for (int host_threads : {1, 2, 3, 8}) {
-            const Config c = reference([&](Config& m) {
-                m.chip.tiles = 5, m.chip.cores = 2, m.chip.threads = 2, m.core.window = 8;
-                m.memory.write_queue = m.memory.write_high = 4, m.memory.write_low = 2;
-                m.memory.tREFI = 6240;
-                if (*share == 'c')
-                    m.l3 = sharing(4).l3;
-            });
-            Memory s;
-            auto* words = reinterpret_cast<word*>(s.data);
-            auto* plain = reinterpret_cast<std::int32_t*>(s.more);
-            const Report r = Machine(c).run(s.space, 20, {{"work"}},
-                                            [&](int w) { mixed_work(plain, words + w / 4 * 16, w, 15); },
-                                            host_threads, {0, 2, {}});
-            EXPECT_GT(r.warm_up, 0U);
-            reports[host_threads] = print_json(r, false);
-        }
-        for (int host_threads : {2, 3, 8})
-            EXPECT_EQ(reports[host_threads], reports[1]) << share << ", " << host_threads << " host threads";
-    }
+    for (const char* share : {"tile", "chip"})
+        expect_equal_on_host_threads(
+            [&](int host_threads) {
+                const Config c = reference([&](Config& m) {
+                    m.chip.tiles = 5, m.chip.cores = 2, m.chip.threads = 2, m.core.window = 8;
+                    m.memory.write_queue = m.memory.write_high = 4, m.memory.write_low = 2;
+                    m.memory.tREFI = 6240;
+                    if (*share == 'c')
+                        m.l3 = sharing(4).l3;
+                });
+                const Shared s;
+                const Report r = s.run(c, 20, [&](int w) { mixed_work(s.plain(), s.at(w / 4), w, 15); },
+                                       host_threads, {.frames = 2});
+                EXPECT_GT(r.warm_up, 0U);
+                return r;
+            },
+            share);
 }
 
 TEST(Reference, ADeadlockIsReportedWhateverMemoryDoes) {

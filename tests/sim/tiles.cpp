@@ -1,24 +1,10 @@
 // Tiles, windows and tickets: windows change nothing that they need not, tiles meet only between them.
-#include "tests/sim/kernels.h"
-#include "tests/sim/machines.h"
+#include "tests/sim/unchanging.h"
 
 #include <map>
 
 namespace sim::test {
 namespace {
-
-using isa::shared;
-
-struct Shared {
-    Memory memory;
-    shared<std::int32_t>* word(int i) const {
-        return reinterpret_cast<shared<std::int32_t>*>(memory.data) + i * 16;
-    }
-    std::int32_t* plain() const { return reinterpret_cast<std::int32_t*>(memory.more); }
-    Report run(const Config& c, int workers, const std::function<void(int)>& f) const {
-        return Machine(c).run(memory.space, workers, {{"work"}}, f);
-    }
-};
 
 Config tiled(integer tiles, integer cores, integer threads) {
     Config c;
@@ -29,31 +15,21 @@ Config tiled(integer tiles, integer cores, integer threads) {
     return c;
 }
 
-std::string without_window(Report r) {
-    r.window = 0;
-    r.config.sim.window = 0;
-    for (CacheCounters& l2 : r.l2)
-        l2.hits_in_flight = 0; // a line that comes while its bank is busy may count or not
-    return print_json(r, false);
-}
-
 // Where operations act in source order, windows no longer than the shortest way to memory and back change no
 // digit if MSHRs suffice. (Where they do not, threads wait for longer than operations may lie behind their
 // turns, and that counts from the window's end.)
 TEST(Tiles, WindowsUpToTheShortestRoundTripChangeNothing) {
-    for (integer threads : {1, 3}) {
-        std::map<integer, std::string> reports;
-        for (integer window : {1, 7, 20, 0}) {
-            Config c = tiled(1, 4, threads);
-            c.sim.window = window;
-            c.l1.mshrs = c.l1.write_back_buffer = c.l2.mshrs = c.l2.write_back_buffer = 256;
-            Shared s;
-            reports[window] = without_window(s.run(c, static_cast<int>(4 * threads),
-                                                   [&](int w) { mixed_work(s.plain(), s.word(w), w, 60); }));
-        }
-        for (const auto& [window, text] : reports)
-            EXPECT_EQ(text, reports[0]) << "window " << window << ", " << threads << " threads";
-    }
+    for (integer threads : {1, 3})
+        expect_equal_in_windows(
+            [&](integer window) {
+                Config c = tiled(1, 4, threads);
+                c.sim.window = window;
+                c.l1.mshrs = c.l1.write_back_buffer = c.l2.mshrs = c.l2.write_back_buffer = 256;
+                Shared s;
+                return s.run(c, static_cast<int>(4 * threads),
+                             [&](int w) { mixed_work(s.plain(), s.at(w), w, 60); });
+            },
+            std::to_string(threads) + " threads");
 }
 
 TEST(Tiles, EveryTileHasItsOwnL2) {
@@ -87,8 +63,8 @@ TEST(Tiles, CountersReachedFromAllTilesLoseNothing) {
             c.sim.quantum = quantum;
             Shared s;
             int workers = static_cast<int>(4 * tiles);
-            Report r = s.run(c, workers, [&](int) { count_up(s.word(0), 50); });
-            EXPECT_EQ(s.word(0)->word, workers * 50);
+            Report r = s.run(c, workers, [&](int) { count_up(s.at(0), 50); });
+            EXPECT_EQ(s.at(0)->word, workers * 50);
             EXPECT_EQ(r.core.modifications, u(workers * 50));
             EXPECT_EQ(r.core.causality_waits, 0U);
         }
@@ -99,7 +75,7 @@ TEST(Tiles, OperationsOnAWordActInOrderOfTimeAcrossTiles) {
     Shared s;
     std::int32_t ticket[8] = {};
     // Apart by more than a window, whoever comes first is served first.
-    s.run(c, 8, [&](int w) { ticket[w] = take_ticket(s.word(0), 400 * (8 - w)); });
+    s.run(c, 8, [&](int w) { ticket[w] = take_ticket(s.at(0), 400 * (8 - w)); });
     for (int w = 0; w < 8; ++w)
         EXPECT_EQ(ticket[w], 7 - w);
 }
@@ -111,9 +87,9 @@ TEST(Tiles, WaitersInOtherTilesWakeAfterTheWordIsVisible) {
     Shared s;
     Report r = s.run(c, 3, [&](int w) {
         if (w == 0)
-            release_after(s.word(0), 500);
+            release_after(s.at(0), 500);
         else
-            EXPECT_EQ(await(s.word(0)), 1);
+            EXPECT_EQ(await(s.at(0)), 1);
     });
     EXPECT_GE(r.core.waits, 2U);
     for (const ThreadReport& t : r.threads) {
@@ -131,9 +107,9 @@ TEST(Tiles, PublishedDataIsSeenInOtherTiles) {
         std::array<std::int32_t, 16> sums{};
         s.run(c, 16, [&](int w) {
             if (w == 0)
-                publish_numbers(s.plain(), s.word(0), 200);
+                publish_numbers(s.plain(), s.at(0), 200);
             else
-                sums[u(w)] = sum_when_published(s.plain(), s.word(0), 200);
+                sums[u(w)] = sum_when_published(s.plain(), s.at(0), 200);
         });
         for (int w = 2; w < 16; ++w)
             EXPECT_EQ(sums[u(w)], sums[1]);
@@ -154,7 +130,7 @@ TEST(Tiles, APageIsMadeBetweenWindows) {
 
 TEST(Tiles, ADeadlockAcrossTilesIsReported) {
     Shared s;
-    EXPECT_THROW(s.run(tiled(2, 1, 1), 2, [&](int w) { await(s.word(w)); }), Deadlock);
+    EXPECT_THROW(s.run(tiled(2, 1, 1), 2, [&](int w) { await(s.at(w)); }), Deadlock);
 }
 
 // The frame's end: what lasts is written back, what dies with the frame is not, from L1s and L2s.
@@ -187,12 +163,12 @@ TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
         Shared s;
         return s.run(c, workers, [&](int w) {
             if (w == 1) {
-                await(s.word(0));
+                await(s.at(0));
                 return;
             }
             for (int i = 0; i < 5000; ++i)
                 scalar_op(operation::integer, stamp{});
-            release_after(s.word(0), 4);
+            release_after(s.at(0), 4);
             for (int i = 0; i < after; ++i)
                 scalar_op(operation::integer, stamp{});
         });
@@ -214,7 +190,7 @@ TEST(Tiles, LongQuantaAreWholeWindows) {
         c.sim.window = 40;
         c.sim.quantum = quantum;
         Shared s;
-        Report r = s.run(c, 12, [&](int w) { mixed_work(s.plain(), s.word(0), w, 60); });
+        Report r = s.run(c, 12, [&](int w) { mixed_work(s.plain(), s.at(0), w, 60); });
         r.config.sim.quantum = 0;
         reports[quantum] = print_json(r, false);
     }
@@ -231,32 +207,30 @@ struct NoPages : isa::page_service {
 // switches.
 TEST(Tiles, ReportsDoNotDependOnHostThreads) {
     for (integer quantum : {0, 1000})
-        for (bool sharing : {false, true}) {
-            std::map<int, std::string> reports;
-            for (int host_threads : {1, 2, 3, 8}) {
-                Config c = tiled(5, 2, 2);
-                c.core.window = 8;
-                c.sim.quantum = quantum;
-                c.sim.window = 1000;
-                Shared s;
-                NoPages pages;
-                Report r = Machine(c).run(
-                    s.memory.space, 20, {{"work"}, {"one", "other"}},
-                    [&](int w) {
-                        mixed_work(s.plain(), s.word(sharing ? 0 : w / 4), w, 10);
-                        ask_for_page(pages, 2, w);
-                        set_kind(w % 2);
-                        std::int32_t* own = s.plain() + 131072 * (w + 1);
-                        note_level(own, 256, w % 3);
-                        mixed_work(own, s.word(sharing ? w % 3 : w / 4), w, 5);
-                    },
-                    host_threads);
-                EXPECT_EQ(r.host_threads, host_threads);
-                reports[host_threads] = print_json(r, false);
-            }
-            for (int host_threads : {2, 3, 8})
-                EXPECT_EQ(reports[host_threads], reports[1]) << host_threads << " host threads";
-        }
+        for (bool sharing : {false, true})
+            expect_equal_on_host_threads(
+                [&](int host_threads) {
+                    Config c = tiled(5, 2, 2);
+                    c.core.window = 8;
+                    c.sim.quantum = quantum;
+                    c.sim.window = 1000;
+                    Shared s;
+                    NoPages pages;
+                    Report r = Machine(c).run(
+                        s.memory.space, 20, {{"work"}, {"one", "other"}},
+                        [&](int w) {
+                            mixed_work(s.plain(), s.at(sharing ? 0 : w / 4), w, 10);
+                            ask_for_page(pages, 2, w);
+                            set_kind(w % 2);
+                            std::int32_t* own = s.plain() + 131072 * (w + 1);
+                            note_level(own, 256, w % 3);
+                            mixed_work(own, s.at(sharing ? w % 3 : w / 4), w, 5);
+                        },
+                        host_threads);
+                    EXPECT_EQ(r.host_threads, host_threads);
+                    return r;
+                },
+                "quantum " + std::to_string(quantum));
 }
 
 // What a worker throws reaches the caller also from another host thread, after all others were unwound.
@@ -269,13 +243,13 @@ TEST(Tiles, FailuresOnHostThreads) {
                              [&](int w) {
                                  if (w == 2)
                                      throw std::runtime_error("worker 2");
-                                 await(s.word(0));
+                                 await(s.at(0));
                              },
                              host_threads),
                      std::runtime_error);
         EXPECT_THROW(Machine(tiled(3, 1, 1))
                          .run(
-                             s.memory.space, 3, {{"work"}}, [&](int w) { await(s.word(w)); }, host_threads),
+                             s.memory.space, 3, {{"work"}}, [&](int w) { await(s.at(w)); }, host_threads),
                      Deadlock);
     }
 }
@@ -286,7 +260,7 @@ TEST(Tiles, TwoRunsAreEqual) {
         c.core.window = 8;
         c.sim.quantum = 100;
         Shared s;
-        return print_json(s.run(c, 16, [&](int w) { mixed_work(s.plain(), s.word(0), w, 60); }), false);
+        return print_json(s.run(c, 16, [&](int w) { mixed_work(s.plain(), s.at(0), w, 60); }), false);
     };
     EXPECT_EQ(report(), report());
 }
