@@ -268,6 +268,12 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
                     }
                     Targets t = targets_in(c, g.fields, low, high, g.slack);
                     deeper = g.alive & (t.least < vfloat(coarse));
+                    // Those that are elsewhere keep nobody here.
+                    vmask staying = g.alive & !deeper;
+                    if (branch(none(staying & (enter <= leave)))) {
+                        number = finer;
+                        continue;
+                    }
                 }
             }
         }
