@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
@@ -69,6 +70,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                            [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
                                tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);
                            })),
+      shuffled_(options.host_order),
       host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), options_(options),
       worker_(worker), intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
@@ -95,6 +97,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             }
         }
     }
+    for (Tile& tile : tiles_)
+        order_.push_back(&tile);
     beyond_->connect(tiles_);
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)
@@ -149,14 +153,14 @@ void Engine::run_tile(Tile& tile) {
 }
 
 void Engine::run_tiles() {
-    const int step = host_threads_.count();
-    if (step == 1)
-        for (Tile& tile : tiles_)
-            run_tile(tile);
+    if (host_threads_.count() == 1)
+        for (Tile* tile : order_)
+            run_tile(*tile);
     else
-        host_threads_.all([this, step](int first) {
-            for (std::size_t t = wide(first); t < tiles_.size(); t += wide(step))
-                run_tile(tiles_[t]);
+        host_threads_.all([this](int number) {
+            for (Tile* tile : order_)
+                if (host_thread(*tile) == number)
+                    run_tile(*tile);
         });
     for (const Tile& tile : tiles_)
         if (tile.scheduler.failure())
@@ -166,11 +170,12 @@ void Engine::run_tiles() {
 /// Words that several tiles may reach, and pages: in order of (cycle, thread).
 void Engine::perform_deeds() {
     std::vector<Tile::Deed> due;
-    for (Tile& tile : tiles_) {
-        auto later = std::stable_partition(tile.deeds.begin(), tile.deeds.end(),
+    for (Tile* tile : order_) {
+        std::vector<Tile::Deed>& all = tile->deeds;
+        auto later = std::stable_partition(all.begin(), all.end(),
                                            [&](const Tile::Deed& d) { return d.at < window_end_; });
-        due.insert(due.end(), std::make_move_iterator(tile.deeds.begin()), std::make_move_iterator(later));
-        tile.deeds.erase(tile.deeds.begin(), later);
+        due.insert(due.end(), std::make_move_iterator(all.begin()), std::make_move_iterator(later));
+        all.erase(all.begin(), later);
     }
     std::sort(due.begin(), due.end(), [](const Tile::Deed& a, const Tile::Deed& b) {
         return std::pair(a.at, a.hart->number) < std::pair(b.at, b.hart->number);
@@ -234,6 +239,17 @@ void Engine::set_floors(cycle arrival) {
         tile.tickets.set_floor(arrival + shortest_read_);
 }
 
+/// What the order of the following must not matter for.
+void Engine::shuffle() {
+    std::shuffle(order_.begin(), order_.end(), shuffled_);
+    for (Tile& tile : tiles_) {
+        std::shuffle(tile.deeds.begin(), tile.deeds.end(), shuffled_);
+        std::shuffle(tile.leaving.requests.begin(), tile.leaving.requests.end(), shuffled_);
+        std::shuffle(tile.parked.begin(), tile.parked.end(), shuffled_);
+        std::shuffle(tile.sleepers.begin(), tile.sleepers.end(), shuffled_);
+    }
+}
+
 /// Runs the next window in which something happens; false if nothing ever will.
 bool Engine::run_window() {
     cycle next = next_event();
@@ -247,16 +263,18 @@ bool Engine::run_window() {
     for (Tile& tile : tiles_)
         tile.earliest = begin > reach_ ? begin - reach_ : 0;
     run_tiles();
+    if (options_.host_order != 0)
+        shuffle();
     if (!failure_)
         perform_deeds();
-    for (Tile& tile : tiles_)
-        beyond_->accept(tile.leaving.requests);
+    for (Tile* tile : order_)
+        beyond_->accept(tile->leaving.requests);
     beyond_->serve(window_end_);
     set_floors(window_end_);
-    for (Tile& tile : tiles_) {
-        answer_parked(tile);
-        forget_tickets(tile);
-        tile.attribution.publish_notes();
+    for (Tile* tile : order_) {
+        answer_parked(*tile);
+        forget_tickets(*tile);
+        tile->attribution.publish_notes();
     }
     return true;
 }

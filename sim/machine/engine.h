@@ -15,6 +15,7 @@
 
 #include <deque>
 #include <memory>
+#include <random>
 
 namespace sim {
 
@@ -247,6 +248,7 @@ private:
     void perform_deeds();
     void resume(Hart& h);
     void answer_parked(Tile& tile);
+    void shuffle();
     void forget_tickets(Tile& tile);
     void fail(const std::exception_ptr& why);
     void run_workers();
@@ -291,6 +293,8 @@ private:
     Published published_; // words that several tiles reach
     std::unique_ptr<Beyond> beyond_;
     std::deque<Tile> tiles_;
+    std::vector<Tile*> order_; // in which the host takes them
+    std::mt19937 shuffled_;
     std::deque<Hart> harts_;
     HostThreads host_threads_; // tile t runs on number t % count
     cycle window_end_ = 0;

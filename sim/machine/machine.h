@@ -23,6 +23,9 @@ struct RunOptions {
     std::uint64_t interval = 0; // cycles of an interval of Report::intervals, whole windows; 0: none are kept
     int frames = 1;             // so often all workers run, one time after another; the last counts
     std::function<void(int frame)> next_frame = {}; // called before all but the first, memory being quiet
+    /// Another than 0: in each window all that the host may do in any order (tiles, what leaves them, who
+    /// wakes) is done in one drawn with this seed. No report depends on it.
+    std::uint32_t host_order = 0;
 };
 
 class Machine {

@@ -233,6 +233,33 @@ TEST(Tiles, ReportsDoNotDependOnHostThreads) {
                 "quantum " + std::to_string(quantum));
 }
 
+// Equal times have an order of their own: that in which the host comes to tiles, threads and requests is
+// none.
+TEST(Tiles, NoReportDependsOnTheHostsOrder) {
+    const std::pair<const char*, std::function<void(Config&)>> machines[] = {
+        {"fast", [](Config&) {}},
+        {"switching on stalls", [](Config& c) { c.core.switch_policy = "stall"; }},
+        {"noise", [](Config& c) { c.sim.jitter = 3; }},
+        {"an L3 of two tiles", [](Config& c) { c.l3.size_bytes = 8192, c.l3.share = "4"; }},
+        {"queues", [](Config& c) { c.memory.controller = "queued"; }},
+        {"queues below an L3, on a mesh",
+         [](Config& c) {
+             c.memory.controller = "queued";
+             c.l3.size_bytes = 8192, c.l3.share = "chip";
+             c.network.topology = "mesh", c.network.link_bytes = 2;
+         }},
+    };
+    for (const auto& [name, change] : machines)
+        for (const int host_threads : {1, 2})
+            expect_equal_in_any_order(
+                [&](std::uint32_t order) {
+                    Config c = busy_tiles();
+                    change(c);
+                    return run_busy_tiles(c, host_threads, {.host_order = order});
+                },
+                name);
+}
+
 // What a worker throws reaches the caller also from another host thread, after all others were unwound.
 TEST(Tiles, FailuresOnHostThreads) {
     for (int host_threads : {1, 3}) {

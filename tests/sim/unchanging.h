@@ -30,10 +30,11 @@ inline Config busy_tiles() {
     return c;
 }
 /// 24 workers on them, three by three on the same data and on words shared by all tiles.
-inline Report run_busy_tiles(const Config& c, int host_threads) {
+inline Report run_busy_tiles(const Config& c, int host_threads, const RunOptions& options = {}) {
     const Shared s;
     return s.run(
-        c, 24, [&](int w) { mixed_work(s.plain() + 4096 * (w / 3), s.at(w % 3), w, 10); }, host_threads);
+        c, 24, [&](int w) { mixed_work(s.plain() + 4096 * (w / 3), s.at(w % 3), w, 10); }, host_threads,
+        options);
 }
 
 /// report(number of host threads) is the same for 1, 2, 3 and 8.
@@ -52,6 +53,14 @@ inline std::string print_without_window(Report r) {
     for (CacheCounters& l2 : r.l2)
         l2.hits_in_flight = 0;
     return print_json(r, false);
+}
+
+/// report(RunOptions::host_order) is the same for several.
+inline void expect_equal_in_any_order(const std::function<Report(std::uint32_t)>& report,
+                                      const std::string& what) {
+    const std::string plain = print_json(report(0), false);
+    for (const std::uint32_t order : {1U, 2U, 3U})
+        EXPECT_EQ(print_json(report(order), false), plain) << what << ", order " << order;
 }
 
 /// report(cycles of a window, 0: the longest) is the same.
