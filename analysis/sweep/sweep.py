@@ -13,15 +13,13 @@ A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (
 --jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
 """
 import argparse
-import csv
-import json
-import os
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+
+import simulation
+from simulation import Mistake
 
 BINARY = {"": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30}
 NEVER_WAITS = {"busy", "idle"}  # causes of the CPI stack that are no waiting for the machine
@@ -51,10 +49,6 @@ ERRORS = [
 REFERENCE = "reference"  # the value of that run's row
 
 
-class Mistake(Exception):
-    """Of the user: one line."""
-
-
 def amount(text):
     """Number and unit of "64KiB"; None where it is not of that form."""
     match = re.fullmatch(r"(\d+)\s*(|KiB|MiB|GiB)", text)
@@ -78,29 +72,9 @@ def expand(words):
     return values
 
 
-def simulator(given):
-    if given:
-        if not os.access(given, os.X_OK) or os.path.isdir(given):
-            raise Mistake(f"--simulator {given}: no program; build razor-sim and give its path")
-        return given
-    found = shutil.which("razor-sim")
-    here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../build/release/sim/program/razor-sim")
-    if not found and not os.access(here, os.X_OK):
-        raise Mistake("razor-sim is neither on the PATH nor in build/release; build it, or give --simulator PATH")
-    return found or os.path.normpath(here)
-
-
 def run(options, value, folder):
-    report = os.path.join(folder, "report.json")
     setting = "sim.mode=reference" if value == REFERENCE else f"{options.key}={value}"
-    command = [simulator(options.simulator), "run", "--quiet", "--machine", options.machine, *options.more,
-               "-g", setting, "--json", report]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        lines = done.stderr.strip().splitlines() or [f"razor-sim ended with {done.returncode}"]
-        raise Mistake(f"{setting}: {lines[-1]}")
-    with open(report, encoding="utf-8") as file:
-        return json.load(file)
+    return simulation.run(options.simulator, options.machine, [setting], options.more, folder)
 
 
 def share(part, whole):
@@ -160,49 +134,21 @@ def table(options, rows):
 
 
 def parse(arguments):
-    more = []
-    if "--" in arguments:
-        at = arguments.index("--")
-        arguments, more = arguments[:at], arguments[at + 1:]
-    parser = argparse.ArgumentParser(prog="sweep.py", description=__doc__, add_help=True, allow_abbrev=False,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter, exit_on_error=False)
-    parser.error = lambda message: (_ for _ in ()).throw(Mistake(f"{message}; see sweep.py --help"))
-    parser.add_argument("--machine", required=True, metavar="FILE")
+    arguments, more = simulation.split_arguments(arguments)
+    parser = simulation.parser("sweep.py", __doc__)
     parser.add_argument("--key", required=True, metavar="KEY", help="of the machine, such as l2.size_bytes")
     parser.add_argument("--values", required=True, nargs="+", metavar="VALUE")
     parser.add_argument("--expect", choices=["falling", "rising"], help="what the cycles must do")
     parser.add_argument("--tolerance", type=float, default=0.5, metavar="PERCENT", help="of a step; 0.5 by default")
     parser.add_argument("--reference", action="store_true", help="compare with a run in the reference mode")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N")
-    parser.add_argument("--csv", metavar="FILE", help="the table, for programs")
-    parser.add_argument("--simulator", metavar="PATH", help="razor-sim; else from the PATH or build/release")
     options = parser.parse_args(arguments)
-    if options.jobs < 1:
-        raise Mistake(f"--jobs {options.jobs}: give a number from 1")
     if not options.tolerance >= 0:
         raise Mistake(f"--tolerance {options.tolerance}: give a percentage from 0")
-    options.more = more
     options.values = expand(options.values)
-    return options
-
-
-def write_csv(path, key, rows):
-    temporary = path + ".tmp"
-    try:
-        with open(temporary, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, [key if name == "value" else name for name in rows[0]])
-            writer.writeheader()
-            writer.writerows({key if name == "value" else name: v for name, v in row.items()} for row in rows)
-        os.replace(temporary, path)
-    except OSError as error:
-        if os.path.exists(temporary):
-            os.remove(temporary)
-        raise Mistake(f"--csv {path}: {error.strerror}") from error
+    return simulation.checked(options, more)
 
 
 def sweep(options):
-    if options.csv and not os.access(os.path.dirname(options.csv) or ".", os.W_OK):
-        raise Mistake(f"--csv {options.csv}: its folder cannot be written to")
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
         values = [REFERENCE] * options.reference + options.values
         folders = [tempfile.mkdtemp(dir=folder) for _ in values]
@@ -218,7 +164,8 @@ def sweep(options):
         if options.reference:
             row["error"] = row["of_first"] - 1
     if options.csv:
-        write_csv(options.csv, options.key, rows)
+        names = {"value": options.key}
+        simulation.write_csv(options.csv, [{names.get(k, k): v for k, v in row.items()} for row in rows])
     table(options, rows)
     few = [row["value"] for row in rows if row["tiles_a_worker"] < 4]
     if few:

@@ -1,8 +1,6 @@
 // razor-sim: who shares a kd-tree, and what machines and options it refuses: exit code 2, one line, no file.
+#include "tests/program/simulator.h"
 #include "razor/image/exr.h"
-#include "tests/program/run.h"
-
-#include <nlohmann/json.hpp>
 
 #include <map>
 #include <optional>
@@ -11,26 +9,6 @@
 
 namespace razor {
 namespace {
-
-const std::string tiny = quoted_argument(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml");
-
-class Simulator : public ::testing::Test {
-protected:
-    Outcome simulator(const std::string& arguments) const {
-        return run(quoted_argument(RAZOR_SIMULATOR) + " " + arguments, folder_.path());
-    }
-    std::string text(const std::string& name) const {
-        std::ifstream file(folder_ / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-    nlohmann::json report(const std::string& name) const {
-        nlohmann::json all = nlohmann::json::parse(text(name));
-        all.erase("host");
-        return all;
-    }
-
-    TemporaryFolder folder_;
-};
 
 TEST_F(Simulator, SharesTreesAsAsked) {
     folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
@@ -511,64 +489,6 @@ TEST_F(Simulator, RunsItsPrintedConfiguration) {
     a.erase("machine_provenance");
     b.erase("machine_provenance");
     EXPECT_EQ(a, b);
-}
-
-class Sweep : public Simulator {
-protected:
-    Outcome sweep(const std::string& arguments) const {
-        return run("python3 " + quoted_argument(RAZOR_SOURCE_DIR "/analysis/sweep/sweep.py") +
-                       " --simulator " + quoted_argument(RAZOR_SIMULATOR) + " --machine " + tiny + " " +
-                       arguments,
-                   folder_.path());
-    }
-};
-
-TEST_F(Sweep, TablesOneKey) {
-    folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
-    // One worker: the time does not hang on who gets the last tile of the picture.
-    const std::string frame = " -- --scene box.toml --size 24x24 --spp 1 --workers 1";
-    const Outcome result = sweep(
-        "--key l2.size_bytes --values 4KiB..16KiB 256KiB --expect falling --csv s.csv --jobs 2" + frame);
-    EXPECT_EQ(result.code, 0) << result.out << result.err;
-    for (const char* word : {"\n4KiB ", "\n8KiB ", "\n16KiB ", "\n256KiB ", "monotone: falls"})
-        EXPECT_NE(result.out.find(word), std::string::npos) << result.out;
-    const std::string table = text("s.csv");
-    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
-    EXPECT_EQ(table.rfind("l2.size_bytes,cycles,", 0), 0U) << table;
-    // The figures are those of the runs.
-    ASSERT_EQ(simulator(std::string("run --quiet --machine ") + tiny +
-                        " -g l2.size_bytes=8192 --json a.json" + frame.substr(3))
-                  .code,
-              0);
-    EXPECT_NE(table.find("\n8KiB," + report("a.json").at("cycles").dump() + ","), std::string::npos) << table;
-    const Outcome wrong = sweep("--key l2.size_bytes --values 4KiB 256KiB --expect rising" + frame);
-    EXPECT_EQ(wrong.code, 1);
-    EXPECT_NE(wrong.out.find("NOT so"), std::string::npos);
-}
-
-TEST_F(Sweep, RefusesMistakes) {
-    const std::pair<const char*, const char*> cases[] = {
-        {"--key l2.size --values 1", "the nearest known one is l2.size_bytes"},
-        {"--key l2.size_bytes --values 500", "do not divide"},
-        {"--key l2.size_bytes", "required: --values"},
-        {"--key l2.size_bytes --values 4..2", "give A..B"},
-        {"--key l2.size_bytes --values 0..2", "give A..B"},
-        {"--key l2.size_bytes --values 1MiB --csv none/s.csv", "none/s.csv"},
-        {"--key l2.size_bytes --values 1MiB --jobs 0", "--jobs 0"},
-        {"--key l2.size_bytes --values 1MiB --tolerance nan", "--tolerance nan"},
-        {"--key l2.size_bytes --values 1MiB --nothing", "--nothing"},
-        {"--key l2.size_bytes --values 1MiB --simulator none", "--simulator none"},
-    };
-    for (const auto& [arguments, says] : cases) {
-        SCOPED_TRACE(arguments);
-        const std::size_t before = folder_.count();
-        const Outcome result = sweep(std::string(arguments) + " -- --size 16x16");
-        EXPECT_EQ(result.code, 2);
-        EXPECT_EQ(result.error_lines(), 1) << result.err;
-        EXPECT_TRUE(result.err.starts_with("sweep.py: ")) << result.err;
-        EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
-        EXPECT_EQ(folder_.count(), before);
-    }
 }
 
 } // namespace

@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+"""Does a conclusion hang on what a machine file assumes? Two designs compared, every assumed number halved and doubled.
+
+    analysis/sweep/assumptions.py --machine configs/machines/tiny.toml --designs kdtree.share=chip kdtree.share=worker -- --size 64x64 --spp 1
+    analysis/sweep/assumptions.py --machine M.toml --designs l2.size_bytes=1MiB l2.size_bytes=2MiB --only memory l2 --csv a.csv
+
+The conclusion is which design takes fewer cycles, if they differ by more than --noise percent: what an irrelevant
+change may move (sim.jitter says how much that is). A row for each change: cycles of the first design over those with
+nothing changed; the second design's over the first's; and what became of the conclusion: it stays, is lost (no design
+is better beyond noise any more), appears (where there was none), or flips. Rows are in order of how far the change moves the designs apart or together. What
+cannot be halved (1, or what other parameters forbid) is named at the end. Numbers that take no part in time (energies)
+and the simulator's own are left out. What follows -- goes to every run of `razor-sim run`.
+
+Exit code: 0; 1 if the conclusion flips anywhere; 2 on a mistake.
+"""
+import argparse
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+import simulation
+from simulation import Mistake
+
+FACTORS = [0.5, 2]
+WITHOUT_TIME = ("energy.", "sim.")  # beginnings of keys
+ENERGIES = ("_pj", "_mw")  # ends of keys
+
+
+def assumed_numbers(report, designs):
+    """Key and value of each, but for what the designs set themselves."""
+    own = {setting.partition("=")[0] for setting in designs}
+    for key, origin in report["machine_provenance"].items():
+        group, name = key.split(".", 1)
+        value = report["machine"].get(group, {}).get(name)
+        if (origin.get("mark") != "assumed" or key in own or key.startswith(WITHOUT_TIME) or key.endswith(ENERGIES)
+                or isinstance(value, bool) or not isinstance(value, (int, float)) or value == 0):
+            continue
+        yield key, value
+
+
+def changed(value, factor):
+    """The number halved or doubled, of its own kind; None where that leaves it as it is, or makes it 0."""
+    new = int(value * factor) if isinstance(value, int) else value * factor
+    return new if new not in (value, 0) else None
+
+
+def conclusion(ratio, noise):
+    """Which of the designs is better: -1 the second, 1 the first, 0 neither."""
+    return 0 if abs(ratio - 1) <= noise else 1 if ratio > 1 else -1
+
+
+def verdict(before, after):
+    if before == after:
+        return "stays"
+    return "FLIPS" if before * after < 0 else "lost" if after == 0 else "appears"
+
+
+def measure(options):
+    """Rows, the unchanged ratio, and what could not be changed, with the reason."""
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
+
+        def start(*settings):
+            return [pool.submit(simulation.run, options.simulator, options.machine, [design, *settings], options.more,
+                                tempfile.mkdtemp(dir=folder)) for design in options.designs]
+
+        base = [r.result() for r in start()]
+        first, second = (r["cycles"] for r in base)
+        pending, refused = [], []
+        for key, value in assumed_numbers(base[0], options.designs):
+            if options.only and not key.startswith(tuple(options.only)):
+                continue
+            for factor in FACTORS:
+                new = changed(value, factor)
+                if new is None:
+                    refused.append((key, factor, f"{value} is the least"))
+                else:
+                    pending.append((key, factor, value, new, start(f"{key}={new}")))
+        if not pending:
+            raise Mistake("no assumed number is left to change; see --only, and the marks of the machine file")
+        rows = []
+        for key, factor, value, new, runs in pending:
+            try:
+                a, b = (r.result()["cycles"] for r in runs)
+            except Mistake as mistake:
+                refused.append((key, factor, str(mistake).rpartition(": ")[2]))
+                continue
+            rows.append({"key": key, "value": value, "changed": new, "first": a / first, "ratio": b / a,
+                         "verdict": verdict(conclusion(second / first, options.noise / 100),
+                                            conclusion(b / a, options.noise / 100))})
+    rows.sort(key=lambda r: -abs(r["ratio"] / (second / first) - 1))
+    return rows, second / first, refused
+
+
+def show(options, rows, ratio, refused):
+    first, second = options.designs
+    better = {-1: f"{second} is better", 0: "neither is better", 1: f"{first} is better"}
+    print(f"{second} takes {ratio:.3f} of the cycles of {first}: {better[conclusion(ratio, options.noise / 100)]}"
+          f" (noise {options.noise:g} %)")
+    width = max(len(r["key"]) for r in rows) + 1
+    print(f"{'assumed':<{width}}{'value':>12}{'changed':>12}{'first':>9}{'ratio':>9}  conclusion")
+    for r in rows:
+        print(f"{r['key']:<{width}}{r['value']:>12g}{r['changed']:>12g}{r['first']:>9.3f}{r['ratio']:>9.3f}  {r['verdict']}")
+    if refused:
+        print("not changed: " + "; ".join(f"{key} x {factor:g} ({why})" for key, factor, why in refused))
+    counts = [f"{words} in {sum(r['verdict'] == verdict for r in rows)}" for verdict, words in
+              (("stays", "stays"), ("lost", "is lost"), ("appears", "appears"), ("FLIPS", "flips"))]
+    print(f"of {len(rows)} changes the conclusion {', '.join(counts)}")
+
+
+def parse(arguments):
+    arguments, more = simulation.split_arguments(arguments)
+    parser = simulation.parser("assumptions.py", __doc__)
+    parser.add_argument("--designs", required=True, nargs=2, metavar="KEY=VALUE", help="what is compared")
+    parser.add_argument("--only", nargs="+", metavar="PREFIX", help="of keys to change, such as memory or l2.latency")
+    parser.add_argument("--noise", type=float, default=1, metavar="PERCENT", help="that means nothing; 1 by default")
+    options = parser.parse_args(arguments)
+    for design in options.designs:
+        if "=" not in design:
+            raise Mistake(f"--designs {design}: give KEY=VALUE")
+    if not options.noise >= 0:
+        raise Mistake(f"--noise {options.noise}: give a percentage from 0")
+    return simulation.checked(options, more)
+
+
+def main():
+    try:
+        options = parse(sys.argv[1:])
+        rows, ratio, refused = measure(options)
+        if not rows:
+            raise Mistake("every change was refused: " + refused[0][2])
+        if options.csv:
+            simulation.write_csv(options.csv, rows)
+        show(options, rows, ratio, refused)
+        return 1 if any(r["verdict"] == "FLIPS" for r in rows) else 0
+    except (Mistake, argparse.ArgumentError) as mistake:
+        print(f"assumptions.py: {mistake}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,84 @@
+"""What the programs of this folder share: runs of the simulator, and mistakes that end in one line."""
+import argparse
+import csv
+import json
+import os
+import shutil
+import subprocess
+
+
+class Mistake(Exception):
+    """Of the user: one line."""
+
+
+def simulator(given):
+    if given:
+        if not os.access(given, os.X_OK) or os.path.isdir(given):
+            raise Mistake(f"--simulator {given}: no program; build razor-sim and give its path")
+        return given
+    found = shutil.which("razor-sim")
+    here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../build/release/sim/program/razor-sim")
+    if not found and not os.access(here, os.X_OK):
+        raise Mistake("razor-sim is neither on the PATH nor in build/release; build it, or give --simulator PATH")
+    return found or os.path.normpath(here)
+
+
+def run(program, machine, settings, more, folder):
+    """The JSON report of one run with these settings of the machine; `more` are further options."""
+    report = os.path.join(folder, "report.json")
+    command = [program, "run", "--quiet", "--machine", machine, *more, *(word for s in settings for word in ("-g", s)),
+               "--json", report]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        lines = done.stderr.strip().splitlines() or [f"razor-sim ended with {done.returncode}"]
+        raise Mistake(f"{', '.join(settings) or machine}: {lines[-1]}")
+    with open(report, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def check_writable(option, path):
+    if path and not os.access(os.path.dirname(path) or ".", os.W_OK):
+        raise Mistake(f"{option} {path}: its folder cannot be written to")
+
+
+def split_arguments(arguments):
+    """Those of the program, and what follows --: those of each run."""
+    at = arguments.index("--") if "--" in arguments else len(arguments)
+    return arguments[:at], arguments[at + 1:]
+
+
+def parser(program, description):
+    """With the options that all programs here have; ends in a Mistake, not in a usage text."""
+    p = argparse.ArgumentParser(prog=program, description=description, add_help=True, allow_abbrev=False,
+                                formatter_class=argparse.RawDescriptionHelpFormatter, exit_on_error=False)
+    p.error = lambda message: (_ for _ in ()).throw(Mistake(f"{message}; see {program} --help"))
+    p.add_argument("--machine", required=True, metavar="FILE")
+    p.add_argument("--jobs", type=int, default=1, metavar="N", help="runs side by side")
+    p.add_argument("--csv", metavar="FILE", help="the table, for programs")
+    p.add_argument("--simulator", metavar="PATH", help="razor-sim; else from the PATH or build/release")
+    return p
+
+
+def checked(options, more):
+    """Options of parser(), looked at and completed."""
+    if options.jobs < 1:
+        raise Mistake(f"--jobs {options.jobs}: give a number from 1")
+    check_writable("--csv", options.csv)
+    options.more = more
+    options.simulator = simulator(options.simulator)
+    return options
+
+
+def write_csv(path, rows):
+    """Rows are dictionaries of the same keys; a file is whole or is not there."""
+    temporary = path + ".tmp"
+    try:
+        with open(temporary, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+        os.replace(temporary, path)
+    except OSError as error:
+        if os.path.exists(temporary):
+            os.remove(temporary)
+        raise Mistake(f"--csv {path}: {error.strerror}") from error
