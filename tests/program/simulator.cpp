@@ -330,7 +330,7 @@ TEST_F(Simulator, ValidatesItself) {
     EXPECT_GT(results["passed"], 50);
     EXPECT_EQ(results["reported"], 1);
     EXPECT_GT(results["tests only"], 3);
-    EXPECT_GT(results["not built"], 3);
+    EXPECT_GT(results["not built"], 0);
     for (const char* what : {"operations", "instruction and reference counts", "caches", "laws", "DRAM",
                              "core", "network", "coherence", "order", "noise", "assumptions", "the whole"})
         EXPECT_NE(result.out.find(what), std::string::npos) << what;
