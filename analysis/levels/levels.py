@@ -12,8 +12,8 @@ triangles made over twice the pixels covered, over the square of the target edge
 
 Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
 schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
-by a line through the logarithms of error and time of the two fixed levels beside it; "-" where none has as small, or
-as large, an error. "/object": the same for levels that each instance has of its own.
+by a line through the logarithms of error and time of the two fixed levels beside it; "<" over the finest of them where
+none has as small an error, "-" where none has as large a one. "/object": the same for levels that each instance has of its own.
 """
 import argparse
 import json
@@ -31,16 +31,26 @@ RAYS = ["camera", "shadow", "first_camera", "first_shadow"]
 SCHEMES = ["recursive", "discrete", "patch", "paper", "camera", "fixed", "fixed:1", "fixed:2", "fixed:3"]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     allow_abbrev=False)
-    view.add_options(parser, "512x512", 3)
-    parser.add_argument("--frames", type=int, default=3, help="frames timed a run, after a first")
-    parser.add_argument("--reference", type=float, default=8, help="how much shorter edges of the reference are")
-    parser.add_argument("--reference-lod", default="camera", help="the reference's scheme")
-    parser.add_argument("--schemes", nargs="+", default=SCHEMES)
-    options, options.scene = parser.parse_known_args()
+def parser(size="512x512", repeat=3):
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                allow_abbrev=False)
+    view.add_options(p, size, repeat)
+    p.add_argument("--frames", type=int, default=3, help="frames timed a run, after a first")
+    p.add_argument("--reference", type=float, default=8, help="how much shorter edges of the reference are")
+    p.add_argument("--reference-lod", default="camera", help="the reference's scheme")
+    p.add_argument("--schemes", nargs="+", default=SCHEMES)
+    return p
+
+
+def parse(arguments=None, **defaults):
+    """What parser() does not know goes to the renderer, the scene first."""
+    options, options.scene = parser(**defaults).parse_known_args(arguments)
     options.razor = options.razor or shutil.which("razor") or "build/release/razor/program/razor"
+    return options
+
+
+def measure(options):
+    """A row of figures for each scheme."""
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         scene = view.write_scene(options, folder)
@@ -66,14 +76,21 @@ def main():
             error, noise = errors(options, folder, pictures, references)
             counters = whole["counters"]
             needed = 2 * counters["camera_hits"] / options.spp / edge**2  # pixels covered / half a square edge
-            rows.append({"scheme": scheme, "rmse": error, "noise": noise, "camera_seconds": seconds, "shadow_seconds": total - seconds,
-                         "first_camera_seconds": first_camera, "first_shadow_seconds": first - first_camera,
+            rows.append({"scheme": scheme, "rmse": error, "noise": noise, "camera_seconds": seconds,
+                         "shadow_seconds": total - seconds, "first_camera_seconds": first_camera,
+                         "first_shadow_seconds": first - first_camera,
                          "triangles": camera["counters"]["triangles_made"],
                          "made_over_needed": camera["counters"]["triangles_made"] / needed,
                          "blended": counters["blended_tests"] / max(counters["block_tests"], 1),
                          "grid_bytes": whole["built"]["grid_bytes"]})
     for ladder in LADDERS:
         compare_with(ladder, rows)
+    return rows
+
+
+def main():
+    options = parse()
+    rows = measure(options)
     show(rows)
     if options.json:
         with open(options.json, "w") as file:
@@ -96,9 +113,13 @@ def level_of_detail(scheme, edge):
 
 
 def compare_with(ladder, rows):
-    """Adds each scheme's times over those of a level of equal error of the ladder."""
+    """Adds each scheme's times over those of a level of equal error of the ladder; for one of less error than all of
+    these, over the finest: one of equal error would take longer, so that the ratio is at most that."""
     levels = sorted((r for r in rows if r["scheme"].startswith(ladder) and r["rmse"] > 0), key=lambda r: r["rmse"])
     for r in rows:
+        if levels and r["rmse"] < levels[0]["rmse"]:
+            for rays in RAYS:
+                r[f"{rays}_over_{ladder}_at_most"] = r[rays + "_seconds"] / max(levels[0][rays + "_seconds"], 1e-9)
         for low, high in zip(levels, levels[1:]):
             if low["rmse"] <= r["rmse"] <= high["rmse"] and low["rmse"] < high["rmse"]:
                 part = math.log(r["rmse"] / low["rmse"]) / math.log(high["rmse"] / low["rmse"])
@@ -124,11 +145,14 @@ def errors(options, folder, pictures, references):
     return math.copysign(math.sqrt(abs(product)), product), math.sqrt((x * x + y * y) / 2)
 
 
+def ratio(row, rays, ladder):
+    """Beside a level of equal error, as text."""
+    name = f"{rays}_over_{ladder}"
+    return f"{row[name]:.2f}" if name in row else f"<{row[name + '_at_most']:.2f}" if name + "_at_most" in row else "-"
+
+
 def show(rows):
     ladders = [ladder for ladder in LADDERS if any(r["scheme"].startswith(ladder + ":") for r in rows)]
-
-    def ratio(r, rays, ladder):
-        return f"{r[f'{rays}_over_{ladder}']:.2f}" if f"{rays}_over_{ladder}" in r else "-"
 
     headings = [heading for rays in ("camera", "shadow", "first", "shadow")
                 for heading in (f"{rays + ' s':>8}", *(f"{'/' + ladder:>7}" for ladder in ladders))]
