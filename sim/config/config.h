@@ -49,6 +49,20 @@ struct L1Config : CacheConfig {
     integer ports = 0, port_bytes = 0;
 };
 
+/// Translation of addresses. Without entries: none.
+struct TlbConfig {
+    integer entries = 0, ways = 0, page_bytes = 0;
+    integer second_entries = 0, second_ways = 0, second_latency = 0;
+    std::string second_share, misses, walk;
+    integer walk_cycles = 0, walk_cache = 0, walkers = 0, address_bits = 0;
+
+    bool any() const { return entries != 0; }
+    /// Whether walks read tables in memory.
+    bool tables() const { return any() && walk == "tables"; }
+    /// Levels of these tables.
+    integer table_levels() const;
+};
+
 struct CoherenceConfig {
     integer visibility_cycles = 0, atomic_cycles = 0, remote_cycles = 0;
 };
@@ -103,6 +117,7 @@ struct Config {
     std::array<integer, class_count> latency{}, interval{};
     L1Config l1;
     CacheConfig l2, l3, l4, l5; // without bytes: no such level
+    TlbConfig tlb;
     CoherenceConfig coherence;
     NetworkConfig network;
     MemoryConfig memory;
@@ -126,6 +141,8 @@ struct Config {
     const CacheConfig& last_cache() const { return cache(cache_levels() - 1); }
     /// Cores that share a cache of the level.
     integer cores_sharing(unsigned level) const;
+    /// Cores that share a second TLB.
+    integer cores_sharing_tlb() const;
     /// Whether the level lies beyond the tiles: only the last one may.
     bool beyond_tiles(unsigned level) const;
     /// Levels that lie within a tile.

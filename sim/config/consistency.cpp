@@ -234,6 +234,38 @@ void check_caches(const std::string& what, const Config& config) {
                          lines, most_lines));
 }
 
+/// Entries and ways make a number of sets that is a power of two.
+void check_tlb_sets(const std::string& what, const std::string& entries, integer n, const std::string& ways,
+                    integer w) {
+    if (w == 0 || (n % w == 0 && std::has_single_bit(static_cast<std::uint64_t>(n / w))))
+        return;
+    const integer below =
+        n < w ? w : w * static_cast<integer>(std::bit_floor(static_cast<std::uint64_t>(n / w)));
+    fail(what,
+         fmt::format("{0} is {1}, which {2}, {3}, divides into no power of two of sets; make it {4}{5}, "
+                     "or {2} 0",
+                     entries, n, ways, w, below, n < w ? "" : fmt::format(" or {}", 2 * below)));
+}
+
+void check_tlb(const std::string& what, const Config& config) {
+    const TlbConfig& c = config.tlb;
+    if (!c.any()) {
+        if (c.second_entries != 0)
+            fail(what, fmt::format("tlb.second_entries is {}, but tlb.entries is 0: there is no TLB in front "
+                                   "of it; give tlb.entries too",
+                                   c.second_entries));
+        return;
+    }
+    check_tlb_sets(what, "tlb.entries", c.entries, "tlb.ways", c.ways);
+    if (c.second_entries == 0)
+        return;
+    check_tlb_sets(what, "tlb.second_entries", c.second_entries, "tlb.second_ways", c.second_ways);
+    if (config.chip.cores % config.cores_sharing_tlb() != 0)
+        fail(what,
+             fmt::format("tlb.second_share is {}, which does not divide chip.cores, {}; make it a divisor",
+                         config.cores_sharing_tlb(), config.chip.cores));
+}
+
 void check_network(const std::string& what, const Config& config) {
     const integer columns = config.network.columns, tiles = config.chip.tiles;
     if (config.network.topology == "mesh" && columns != 0 && tiles % columns != 0)
@@ -266,6 +298,7 @@ void check_consistency(const Config& c, const std::string& what) {
     check_caches(what, c);
     check_core(what, c);
     check_memory(what, c);
+    check_tlb(what, c);
     check_network(what, c);
     check_mode(what, c);
     if (c.all_threads() > 65536)

@@ -216,6 +216,35 @@ void add_caches(Table& t) {
           "that a write or read-modify-write takes longer where the word is reached from several tiles");
 }
 
+void add_tlb(Table& t) {
+    using C = TlbConfig;
+    auto s = &Config::tlb;
+    t.add("tlb.entries", s, &C::entries, "pages", 0, 0, 65536,
+          "translations that a core keeps; 0: addresses need none, and there are no TLBs");
+    t.add("tlb.ways", s, &C::ways, "", 0, 0, 65536,
+          "associativity; 0: any entry takes any page; the least recently used makes room");
+    t.add("tlb.page_bytes", s, &C::page_bytes, "bytes", 4 * kibi, 4 * kibi, 2 * kibi * kibi, "page", true);
+    t.add("tlb.second_entries", s, &C::second_entries, "pages", 0, 0, kibi * kibi,
+          "of the TLB behind those of the cores; 0: there is none");
+    t.add("tlb.second_ways", s, &C::second_ways, "", 0, 0, 65536,
+          "its associativity; 0: any entry takes any page");
+    t.add("tlb.second_latency", s, &C::second_latency, "cycles", 7, 0, 1000,
+          "from a miss of the first to what the second has, or to the walk");
+    t.add("tlb.second_share", s, &C::second_share, {"core", "tile"},
+          "cores that share one: each its own, those of a tile, or so many neighbours", integer{1} << 20);
+    t.add("tlb.misses", s, &C::misses, {"stall", "overlap"},
+          "stall: a miss holds up its thread's younger operations; overlap: what waits for its data alone");
+    t.add("tlb.walk", s, &C::walk, {"tables", "fixed"},
+          "tables: a walk reads an entry of each level of page tables that the walk cache lacks, through the "
+          "L1; fixed: it takes walk_cycles");
+    t.add("tlb.walk_cycles", s, &C::walk_cycles, "cycles", 30, 0, 100000, "of a walk (walk = fixed)");
+    t.add("tlb.walk_cache", s, &C::walk_cache, "entries", 16, 0, 4096,
+          "of tables above the last that a core keeps, any of any level, in no time (walk = tables)");
+    t.add("tlb.walkers", s, &C::walkers, "walks", 1, 1, 64, "of a core at a time");
+    t.add("tlb.address_bits", s, &C::address_bits, "bits", 48, 40, 57,
+          "of an address that the tables translate, nine a level and those within a page (walk = tables)");
+}
+
 void add_network(Table& t) {
     using C = NetworkConfig;
     auto s = &Config::network;
@@ -432,6 +461,7 @@ std::vector<Parameter> make_parameter_table() {
     add_core(t);
     add_classes(t);
     add_caches(t);
+    add_tlb(t);
     add_network(t);
     add_memory(t);
     add_kdtree(t);

@@ -1,11 +1,13 @@
 #include "sim/config/parameters.h"
 
 #include "sim/config/parameter_table.h"
+#include "sim/memory/page_tables.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 
@@ -107,6 +109,17 @@ integer Config::cores_sharing(unsigned level) const {
                                          : std::stoll(share);
 }
 
+integer Config::cores_sharing_tlb() const {
+    return tlb.second_share == "core"   ? 1
+           : tlb.second_share == "tile" ? chip.cores
+                                        : std::stoll(tlb.second_share);
+}
+
+integer TlbConfig::table_levels() const {
+    const auto page_bits = static_cast<integer>(std::countr_zero(static_cast<std::uint64_t>(page_bytes)));
+    return (address_bits - page_bits + PageTables::bits - 1) / PageTables::bits;
+}
+
 bool Config::beyond_tiles(unsigned level) const {
     return level != 0 && (cache(level).share == "chip" || cores_sharing(level) > chip.cores);
 }
@@ -132,6 +145,8 @@ const std::string& nearest_key(std::string_view key) {
 bool applies(const Parameter& p, const Config& config) {
     if (p.key.starts_with("network."))
         return p.key == "network.topology" || !config.network.ideal();
+    if (p.key.starts_with("tlb."))
+        return p.key == "tlb.entries" || config.tlb.any();
     if (p.key.size() < 3 || p.key[0] != 'l' || p.key[2] != '.')
         return true;
     const auto level = static_cast<unsigned>(p.key[1] - '1');

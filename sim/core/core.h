@@ -2,10 +2,12 @@
 #pragma once
 
 #include "sim/core/calendar.h"
+#include "sim/core/mmu.h"
 #include "sim/core/predictor.h"
 #include "sim/memory/cache.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -42,8 +44,9 @@ struct Core {
     Predictor predictor;
     Cache l1;
     Cache& l2;
-    Hart* running = nullptr; // policy stall: who holds the core ...
-    cycle busy_until = 0;    // ... and the cycle after its last issue
+    std::unique_ptr<Mmu> mmu; // null: addresses need no translation
+    Hart* running = nullptr;  // policy stall: who holds the core ...
+    cycle busy_until = 0;     // ... and the cycle after its last issue
 };
 
 } // namespace sim

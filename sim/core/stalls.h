@@ -21,13 +21,14 @@ enum class Cause : std::uint8_t {
     l5,
     memory,
     mshrs,
+    tlb,
     stores,
     branch,
     spill,
     synchronise,
     idle,
 };
-inline constexpr std::size_t cause_count = 15;
+inline constexpr std::size_t cause_count = 16;
 struct CauseName {
     const char *name, *meaning;
 };
@@ -42,6 +43,7 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"l5", "waiting for data that came from the L5"},
     {"memory", "waiting for data that came from memory"},
     {"mshrs", "a miss waited for a free MSHR or write-back entry"},
+    {"tlb", "waiting for an address's page: the second TLB, or a walk through the page tables"},
     {"stores", "a store waited for a free entry of the store buffer"},
     {"branch", "restarting after a mispredicted (or waiting on an unpredicted) branch"},
     {"spill", "waiting for a spilled register"},
@@ -49,8 +51,10 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"idle", "without work: no worker, or the worker had returned"},
 }};
 
-/// Whether a machine with so many levels of caches has the cause.
-inline bool has_cause(std::size_t cause, unsigned cache_levels) {
+/// Whether a machine with so many levels of caches, and TLBs or none, has the cause.
+inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb) {
+    if (cause == static_cast<std::size_t>(Cause::tlb))
+        return tlb;
     const auto l1 = static_cast<std::size_t>(Cause::l1), memory = static_cast<std::size_t>(Cause::memory);
     return cause < l1 + cache_levels || cause >= memory;
 }

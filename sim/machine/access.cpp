@@ -221,7 +221,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
         ++h.counters.spill_stores;
         Issued at = issue(h, vector_kind(store_kind), pieces_, now);
         Data data;
-        write_lanes(h, place, all_lanes, at.first, data);
+        write_lanes(h, place, all_lanes, translated(h, place, place + width * 4 - 1, at.first), data);
         if (data.held == Cause::stores) [[unlikely]]
             h.bound.later(Due(data.granted, data.held));
         stored(h, data);
@@ -229,7 +229,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
     ++h.counters.spill_loads;
     Issued at = issue(h, vector_kind(load_kind), pieces_, now);
     Data data;
-    read_lanes(h, place, all_lanes, at.first, data);
+    read_lanes(h, place, all_lanes, translated(h, place, place + width * 4 - 1, at.first), data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else
@@ -242,10 +242,12 @@ stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool 
     Issued at = issue(h, load_kind, 1, ready);
     Data data;
     std::uint64_t a = address(p);
-    if (buffered_ && meets_stores(h, a, a + bytes - 1, at.first)) [[unlikely]]
-        load_bytes_around(h, a, bytes, at.first, data);
+    const cycle from = translated(h, a, a + bytes - 1, at.first);
+    if (buffered_ && meets_stores(h, a, a + bytes - 1, from)) [[unlikely]]
+        load_bytes_around(h, a, bytes, from, data);
     else
-        touch(h, a, bytes, false, at.first, data);
+        touch(h, a, bytes, false, from, data);
+    blame_translation(at.first, from, data);
     finish_issue(h, at, data.granted);
     count(h, 1, vector);
     ++h.counters.loads;
@@ -258,10 +260,14 @@ stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
     std::uint32_t instructions = masked_instructions(lanes);
     Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;
-    if (lanes == 0)
+    if (lanes == 0) {
         data.first = data.last = at.last + l1_latency_;
-    else
-        read_lanes(h, address(p), lanes, at.first, data);
+    } else {
+        const std::uint64_t a = address(p);
+        const cycle from = tlb_ ? translate_lanes(h, a, lanes, at.first) : at.first;
+        read_lanes(h, a, lanes, from, data);
+        blame_translation(at.first, from, data);
+    }
     finish_issue(h, at, data.granted);
     count(h, instructions, true);
     ++h.counters.loads;
@@ -274,11 +280,15 @@ stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uin
     std::uint32_t instructions = indexed_instructions(lanes);
     Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;
-    if (lanes == 0)
+    if (lanes == 0) {
         data.first = data.last = at.last + l1_latency_;
-    else
-        touch_indexed(h, address(p), index, lanes, false,
-                      buffered_ ? gather_after(h, address(p), index, lanes, at.first) : at.first, data);
+    } else {
+        const std::uint64_t a = address(p);
+        const cycle from = tlb_ ? translate_indexed(h, a, index, lanes, at.first) : at.first;
+        touch_indexed(h, a, index, lanes, false, buffered_ ? gather_after(h, a, index, lanes, from) : from,
+                      data);
+        blame_translation(at.first, from, data);
+    }
     finish_issue(h, at, data.granted);
     count(h, instructions, true);
     ++h.counters.loads;
@@ -290,10 +300,12 @@ void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     settle(h, ready);
     Issued at = issue(h, store_kind, 1, ready);
     Data data;
+    const std::uint64_t a = address(p);
+    const cycle from = translated(h, a, a + bytes - 1, at.first);
     if (buffered_) [[unlikely]]
-        buffer_bytes(h, address(p), bytes, at.first, data);
+        buffer_bytes(h, a, bytes, from, data);
     else
-        touch(h, address(p), bytes, true, at.first, data);
+        touch(h, a, bytes, true, from, data);
     finish_issue(h, at, data.granted, data.held);
     count(h, 1, false);
     ++h.counters.stores;
@@ -305,8 +317,10 @@ void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
     std::uint32_t instructions = masked_instructions(lanes);
     Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
-    if (lanes != 0)
-        write_lanes(h, address(p), lanes, at.first, data);
+    if (lanes != 0) {
+        const std::uint64_t a = address(p);
+        write_lanes(h, a, lanes, tlb_ ? translate_lanes(h, a, lanes, at.first) : at.first, data);
+    }
     finish_issue(h, at, data.granted, data.held);
     count(h, instructions, true);
     ++h.counters.stores;
@@ -318,10 +332,12 @@ void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uin
     std::uint32_t instructions = indexed_instructions(lanes);
     Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
+    const std::uint64_t a = address(p);
+    const cycle from = tlb_ && lanes != 0 ? translate_indexed(h, a, index, lanes, at.first) : at.first;
     if (buffered_) [[unlikely]]
-        buffer_indexed(h, address(p), index, lanes, at.first, data);
+        buffer_indexed(h, a, index, lanes, from, data);
     else if (lanes != 0)
-        touch_indexed(h, address(p), index, lanes, true, at.first, data);
+        touch_indexed(h, a, index, lanes, true, from, data);
     finish_issue(h, at, data.granted, data.held);
     count(h, instructions, true);
     ++h.counters.stores;
@@ -332,9 +348,11 @@ void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uin
 void Engine::prefetch(Hart& h, const void* p, Due ready) {
     settle(h, ready);
     Issued at = issue(h, load_kind, 1, ready);
-    cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
-    ++h.core->l1.counters().busy_cycles;
-    h.core->l1.prefetch(address(p), t, h.column);
+    if (may_prefetch(h, address(p))) {
+        cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
+        ++h.core->l1.counters().busy_cycles;
+        h.core->l1.prefetch(address(p), t, h.column);
+    }
     finish_issue(h, at, 0);
     count(h, 1, false);
 }

@@ -28,6 +28,29 @@ std::string rate(double per_second, const char* what) {
     return giga < 1e4 ? fmt::format("{:.4g} {}", giga, what) : fmt::format("{:.0f} {}", giga, what);
 }
 
+/// What TLBs reach, and what a miss takes.
+std::string tlb_text(const Config& c) {
+    const auto of = [&c](integer entries, integer ways) {
+        return fmt::format("{} pages of {}, {}: {}", entries, size(real(c.tlb.page_bytes)),
+                           ways == 0 || ways == entries ? std::string("fully associative")
+                                                        : fmt::format("{} ways", ways),
+                           size(real(entries * c.tlb.page_bytes)));
+    };
+    std::string out = fmt::format("{} a core", of(c.tlb.entries, c.tlb.ways));
+    if (c.tlb.second_entries != 0)
+        out += fmt::format("; behind it {} for {} core{}, {:.3g} ns",
+                           of(c.tlb.second_entries, c.tlb.second_ways), c.cores_sharing_tlb(),
+                           c.cores_sharing_tlb() == 1 ? "" : "s",
+                           real(c.tlb.second_latency * c.chip.clock_ps) * 1e-3);
+    const double cycle_ns = real(c.chip.clock_ps) * 1e-3;
+    if (!c.tlb.tables())
+        return out + fmt::format("; a walk takes {:.3g} ns", real(c.tlb.walk_cycles) * cycle_ns);
+    const integer levels = c.tlb.table_levels(), least = c.tlb.walk_cache == 0 ? levels : 1;
+    const std::string reads = least == levels ? fmt::format("{}", levels) : fmt::format("1 to {}", levels);
+    return out + fmt::format("; a walk reads {} entries of tables, at the least {:.3g} ns", reads,
+                             real(least * c.l1.latency) * cycle_ns);
+}
+
 } // namespace
 
 ChipFigures chip_figures(const Config& c) {
@@ -109,6 +132,8 @@ std::string chip_text(const Config& c) {
                          cache.inclusion == "none" ? "" : ", " + cache.inclusion, size(l.bytes),
                          rate(l.bytes_per_second, "GB/s"), l.ns));
     }
+    if (c.tlb.any())
+        line("TLB", tlb_text(c));
     if (!c.network.ideal()) {
         const Topology t(c);
         line("network",

@@ -26,6 +26,11 @@ unsigned log2(integer x) {
     return static_cast<unsigned>(std::countr_zero(wide(x)));
 }
 
+/// Of a thread.
+std::uint64_t spill_bytes_of(const Config& config) {
+    return (wide(config.core.spill_slots) * width * 4 + 4095) / 4096 * 4096;
+}
+
 bool uses_strides(const Config& config) {
     for (unsigned level = 0; level < config.cache_levels(); ++level)
         if (config.cache(level).prefetcher == "stride")
@@ -57,7 +62,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       registers_(config.core.vector_registers > 0), strides_(uses_strides(config)),
       lane_gather_(config.core.gather == "lane"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
-      hold_policy_(config.core.switch_policy == "stall"), in_order_(config.core.window == 1 || hold_policy_),
+      hold_policy_(config.core.switch_policy == "stall"), tlb_(config.tlb.any()),
+      holds_misses_(config.tlb.misses == "stall"), page_shift_(log2(config.tlb.page_bytes)),
+      in_order_(config.core.window == 1 || hold_policy_),
       prediction_(config.core.predictor == "none"        ? Prediction::none
                   : config.core.predictor == "perfect"   ? Prediction::perfect
                   : config.core.predictor == "taken"     ? Prediction::taken
@@ -65,7 +72,12 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                                                          : Prediction::counters),
       base_(space.base()), window_cycles_(window_cycles(config)), shortest_read_(shortest_answer(config)),
       reach_(reach_cycles(config)), space_(space), labels_(with_frame_end(labels)),
-      lines_(space, line_shift_), homes_(space, config.chip.tiles),
+      tables_(config.tlb.tables()
+                  ? std::optional(PageTables(config.tlb, LineMap::end_of(space),
+                                             wide(config.all_threads()) * spill_bytes_of(config) +
+                                                 isa::address_space::granule))
+                  : std::nullopt),
+      lines_(space, line_shift_, tables_ ? tables_->bytes() : 0), homes_(space, config.chip.tiles),
       beyond_(Beyond::make(config,
                            [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
                                tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);
@@ -74,8 +86,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), options_(options),
       worker_(worker), intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
-    std::uint64_t spill_bytes = wide(config.core.spill_slots) * width * 4;
-    spill_bytes = (spill_bytes + 4095) / 4096 * 4096;
+    const std::uint64_t spill_bytes = spill_bytes_of(config);
     bool shares = config.core.shared_classes != "none";
     for (integer t = 0; t < config.chip.tiles; ++t) {
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
@@ -86,6 +97,12 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, l2,
                                                  below, tile.tickets, tile.attribution);
             l2.add_above(core.l1);
+            if (tlb_) {
+                if (c % config.cores_sharing_tlb() == 0)
+                    tile.second_tlbs.emplace_back(wide(config.tlb.second_entries),
+                                                  wide(config.tlb.second_ways));
+                core.mmu = std::make_unique<Mmu>(config.tlb, tile.second_tlbs.back());
+            }
             if (shares && c % config.core.shared_cores == 0)
                 tile.shared_units.emplace_back(tile.earliest);
             core.shared = shares ? &tile.shared_units.back() : nullptr;
@@ -476,6 +493,8 @@ Report Engine::report() const {
         for (const Core& core : tile.cores) {
             r.l1.push_back(core.l1.counters());
             r.port_instructions.push_back(core.port_instructions);
+            if (core.mmu)
+                r.tlb.push_back(core.mmu->counters);
         }
         for (const SharedUnit& unit : tile.shared_units)
             r.shared_unit_cycles.push_back(unit.busy_cycles);

@@ -1,6 +1,6 @@
 // One run: all state of the machine, and what the timing port does with it. Time advances in windows: every
 // tile runs to the window's end by itself; what left it is served then, in order of time. Not modelled:
-// instruction fetch, TLBs, order between a load and an earlier store to the same place inside
+// instruction fetch, order between a load and an earlier store to the same place inside
 // an issue window, coherence beyond shared words.
 #pragma once
 
@@ -12,9 +12,11 @@
 #include "sim/machine/machine.h"
 #include "sim/machine/tile.h"
 #include "sim/machine/windows.h"
+#include "sim/memory/page_tables.h"
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <random>
 
 namespace sim {
@@ -214,6 +216,29 @@ private:
     void read_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
     void write_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data);
 
+    // --- translation of addresses (translation.cpp)
+    /// When the pages of the bytes [low, high] are translated for an operation that wants them from `from`
+    /// on.
+    cycle translated(Hart& h, std::uint64_t low, std::uint64_t high, cycle from) {
+        return tlb_ ? translate(h, low, high, from) : from;
+    }
+    cycle translate(Hart& h, std::uint64_t low, std::uint64_t high, cycle from);
+    cycle translate_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from);
+    cycle translate_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
+                            cycle from);
+    cycle translate_page(Hart& h, std::uint64_t page, cycle t);
+    bool walk(Hart& h, std::uint64_t page, cycle& t);
+    cycle read_tables(Hart& h, std::uint64_t page, cycle t);
+    cycle await_walk(Hart& h, cycle t);
+    static cycle wait_for_address(Hart& h, cycle from, cycle t, bool holds);
+    /// Says of data that came without a ticket that they waited longer for their address than for themselves.
+    void blame_translation(cycle from, cycle translated, Data& data) const {
+        if (!holds_misses_ && translated > from && data.open == 0 &&
+            translated - from >= data.last - translated)
+            data.from = Cause::tlb;
+    }
+    bool may_prefetch(Hart& h, std::uint64_t address) const;
+
     /// Of the hart's core within its tile.
     std::size_t core_in_tile(const Hart& h) const {
         return h.number / wide(config_.chip.threads) % wide(config_.chip.cores);
@@ -279,6 +304,8 @@ private:
     Pairing pairing_;
     std::uint32_t overhead_; // 1/1024 instructions
     bool registers_, strides_, lane_gather_, skip_idle_, folding_, buffered_, hold_policy_;
+    bool tlb_, holds_misses_; // tlb.misses
+    unsigned page_shift_;
     bool in_order_; // operations act when they are ready, not when the issue window reaches them
     enum class Prediction { counters, taken, not_taken, none, perfect } prediction_;
 
@@ -287,7 +314,8 @@ private:
     std::uint64_t shortest_read_;
     std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
     const isa::address_space& space_;
-    Labels labels_; // the caller's, and the end of the frame
+    Labels labels_;                    // the caller's, and the end of the frame
+    std::optional<PageTables> tables_; // that walks read
     LineMap lines_;
     Homes homes_;
     Published published_; // words that several tiles reach

@@ -90,7 +90,8 @@ Explanations make() {
     add_counters(out, "l2_by_cache[]", cache_counters); // where a tile has several
     for (unsigned level = 2; level < most_levels; ++level)
         add_level(out, fmt::format("l{}", level + 1), fmt::format("l{}_by_cache", level + 1), cache_counters);
-    add_counters(out, "network", network_counters); // all of it absent where the network is ideal
+    add_level(out, "tlb", "tlb_by_core", tlb_counters); // absent where there is none
+    add_counters(out, "network", network_counters);     // all of it absent where the network is ideal
     add("network.busiest_link", "",
         "the link that moved most: of a unit, from it or to it, or between routers");
     add("network.busiest_utilisation", "", "of the drained cycles, those in which that link moved a flit");

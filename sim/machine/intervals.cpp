@@ -113,8 +113,12 @@ std::string print_intervals(const Report& r) {
     for (const auto& c : interval_counters)
         out += fmt::format(",{}", c.name);
     out += ",ipc,memory_bytes";
-    for (const CauseName& c : causes)
-        out += fmt::format(",stack_{}", c.name);
+    const auto shown = [&r](std::size_t cause) { // levels of caches that are not there are columns too
+        return has_cause(cause, most_levels, r.config.tlb.any());
+    };
+    for (std::size_t i = 0; i < cause_count; ++i)
+        if (shown(i))
+            out += fmt::format(",stack_{}", causes[i].name);
     out += '\n';
     const auto cores = static_cast<std::uint64_t>(r.config.all_cores());
     for (std::size_t i = 0; i < r.intervals.size(); ++i) {
@@ -126,8 +130,9 @@ std::string print_intervals(const Report& r) {
                        ratio(row.instructions, (row.end - row.begin) * cores),
                        (row.memory_reads + row.memory_writes) *
                            static_cast<std::uint64_t>(r.config.last_cache().line_bytes));
-        for (std::uint64_t cycles : row.stack)
-            fmt::format_to(std::back_inserter(out), ",{}", cycles);
+        for (std::size_t cause = 0; cause < cause_count; ++cause)
+            if (shown(cause))
+                fmt::format_to(std::back_inserter(out), ",{}", row.stack[cause]);
         out += '\n';
     }
     return out;

@@ -33,7 +33,7 @@ json configuration(const Config& config) {
 json stack(const Report& r, const Stack& s) {
     json out = json::object();
     for (std::size_t i = 0; i < cause_count; ++i)
-        if (has_cause(i, r.config.cache_levels()))
+        if (has_cause(i, r.config.cache_levels(), r.config.tlb.any()))
             out[causes[i].name] = s[i];
     return out;
 }
@@ -206,6 +206,10 @@ std::string print_json(const Report& r, bool with_host) {
         for (const CacheCounters& c : r.caches(level))
             out[fmt::format("{}_by_{}", name, by)].push_back(counters(c, cache_counters));
     }
+    if (!r.tlb.empty())
+        out["tlb"] = counters(r.tlb_total(), tlb_counters);
+    for (const TlbCounters& c : r.tlb)
+        out["tlb_by_core"].push_back(counters(c, tlb_counters));
     if (!r.network.ideal())
         out["network"] = network(r);
     out["memory"] = counters(r.memory, memory_counters);

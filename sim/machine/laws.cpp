@@ -2,6 +2,7 @@
 #include "sim/machine/limits.h"
 #include "sim/machine/report.h"
 #include "sim/machine/windows.h"
+#include "sim/memory/line_map.h"
 #include "sim/network/topology.h"
 
 #include <fmt/core.h>
@@ -246,6 +247,43 @@ void check_network(const Report& r) {
             n.byte_hops + n.hops * wide(c.link_bytes - 1));
 }
 
+/// Every miss is answered by the second TLB, another's walk or its own; walks read what the walk cache lacks.
+void check_tlb(const Report& r) {
+    const TlbConfig& c = r.config.tlb;
+    const auto wide = [](integer x) { return static_cast<std::uint64_t>(x); };
+    const TlbCounters t = r.tlb_total();
+    const std::uint64_t stalled = r.stack()[static_cast<std::size_t>(Cause::tlb)];
+    equal("TLBs = cores, or none", r.tlb.size(), c.any() ? wide(r.config.all_cores()) : 0);
+    equal("TLB hits + misses = lookups", t.hits + t.misses, t.lookups);
+    equal("TLB misses = second hits + merged + walks", t.misses, t.second_hits + t.merged + t.walks);
+    at_most("hits of a second TLB, if there is one", t.second_hits, c.second_entries != 0 ? t.misses : 0);
+    at_most("cycles of walks <= walkers x cycles", t.walk_cycles,
+            wide(r.config.all_cores() * c.walkers) * r.drained);
+    at_most("cycles waited for other walks <= cycles waited for pages", t.walker_cycles, t.wait_cycles);
+    if (!c.any() || c.misses == "stall")
+        at_most("cycles held up by TLBs <= cycles waited for pages", stalled, t.wait_cycles);
+    const auto tables = std::find(r.structures.begin(), r.structures.end(), LineMap::page_tables);
+    equal("page tables are a structure where walks read them", tables != r.structures.end() ? 1 : 0,
+          c.tables() ? 1 : 0);
+    if (!c.tables()) {
+        equal("cycles of walks = walks x cycles of one", t.walk_cycles,
+              t.walks * wide(c.any() ? c.walk_cycles : 0));
+        equal("entries read and spared where walks read none", t.walk_reads + t.walk_spared, 0);
+        return;
+    }
+    Traffic moved;
+    for (const TrafficRow& row : r.traffic)
+        if (r.structures[row.structure] == LineMap::page_tables)
+            for (const TrafficColumn& column : traffic_columns)
+                moved.*column.count += row.traffic.*column.count;
+    equal("entries read and spared = walks x levels", t.walk_reads + t.walk_spared,
+          t.walks * wide(c.table_levels()));
+    equal("entries read = L1 reads of page tables", t.walk_reads, moved.l1_reads);
+    equal("nobody writes page tables", moved.l1_writes, 0);
+    at_most("walks read an entry at the least", t.walks, t.walk_reads);
+    at_most("entries are read one after the other", t.walk_reads * wide(r.config.l1.latency), t.walk_cycles);
+}
+
 /// Noise: 0 or 1 cycle for each line that an L1 asks for.
 void check_jitter(const Report& r, const CacheCounters& l1) {
     equal("lines that may be delayed = L1 fills", r.jitter.lines, r.config.sim.jitter != 0 ? l1.fills : 0);
@@ -354,57 +392,12 @@ void check_laws(const Report& r) {
     check_use(r, l1);
     check_stacks(r);
     check_buffers(r, l1);
+    check_tlb(r);
     check_network(r);
     check_jitter(r, l1);
     check_intervals(r, l1, r.l2_total());
     if (exact(r.config))
         equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
-}
-
-double Report::seconds() const {
-    return static_cast<double>(cycles) * static_cast<double>(config.chip.clock_ps) * 1e-12;
-}
-
-namespace {
-
-CacheCounters sum_of(const std::vector<CacheCounters>& all) {
-    CacheCounters sum;
-    for (const CacheCounters& c : all)
-        for (const auto& row : cache_counters)
-            sum.*row.count += c.*row.count;
-    return sum;
-}
-
-void add(Stack& sum, const Stack& s) {
-    for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += s[i];
-}
-
-} // namespace
-
-CacheCounters Report::cache_total(unsigned level) const {
-    return sum_of(caches(level));
-}
-
-Stack ThreadReport::stack() const {
-    Stack sum{};
-    for (const Stack& s : stacks)
-        add(sum, s);
-    return sum;
-}
-
-std::vector<Stack> Report::core_stacks() const {
-    std::vector<Stack> cores(l1.size(), Stack{});
-    for (const ThreadReport& t : threads)
-        add(cores[static_cast<std::size_t>(t.core)], t.stack());
-    return cores;
-}
-
-Stack Report::stack() const {
-    Stack sum{};
-    for (const ThreadReport& t : threads)
-        add(sum, t.stack());
-    return sum;
 }
 
 } // namespace sim

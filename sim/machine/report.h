@@ -124,6 +124,7 @@ struct Report {
     std::vector<std::uint64_t> shared_unit_cycles;             // by unit of core.shared_classes, taken
     std::vector<CacheCounters> l1;                             // by core
     std::vector<CacheCounters> l2, l3, l4, l5;                 // by cache, tile after tile
+    std::vector<TlbCounters> tlb;                              // by core; none without TLBs
     std::uint64_t misplaced_lines = 0; // against inclusive and exclusive levels, before the frame's end
     JitterReport jitter;
     NetworkReport network;
@@ -148,6 +149,7 @@ struct Report {
         return const_cast<Report*>(this)->caches(level);
     }
     CacheCounters cache_total(unsigned level) const;
+    TlbCounters tlb_total() const;
     CacheCounters l1_total() const { return cache_total(0); }
     CacheCounters l2_total() const { return cache_total(1); }
     Stack stack() const;                    // of all threads and columns

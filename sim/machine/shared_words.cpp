@@ -42,19 +42,21 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     ready.later(Due(std::max(h.now, h.issued), Cause::synchronise));
     Issued at = issue(h, writes ? store_kind : load_kind, 1, ready);
     h.now = at.last;
+    const cycle begins = translated(h, a, a + 3, at.last);
+    h.now = std::max(h.now, begins);
     finish_issue(h, at, 0);
     count(h, 1, false);
     ++h.counters.atomics;
-    h.acting = Due(at.last, Cause::synchronise);
+    h.acting = Due(begins, Cause::synchronise);
     if (scheduler.exact() || writes) {
         Away away;
-        scheduler.wait_turn(Scheduler::key(at.last, h.number));
-        catch_up(at.last);
+        scheduler.wait_turn(Scheduler::key(begins, h.number));
+        catch_up(begins);
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
         h.tile->site = {};
-        cycle asks = at.last + l1_latency_;
+        cycle asks = begins + l1_latency_;
         Answer line = h.core->l2.modify({a, line_bytes_, asks, h.column});
         while (line.refused)
             [[unlikely]] {

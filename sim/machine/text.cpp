@@ -128,6 +128,20 @@ void memory(std::string& out, const Report& r) {
                        m.batches, m.turnarounds, m.rank_switches, m.refreshes);
 }
 
+/// Nothing where there is none.
+void tlb(std::string& out, const Report& r) {
+    if (r.tlb.empty())
+        return;
+    const TlbCounters t = r.tlb_total();
+    out +=
+        fmt::format("TLB      {} pages looked up, {} missed ({:.3f} %): {} in the second, {} in walks of "
+                    "others, {} walked\n",
+                    t.lookups, t.misses, 100 * ratio(t.misses, t.lookups), t.second_hits, t.merged, t.walks);
+    out += fmt::format("         a miss waits {:.1f} cycles; a walk takes {:.1f} and reads {:.2f} entries\n",
+                       ratio(t.wait_cycles, t.misses), ratio(t.walk_cycles, t.walks),
+                       ratio(t.walk_reads, t.walks));
+}
+
 /// Nothing where it is ideal.
 void network(std::string& out, const Report& r) {
     if (r.network.ideal())
@@ -150,6 +164,7 @@ void levels(std::string& out, const Report& r) {
     level(out, "L1", r.l1_total());
     for (unsigned i = 1; i < r.config.cache_levels(); ++i)
         level(out, fmt::format("L{}", i + 1).c_str(), r.cache_total(i));
+    tlb(out, r);
     network(out, r);
     memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";

@@ -49,6 +49,7 @@ struct Tile {
     std::array<std::deque<Cache>, most_levels> caches; // by level, from 1 on
     std::array<std::size_t, most_levels> sharing{};    // cores of such a cache
     std::deque<Jitter> jitters;                        // between the L1s and each L2, if wanted
+    std::deque<TlbArray> second_tlbs;
     std::deque<SharedUnit> shared_units;
     std::deque<Core> cores;
     std::vector<Hart*> harts;

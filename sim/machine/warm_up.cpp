@@ -58,6 +58,7 @@ void take_away(Report& r, const Report& warm) {
         r.shared_unit_cycles[i] -= warm.shared_unit_cycles[i];
     for (unsigned level = 0; level < r.config.cache_levels(); ++level)
         reduce(r.caches(level), warm.caches(level), cache_counters);
+    reduce(r.tlb, warm.tlb, tlb_counters);
     r.jitter.lines -= warm.jitter.lines;
     r.jitter.cycles -= warm.jitter.cycles;
     reduce(r.network.counters, warm.network.counters, network_counters);

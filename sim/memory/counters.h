@@ -56,6 +56,28 @@ inline constexpr std::array<CounterRow<CacheCounters>, 26> cache_counters = {{
     {"coherence", &CacheCounters::coherence, "misses of lines invalidated since they were last used"},
 }};
 
+/// Of a core's TLB, the second one behind it, and its walks.
+struct TlbCounters {
+    std::uint64_t lookups = 0, hits = 0, misses = 0, second_hits = 0, merged = 0, walks = 0;
+    std::uint64_t walk_reads = 0, walk_spared = 0, walk_cycles = 0, walker_cycles = 0, wait_cycles = 0,
+                  prefetches_dropped = 0;
+};
+inline constexpr std::array<CounterRow<TlbCounters>, 12> tlb_counters = {{
+    {"lookups", &TlbCounters::lookups, "pages looked up: of an operation, each that it touches once"},
+    {"hits", &TlbCounters::hits, "of these, pages that the core's TLB had"},
+    {"misses", &TlbCounters::misses, "of these, pages that it did not have"},
+    {"second_hits", &TlbCounters::second_hits, "misses that the second TLB answered"},
+    {"merged", &TlbCounters::merged, "misses that waited for a walk that had begun for another"},
+    {"walks", &TlbCounters::walks, "misses that walked through the page tables"},
+    {"walk_reads", &TlbCounters::walk_reads, "entries of page tables read through the L1"},
+    {"walk_spared", &TlbCounters::walk_spared, "levels of page tables that the walk cache spared"},
+    {"walk_cycles", &TlbCounters::walk_cycles, "cycles of all walks, summed"},
+    {"walker_cycles", &TlbCounters::walker_cycles, "cycles that misses waited for others' walks to end"},
+    {"wait_cycles", &TlbCounters::wait_cycles, "cycles from a miss to its translation, summed"},
+    {"prefetches_dropped", &TlbCounters::prefetches_dropped,
+     "prefetch operations dropped because the core's TLB did not have their page"},
+}};
+
 struct MemoryCounters {
     std::uint64_t reads = 0, writes = 0, read_bursts = 0, write_bursts = 0, forwarded = 0, merged = 0;
     std::uint64_t row_hits = 0, row_empties = 0, row_conflicts = 0, activates = 0, reopened = 0,

@@ -6,10 +6,18 @@
 
 namespace sim {
 
-LineMap::LineMap(const isa::address_space& space, unsigned line_shift) : line_shift_(line_shift) {
+std::uint64_t LineMap::end_of(const isa::address_space& space) {
     constexpr std::uint64_t granule = isa::address_space::granule;
+    std::uint64_t end = 0;
     for (const isa::region& r : space.regions())
-        granule_count_ = std::max<std::size_t>(granule_count_, (r.end + granule - 1) / granule);
+        end = std::max(end, (r.end + granule - 1) / granule * granule);
+    return end;
+}
+
+LineMap::LineMap(const isa::address_space& space, unsigned line_shift, std::uint64_t page_table_bytes)
+    : line_shift_(line_shift) {
+    constexpr std::uint64_t granule = isa::address_space::granule;
+    granule_count_ = (end_of(space) + page_table_bytes + granule - 1) / granule;
     granules_ = std::make_unique<Granule[]>(granule_count_);
     std::size_t next = 0;
     for (const isa::region& r : space.regions()) {
@@ -19,6 +27,11 @@ LineMap::LineMap(const isa::address_space& space, unsigned line_shift) : line_sh
             structures_.push_back(r.structure);
         for (; next < (r.end + granule - 1) / granule; ++next)
             granules_[next].structure = index;
+    }
+    if (page_table_bytes != 0) {
+        for (; next < granule_count_; ++next)
+            granules_[next].structure = static_cast<std::uint16_t>(structures_.size());
+        structures_.emplace_back(page_tables);
     }
     structures_.emplace_back("spill");
     if (structures_.size() >= std::size_t{1} << (Line::before_shift - level_bits))

@@ -22,8 +22,10 @@ using LineKind = std::uint32_t;
 
 class LineMap {
 public:
-    /// Lines are the L1s', of 2^line_shift bytes.
-    LineMap(const isa::address_space& space, unsigned line_shift);
+    /// Lines are the L1s', of 2^line_shift bytes. Behind the regions lie so many bytes of page tables.
+    LineMap(const isa::address_space& space, unsigned line_shift, std::uint64_t page_table_bytes = 0);
+    /// Where the last region ends.
+    static std::uint64_t end_of(const isa::address_space& space);
 
     class Line {
     public:
@@ -63,6 +65,7 @@ public:
     /// The window has ended: a tile's notes count for all.
     static void publish(std::vector<Line*>& notes);
 
+    static constexpr const char* page_tables = "page tables"; // the structure's name
     /// Where simulated memory ends and register spills begin.
     std::uint64_t spill_begin() const { return granule_count_ * isa::address_space::granule; }
     LineKind spill() const { return kind_of(structures_.size() - 1, 0); }

@@ -166,6 +166,8 @@ std::vector<ValidationRow> elsewhere() {
          "", State::unbuilt},
         {"caches", "an independent simple model, on the same traces", "exact",
          "test_sim, CacheOracle: integers equal", State::tests},
+        {"TLB", "an independent simple model, on the same traces", "exact",
+         "test_sim, TlbOracle: integers equal", State::tests},
         {"DRAM: curves beside DRAMsim3 and Ramulator", "those two, where they agree", "10 %",
          "by hand, in sim/README.md", State::tests},
         {"DRAM: distances of commands", "the data sheet's, pairwise, of random traffic", "exact",
@@ -219,6 +221,7 @@ int ValidateCommand::run() const {
     fmt::print("{:<10} {:<52} {:<14} {}\n", "result", "what", "bar", "measured");
     add(check_core());
     add(check_reference());
+    add(check_tlb());
     add(check_network());
     add(check_dram());
     std::vector<ValidationRow> frames;

@@ -6,6 +6,7 @@
 #include "sim/validation/core_forms.h"
 #include "sim/validation/network_forms.h"
 #include "sim/validation/reference_forms.h"
+#include "sim/validation/tlb_forms.h"
 
 #include <fmt/format.h>
 
@@ -75,6 +76,10 @@ std::vector<ValidationRow> check_core() {
 
 std::vector<ValidationRow> check_reference() {
     return check_forms("reference mode", reference_forms());
+}
+
+std::vector<ValidationRow> check_tlb() {
+    return check_forms("TLB", tlb_forms());
 }
 
 std::vector<ValidationRow> check_network() {

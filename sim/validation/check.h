@@ -35,6 +35,8 @@ int exit_code(const std::vector<ValidationRow>& rows);
 std::vector<ValidationRow> check_core();
 /// Each of reference_forms(), likewise.
 std::vector<ValidationRow> check_reference();
+/// Each of tlb_forms(), likewise.
+std::vector<ValidationRow> check_tlb();
 /// Each of network_pings() in exact cycles, each of network_loads() within 2 %.
 std::vector<ValidationRow> check_network();
 /// Each memory preset beside dram_bounds.h: saturated random and sequential reads, idle random reads.

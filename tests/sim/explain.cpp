@@ -33,6 +33,7 @@ void add_figures(std::set<std::string>& out, const char* share) {
     }
     c.chip.tiles = 2;
     c.network.topology = "mesh";
+    c.tlb.entries = 8;
     c.core.issue_width = 2;
     c.core.pairing = "any | any";
     c.core.shared_classes = "divide";

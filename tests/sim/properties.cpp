@@ -36,6 +36,26 @@ void add_queues(Config& c, std::mt19937& random) {
     }
 }
 
+void add_tlbs(Config& c, std::mt19937& random) {
+    auto pick = [&](integer low, integer high) {
+        return low + static_cast<integer>(random() % u(high - low + 1));
+    };
+    TlbConfig& t = c.tlb;
+    t.ways = pick(0, 4);
+    t.entries = t.ways == 0 ? pick(1, 20) : t.ways << pick(0, 3);
+    t.page_bytes = integer{4096} << pick(0, 9);
+    t.second_ways = pick(0, 4);
+    t.second_entries = pick(0, 1) == 0 ? 0 : t.second_ways == 0 ? pick(1, 40) : t.second_ways << pick(0, 4);
+    t.second_latency = pick(0, 20);
+    t.second_share = pick(0, 1) == 0 ? "core" : "tile";
+    t.misses = pick(0, 1) == 0 ? "stall" : "overlap";
+    t.walk = pick(0, 1) == 0 ? "tables" : "fixed";
+    t.walk_cycles = pick(0, 300);
+    t.walk_cache = pick(0, 6);
+    t.walkers = pick(1, 3);
+    t.address_bits = pick(40, 57);
+}
+
 Config random_machine(std::mt19937& random) {
     auto pick = [&](integer low, integer high) {
         return low + static_cast<integer>(random() % u(high - low + 1));
@@ -176,6 +196,8 @@ Config random_machine(std::mt19937& random) {
     c.coherence.remote_cycles = pick(0, 5000);
     if (pick(0, 1) == 0)
         add_queues(c, random);
+    if (pick(0, 1) == 0)
+        add_tlbs(c, random);
     return c;
 }
 

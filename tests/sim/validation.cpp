@@ -35,6 +35,13 @@ TEST(Validation, TheReferenceModesFormsPass) {
         EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
 }
 
+TEST(Validation, TheTlbsFormsPass) {
+    const std::vector<ValidationRow> rows = check_tlb();
+    EXPECT_EQ(rows.size(), 7U);
+    for (const ValidationRow& row : rows)
+        EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
+}
+
 TEST(Validation, ClosedFormsPass) {
     for (const std::vector<ValidationRow>& rows : {check_core(), check_network(), check_dram()}) {
         EXPECT_GT(rows.size(), 13U);
