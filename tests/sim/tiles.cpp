@@ -252,9 +252,9 @@ TEST(Tiles, NoReportDependsOnTheHostsOrder) {
     for (const auto& [name, change] : machines)
         for (const int host_threads : {1, 2})
             expect_equal_in_any_order(
-                [&](std::uint32_t order) {
+                [&, alter = change](std::uint32_t order) { // clang 14 captures no part of a pair by reference
                     Config c = busy_tiles();
-                    change(c);
+                    alter(c);
                     return run_busy_tiles(c, host_threads, {.host_order = order});
                 },
                 name);
