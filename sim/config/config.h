@@ -32,9 +32,19 @@ struct CoreConfig {
     integer spin_period = 0;
 };
 
+/// Memory operations that go lane by lane, and what that takes beside their loads and stores.
+struct LanesConfig {
+    std::string masked, scatter, shuffle, idle;
+    integer piece_instructions = 0, piece_references = 0;
+    integer load_instructions = 0, load_references = 0;
+    integer store_instructions = 0, store_references = 0;
+};
+
 /// Per operation class, indexed by isa::timing::operation; the last entry is the branch.
 inline constexpr int class_count = isa::timing::operation_kinds + 1;
 inline constexpr int branch_class = isa::timing::operation_kinds;
+/// It and the branch have no vectors.
+inline constexpr int address_class = static_cast<int>(isa::timing::operation::address);
 extern const std::array<const char*, class_count> class_names;
 
 inline constexpr unsigned most_levels = 5; // of caches
@@ -114,7 +124,8 @@ struct SimulationConfig {
 struct Config {
     ChipConfig chip;
     CoreConfig core;
-    std::array<integer, class_count> latency{}, interval{};
+    LanesConfig lanes;
+    std::array<integer, class_count> latency{}, interval{}, instructions{};
     L1Config l1;
     CacheConfig l2, l3, l4, l5; // without bytes: no such level
     TlbConfig tlb;

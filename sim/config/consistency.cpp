@@ -50,7 +50,27 @@ void at_least(const std::string& what, const char* longer, integer a, const char
                                a, shorter, b));
 }
 
+void check_lanes(const std::string& what, const Config& config) {
+    const LanesConfig& c = config.lanes;
+    if (c.masked == "on" && config.core.gather != "lane")
+        fail(what,
+             fmt::format("lanes.masked is \"on\" where core.gather is \"{}\": what goes lane by lane is "
+                         "a gather; make core.gather \"lane\"",
+                         config.core.gather));
+    const auto within = [&what](const char* part, integer references, integer instructions) {
+        if (references > instructions)
+            fail(what,
+                 fmt::format("lanes.{0}_references is {1}, more than lanes.{0}_instructions, {2}, of which "
+                             "they are a part; make that at least {1}",
+                             part, references, instructions));
+    };
+    within("piece", c.piece_references, c.piece_instructions);
+    within("load", c.load_references, c.load_instructions);
+    within("store", c.store_references, c.store_instructions);
+}
+
 void check_core(const std::string& what, const Config& config) {
+    check_lanes(what, config);
     const CoreConfig& c = config.core;
     if (std::string mistake = Pairing::mistake(c.pairing); !mistake.empty())
         fail(what, fmt::format("core.pairing \"{}\" {}", c.pairing, mistake));

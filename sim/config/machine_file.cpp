@@ -98,9 +98,11 @@ public:
         chain_.push_back(file);
         if (const toml::node* parent = root.get("inherit"))
             inherit(file, *parent);
+        if (const toml::node* counts = root.get("calibration"))
+            name_calibration(file, *counts);
         for (bool first : {true, false}) // first what sets others, in whatever section
             for (const auto& [key, value] : root) {
-                if (key.str() == "inherit")
+                if (key.str() == "inherit" || key.str() == "calibration")
                     continue;
                 if (!value.is_table())
                     fail(file, key.source(), no_section(key.str()));
@@ -116,6 +118,7 @@ public:
 
 private:
     void inherit(const std::string& file, const toml::node& parent);
+    void name_calibration(const std::string& file, const toml::node& counts);
     void inherit_one(const std::string& file, const toml::node& parent);
     void apply_section(const std::string& name, const toml::table& section, const std::string& text,
                        const std::string& file, bool first);
@@ -161,6 +164,15 @@ void Reader::inherit_one(const std::string& file, const toml::node& parent) {
     if (!other.wrong.empty())
         fail(file, parent.source(), fmt::format("inherits {}, which {}", path, other.wrong));
     apply(other.text, path);
+}
+
+void Reader::name_calibration(const std::string& file, const toml::node& counts) {
+    const auto name = counts.value_exact<std::string>();
+    if (!name || name->empty())
+        fail(file, counts.source(),
+             "calibration must be the name of a file in quotes, written by analysis/calibration/calibrate.py "
+             "-o");
+    machine_.calibration = (fs::path(file).parent_path() / *name).string();
 }
 
 /// Either what sets others, or the rest.

@@ -1,6 +1,7 @@
 // Machine files: TOML, one table a section, every key in the table of parameter_table.cpp. `inherit =
 // "other.toml"` (relative to the file; or a list of files, of which the last wins) takes all values of other
-// files first. Layers, each over the one before: defaults, inherited files, the file, overrides.
+// files first. `calibration = "file.json"` (relative likewise) names what analysis/calibration wrote. Layers,
+// each over the one before: defaults, inherited files, the file, overrides.
 #pragma once
 
 #include "sim/config/config.h"
@@ -16,6 +17,7 @@ struct MachineDescription {
     Config config;
     std::string name;            // its file's, without folders
     std::vector<Origin> origins; // of parameters(), in that order; empty: not known
+    std::string calibration; // a file, its folders resolved: what its counts lack beside real ones; or empty
 };
 
 /// Reads a file and applies overrides of the form `section.key=value`. Throws ConfigError.

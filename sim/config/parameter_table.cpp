@@ -44,10 +44,10 @@ struct Table {
         rows.push_back({std::move(key), "", std::move(meaning), TextKind{at, std::move(preset)}});
     }
     void add_class(const char* table, std::array<integer, class_count> Config::*values, int index,
-                   integer preset, integer least, std::string meaning) {
+                   integer preset, integer least, std::string meaning, const char* unit = "cycles") {
         auto i = static_cast<std::size_t>(index);
         auto at = [values, i](Config& c) -> integer& { return (c.*values)[i]; };
-        rows.push_back({fmt::format("{}.{}", table, class_names[i]), "cycles", std::move(meaning),
+        rows.push_back({fmt::format("{}.{}", table, class_names[i]), unit, std::move(meaning),
                         IntegerKind{at, least, 1000, false, preset}});
     }
 };
@@ -123,6 +123,34 @@ void add_core(Table& t) {
           "between two looks of a waiting thread");
 }
 
+void add_lanes(Table& t) {
+    using C = LanesConfig;
+    auto s = &Config::lanes;
+    t.add("lanes.masked", s, &C::masked, {"off", "on"},
+          "on: masked loads and stores of consecutive lanes go lane by lane as well, as gathers and scatters "
+          "do (core.gather = lane)");
+    t.add("lanes.scatter", s, &C::scatter, {"off", "on"},
+          "on: scatters go lane by lane even where gathers do not (core.gather = line)");
+    t.add("lanes.shuffle", s, &C::shuffle, {"off", "on"},
+          "on: permutations and compressions go lane by lane through the thread's stack, as gathers of all "
+          "lanes");
+    t.add("lanes.idle", s, &C::idle, {"skip", "load"},
+          "skip: lane by lane, active lanes alone are loaded; load: idle ones load a zero from the stack, "
+          "which takes no branch");
+    t.add("lanes.piece_instructions", s, &C::piece_instructions, "instructions", 0, 0, 64,
+          "of a sub-vector that goes lane by lane, beside what its lanes take");
+    t.add("lanes.piece_references", s, &C::piece_references, "references", 0, 0, 64,
+          "of these, loads and stores of the thread's stack");
+    t.add("lanes.load_instructions", s, &C::load_instructions, "instructions", 0, 0, 64,
+          "of a lane that is loaded by itself, beside the load");
+    t.add("lanes.load_references", s, &C::load_references, "references", 0, 0, 64,
+          "of these, loads and stores of the thread's stack");
+    t.add("lanes.store_instructions", s, &C::store_instructions, "instructions", 0, 0, 64,
+          "of an active lane that is stored by itself, beside the store");
+    t.add("lanes.store_references", s, &C::store_references, "references", 0, 0, 64,
+          "of these, loads and stores of the thread's stack");
+}
+
 void add_classes(Table& t) {
     constexpr std::array<integer, class_count> latency = {1, 3, 4, 4, 4, 16, 16, 2, 4,
                                                           1, 1, 2, 2, 6, 2,  1,  1};
@@ -133,6 +161,10 @@ void add_classes(Table& t) {
     for (int i = 0; i < class_count; ++i)
         t.add_class("interval", &Config::interval, i, interval[static_cast<std::size_t>(i)], 1,
                     "a sub-vector keeps the core's one unit of this class; 1: pipelined, as many as issue");
+    for (int i = 0; i < address_class; ++i)
+        t.add_class("instructions", &Config::instructions, i, 1, 1,
+                    "that a sub-vector of a vector operation takes; 1: the instruction set has it",
+                    "instructions");
 }
 
 /// What all caches have, whatever their place.
@@ -459,6 +491,7 @@ std::vector<Parameter> make_parameter_table() {
     Table t;
     add_chip(t);
     add_core(t);
+    add_lanes(t);
     add_classes(t);
     add_caches(t);
     add_tlb(t);

@@ -36,7 +36,7 @@ std::string print_machine(const MachineDescription& machine) {
 }
 
 std::string print_machine(const Config& config) {
-    return print_machine(MachineDescription{config, "", {}});
+    return print_machine(MachineDescription{config, "", {}, ""});
 }
 
 } // namespace sim

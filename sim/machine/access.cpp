@@ -58,6 +58,14 @@ void Engine::settle_loads(Hart& h) {
     });
 }
 
+/// Lanes one after the other.
+constexpr std::array<std::int32_t, width> in_order = [] {
+    std::array<std::int32_t, width> out{};
+    for (std::uint32_t i = 0; i < width; ++i)
+        out[i] = static_cast<std::int32_t>(i);
+    return out;
+}();
+
 // --- which lines an operation touches
 
 /// One machine access; across lines, one of each.
@@ -129,6 +137,7 @@ inline void Engine::write_lanes(Hart& h, std::uint64_t address, std::uint64_t la
 /// lane.
 void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                            bool write, cycle from, Data& data) {
+    const bool by_lane = write ? lane_scatter_ : lane_gather_;
     auto line_of = [&](std::uint32_t lane) {
         return (address + static_cast<std::uint64_t>(std::int64_t{index[lane]} * 4)) >> line_shift_;
     };
@@ -140,7 +149,7 @@ void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* i
                 continue;
             std::uint64_t line = line_of(lane);
             auto* end = seen.begin() + distinct;
-            if (lane_gather_ || std::find(seen.begin(), end, line) == end)
+            if (by_lane || std::find(seen.begin(), end, line) == end)
                 seen[distinct++] = line;
         }
         for (std::uint32_t k = 0; k < distinct; ++k)
@@ -158,9 +167,9 @@ std::uint32_t Engine::masked_instructions(std::uint64_t lanes) const {
     return std::max(1U, active);
 }
 
-inline std::uint32_t Engine::indexed_instructions(std::uint64_t lanes) const {
-    return lane_gather_ ? std::max(1U, static_cast<std::uint32_t>(std::popcount(lanes)))
-                        : masked_instructions(lanes);
+inline std::uint32_t Engine::indexed_instructions(std::uint64_t lanes, bool by_lane) const {
+    return by_lane ? std::max(1U, static_cast<std::uint32_t>(std::popcount(lanes)))
+                   : masked_instructions(lanes);
 }
 
 // --- what becomes of it
@@ -179,20 +188,6 @@ stamp Engine::loaded_ticket(Hart& h, const Data& data) {
     if (h.loading.size() >= 32)
         settle_loads(h);
     h.loading.push_back(r.last);
-    return r;
-}
-
-inline stamp Engine::loaded(Hart& h, const Data& data, bool vector) {
-    stamp r;
-    if (data.open != 0) [[unlikely]] {
-        r = loaded_ticket(h, data);
-    } else {
-        r.first = data.first;
-        r.last = data.last;
-        r.cause = static_cast<std::uint8_t>(data.from);
-        h.complete.later(Due(data.last, data.from));
-    }
-    r.value = vector ? h.registers.make() : 0;
     return r;
 }
 
@@ -254,9 +249,11 @@ stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool 
     return loaded(h, data, vector);
 }
 
-stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready) {
+stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready) {
     charge_overhead(h, begin(h));
     settle(h, ready);
+    if (masked && masked_by_lane_) [[unlikely]]
+        return load_indexed(h, p, in_order.data(), lanes, ready);
     std::uint32_t instructions = masked_instructions(lanes);
     Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;
@@ -277,7 +274,15 @@ stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
 stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready) {
     charge_overhead(h, begin(h));
     settle(h, ready);
-    std::uint32_t instructions = indexed_instructions(lanes);
+    ++h.counters.gathers;
+    return load_indexed(h, p, index, lanes, ready);
+}
+
+stamp Engine::load_indexed(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes,
+                           Due ready) {
+    if (lane_gather_)
+        assemble_load(h, lanes, ready);
+    std::uint32_t instructions = indexed_instructions(lanes, lane_gather_);
     Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;
     if (lanes == 0) {
@@ -292,7 +297,6 @@ stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uin
     finish_issue(h, at, data.granted);
     count(h, instructions, true);
     ++h.counters.loads;
-    ++h.counters.gathers;
     return loaded(h, data, true);
 }
 
@@ -312,8 +316,10 @@ void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     stored(h, data);
 }
 
-void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready) {
+void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready) {
     settle(h, ready);
+    if (masked && masked_by_lane_) [[unlikely]]
+        return store_indexed(h, p, in_order.data(), lanes, ready);
     std::uint32_t instructions = masked_instructions(lanes);
     Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
@@ -329,7 +335,15 @@ void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready
 
 void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready) {
     settle(h, ready);
-    std::uint32_t instructions = indexed_instructions(lanes);
+    ++h.counters.scatters;
+    store_indexed(h, p, index, lanes, ready);
+}
+
+void Engine::store_indexed(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes,
+                           Due ready) {
+    if (lane_scatter_)
+        assemble_store(h, lanes, ready);
+    std::uint32_t instructions = indexed_instructions(lanes, lane_scatter_);
     Issued at = issue(h, vector_kind(store_kind), instructions, ready);
     Data data;
     const std::uint64_t a = address(p);
@@ -341,7 +355,6 @@ void Engine::scatter(Hart& h, const void* p, const std::int32_t* index, std::uin
     finish_issue(h, at, data.granted, data.held);
     count(h, instructions, true);
     ++h.counters.stores;
-    ++h.counters.scatters;
     stored(h, data);
 }
 
@@ -433,7 +446,7 @@ stamp load_vector(site where, const void* p, std::uint64_t lanes, const stamp& a
     std::uint32_t span = n.engine.span(vector_load, lanes);
     n.address(address).lanes(mask, span);
     n.engine.note_site(n.hart, where);
-    return n.engine.load_vector(n.hart, p, lanes, n.ready);
+    return n.engine.load_vector(n.hart, p, lanes, mask.value != 0, n.ready);
 }
 stamp gather(site where, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& mask) {
@@ -455,7 +468,7 @@ void store_vector(site where, const void* p, std::uint64_t lanes, const stamp& a
     std::uint32_t span = n.engine.span(vector_store, lanes);
     n.address(address).lanes(data, span).lanes(mask, span);
     n.engine.note_site(n.hart, where);
-    n.engine.store_vector(n.hart, p, lanes, n.ready);
+    n.engine.store_vector(n.hart, p, lanes, mask.value != 0, n.ready);
 }
 void scatter(site where, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& data, const stamp& mask) {

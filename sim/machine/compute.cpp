@@ -75,11 +75,15 @@ cycle Engine::book_together(Core& core, std::size_t kind, cycle t) const {
     }
 }
 
+/// A shuffle whose result is a scalar takes one lane out: no instruction set lacks that.
+constexpr std::size_t extract_kind = vector_kind(static_cast<std::size_t>(operation::shuffle));
+
 inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector) {
     settle(h, ready);
     if (kind == vector_kind(static_cast<std::size_t>(operation::broadcast)))
         instructions = 1; // all registers of the value are the same one
-    Issued at = issue(h, kind, instructions, ready);
+    const bool one_lane = !vector && kind == extract_kind;
+    Issued at = issue_all(h, kind, one_lane ? instructions : instructions * takes_[kind], ready);
     finish_issue(h, at, 0);
     count(h, instructions, vector || instructions > 1);
     std::uint32_t latency = latency_[kind];
@@ -197,6 +201,11 @@ stamp vector_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
     return operate(op, Shape::lanes, a, b, c);
 }
 stamp cross_op(operation op, const stamp& a, const stamp& b) {
+    if (op == operation::shuffle && sim::running_engine->shuffles_by_lane()) [[unlikely]] {
+        Engine& engine = *sim::running_engine;
+        Hart& hart = *sim::running_hart;
+        engine.assemble_shuffle(hart, engine.begin(hart));
+    }
     return operate(op, Shape::across, a, b);
 }
 stamp cross_to_scalar(operation op, const stamp& a, const stamp& b) {

@@ -60,8 +60,13 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       cache_levels_(config.cache_levels()), pairing_(config.core.pairing),
       overhead_(static_cast<std::uint32_t>(config.core.scalar_overhead * 1024.0 + 0.5)),
       registers_(config.core.vector_registers > 0), strides_(uses_strides(config)),
-      lane_gather_(config.core.gather == "lane"), skip_idle_(config.core.skip_idle == "on"),
+      lane_gather_(config.core.gather == "lane"), lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
+      lane_shuffle_(config.lanes.shuffle == "on"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
+      masked_by_lane_(config.lanes.masked == "on"), idle_loads_(config.lanes.idle == "load"),
+      lane_path_{narrow(config.lanes.piece_instructions), narrow(config.lanes.piece_references),
+                 narrow(config.lanes.load_instructions),  narrow(config.lanes.load_references),
+                 narrow(config.lanes.store_instructions), narrow(config.lanes.store_references)},
       hold_policy_(config.core.switch_policy == "stall"), tlb_(config.tlb.any()),
       holds_misses_(config.tlb.misses == "stall"), page_shift_(log2(config.tlb.page_bytes)),
       in_order_(config.core.window == 1 || hold_policy_),
@@ -137,7 +142,9 @@ void Engine::describe_kinds() {
         latency_[kind] = narrow(config_.latency[c]);
         interval_[kind] = narrow(config_.interval[c]);
         shared_[kind] = shared[c] && kind % form_kinds == c; // a load takes its own core's adder
-        spans_[kind] = span_of(kind, pieces_);
+        takes_[kind] =
+            vector_kind(c) == kind && kind < vector_kind(address_class) ? narrow(config_.instructions[c]) : 1;
+        spans_[kind] = span_of(kind, pieces_ * takes_[kind]);
         needs_[kind] = pairing_.ports() != 0 || shared_[kind] ? Needs::several
                        : interval_[kind] > 1                  ? Needs::own_unit
                                                               : Needs::slot;

@@ -50,9 +50,9 @@ public:
     stamp compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector);
     void branch(Hart& h, site where, Due ready, bool taken);
     stamp load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector);
-    stamp load_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready);
+    stamp load_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready);
     void store(Hart& h, const void* p, std::uint32_t bytes, Due ready);
-    void store_vector(Hart& h, const void* p, std::uint64_t lanes, Due ready);
+    void store_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready);
     stamp gather(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
     void scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
     void prefetch(Hart& h, const void* p, Due ready);
@@ -109,6 +109,8 @@ public:
     }
     std::uint32_t vector_instructions() const { return pieces_; }
     bool folds_addresses() const { return folding_; }
+    bool shuffles_by_lane() const { return lane_shuffle_; }
+    void assemble_shuffle(Hart& h, Due ready);
     stamp fold_address(Hart& h, Due ready);
     std::uint32_t span(std::size_t kind) const { return spans_[kind]; }
     std::uint32_t span(std::size_t kind, std::uint64_t lanes) const {
@@ -170,6 +172,7 @@ private:
     cycle turn(Hart& h, cycle t);
     cycle hold_core(Hart& h, cycle t);
     Issued issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
+    Issued issue_all(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
     Issued book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
     cycle book_together(Core& core, std::size_t kind, cycle t) const;
     void finish_issue(Hart& h, Issued at, cycle granted, Cause held = Cause::mshrs);
@@ -191,8 +194,16 @@ private:
         return slots_of(static_cast<std::uint32_t>(last - first) + 1);
     }
     std::uint32_t span_of(std::size_t kind, std::uint32_t instructions) const;
+    // --- lane by lane (lane_path.cpp)
+    stamp load_indexed(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
+    void store_indexed(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
+    void assemble(Hart& h, std::uint32_t instructions, std::uint32_t references, Due ready);
+    void touch_stack(Hart& h, std::uint32_t references, bool write, Due ready);
+    void assemble_load(Hart& h, std::uint64_t lanes, Due ready);
+    void assemble_store(Hart& h, std::uint64_t lanes, Due ready);
+
     std::uint32_t masked_instructions(std::uint64_t lanes) const;
-    std::uint32_t indexed_instructions(std::uint64_t lanes) const;
+    std::uint32_t indexed_instructions(std::uint64_t lanes, bool by_lane) const;
     cycle ticket_of(Hart& h, const Data& data) const;
     stamp loaded(Hart& h, const Data& data, bool vector);
     stamp loaded_ticket(Hart& h, const Data& data);
@@ -296,6 +307,7 @@ private:
     unsigned tile_levels_, cache_levels_; // of caches: within a tile, in all
     // by kind of instruction (pairing.h)
     std::array<std::uint32_t, issue_kinds> latency_{}, interval_{};
+    std::array<std::uint32_t, issue_kinds> takes_{}; // instructions of a sub-vector
     std::array<std::uint32_t, issue_kinds>
         spans_{}; // cycles in which a vector operation can issue at the least
     enum class Needs : std::uint8_t { slot, own_unit, several };
@@ -303,7 +315,13 @@ private:
     std::array<bool, issue_kinds> shared_{};
     Pairing pairing_;
     std::uint32_t overhead_; // 1/1024 instructions
-    bool registers_, strides_, lane_gather_, skip_idle_, folding_, buffered_, hold_policy_;
+    bool registers_, strides_, lane_gather_, lane_scatter_, lane_shuffle_, skip_idle_, folding_, buffered_;
+    bool masked_by_lane_, idle_loads_;
+    struct LanePath { // config's, narrowed
+        std::uint32_t piece_instructions, piece_references;
+        std::uint32_t load_instructions, load_references, store_instructions, store_references;
+    } lane_path_;
+    bool hold_policy_;
     bool tlb_, holds_misses_; // tlb.misses
     unsigned page_shift_;
     bool in_order_; // operations act when they are ready, not when the issue window reaches them

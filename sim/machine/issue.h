@@ -59,6 +59,18 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instruction
     return at;
 }
 
+/// More than a calendar takes at once.
+inline Issued Engine::issue_all(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
+    constexpr std::uint32_t most = 64;
+    Issued at = issue(h, kind, std::min(instructions, most), ready);
+    while (instructions > most)
+        [[unlikely]] {
+            instructions -= most;
+            at.last = issue(h, kind, std::min(instructions, most), ready).last;
+        }
+    return at;
+}
+
 /// Ends an operation: later ones count from it (rule 2). A miss that waited for an MSHR left the pipeline
 /// only then.
 inline void Engine::finish_issue(Hart& h, Issued at, cycle granted, Cause held) {
@@ -125,6 +137,21 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
         data.last = last;
         data.from = a.from;
     }
+}
+
+/// What a load brings.
+inline stamp Engine::loaded(Hart& h, const Data& data, bool vector) {
+    stamp r;
+    if (data.open != 0) [[unlikely]] {
+        r = loaded_ticket(h, data);
+    } else {
+        r.first = data.first;
+        r.last = data.last;
+        r.cause = static_cast<std::uint8_t>(data.from);
+        h.complete.later(Due(data.last, data.from));
+    }
+    r.value = vector ? h.registers.make() : 0;
+    return r;
 }
 
 } // namespace sim

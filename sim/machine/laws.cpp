@@ -292,8 +292,19 @@ void check_jitter(const Report& r, const CacheCounters& l1) {
 
 /// What store buffers did, where there are any.
 void check_buffers(const Report& r, const CacheCounters& l1) {
-    equal("entries of store buffers = L1 writes", r.core.buffered_stores,
-          r.config.core.store_buffer > 0 ? l1.writes : 0);
+    equal("entries of store buffers = L1 writes, but for lanes put together on the stack",
+          r.core.buffered_stores, r.config.core.store_buffer > 0 ? l1.writes - r.core.assembly_stores : 0);
+}
+
+/// What instruction sets without gathers, scatters and masks take.
+void check_assembly(const Report& r) {
+    const CoreCounters& c = r.core;
+    at_most("instructions beside lanes' own <= instructions", c.assembly_instructions, c.instructions);
+    at_most("references among them <= they", c.assembly_references, c.assembly_instructions);
+    at_most("stores among these <= they", c.assembly_stores, c.assembly_references);
+    const LanesConfig& lanes = r.config.lanes;
+    if (r.config.core.gather != "lane" && lanes.scatter == "off" && lanes.shuffle == "off")
+        equal("instructions beside lanes' own where nothing goes lane by lane", c.assembly_instructions, 0);
 }
 
 void check_use(const Report& r, const CacheCounters& l1) {
@@ -393,6 +404,7 @@ void check_laws(const Report& r) {
     check_stacks(r);
     check_buffers(r, l1);
     check_tlb(r);
+    check_assembly(r);
     check_network(r);
     check_jitter(r, l1);
     check_intervals(r, l1, r.l2_total());

@@ -21,8 +21,9 @@ struct CoreCounters {
                   waits = 0, spins = 0, causality_waits = 0;
     std::uint64_t spill_stores = 0, spill_loads = 0, overhead_instructions = 0, switches = 0, pages = 0;
     std::uint64_t buffered_stores = 0, forwarded_loads = 0, blocked_loads = 0, folded = 0, unfolded = 0;
+    std::uint64_t assembly_instructions = 0, assembly_references = 0, assembly_stores = 0;
 };
-inline constexpr std::array<CounterRow<CoreCounters>, 26> core_counters = {{
+inline constexpr std::array<CounterRow<CoreCounters>, 29> core_counters = {{
     {"vops", &CoreCounters::vops,
      "vocabulary operations: one operation of full logical width, or one scalar one"},
     {"vector_vops", &CoreCounters::vector_vops, "of these, vector operations"},
@@ -53,6 +54,11 @@ inline constexpr std::array<CounterRow<CoreCounters>, 26> core_counters = {{
      "machine loads, and gathers, that waited for stores to leave the buffer"},
     {"folded", &CoreCounters::folded, "address operations left to the loads and stores that use them"},
     {"unfolded", &CoreCounters::unfolded, "of these, issued after all: something else used them"},
+    {"assembly_instructions", &CoreCounters::assembly_instructions,
+     "instructions beside loads and stores of what went lane by lane ([lanes])"},
+    {"assembly_references", &CoreCounters::assembly_references,
+     "of these, loads and stores of the thread's stack"},
+    {"assembly_stores", &CoreCounters::assembly_stores, "of these, stores"},
 }};
 
 /// Machine instructions of each kind (pairing.h).

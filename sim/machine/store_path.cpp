@@ -89,7 +89,7 @@ void Engine::buffer_indexed(Hart& h, std::uint64_t address, const std::int32_t* 
             std::uint64_t line = low >> line_shift_;
             bool one = true;
             on &= on - 1;
-            for (std::uint64_t rest = lane_gather_ ? 0 : on; rest != 0; rest &= rest - 1) {
+            for (std::uint64_t rest = lane_scatter_ ? 0 : on; rest != 0; rest &= rest - 1) {
                 auto lane = static_cast<unsigned>(std::countr_zero(rest));
                 std::uint64_t a = at(begin + lane);
                 if (a >> line_shift_ != line)

@@ -16,6 +16,7 @@
 #include "sim/config/placement.h"
 #include "sim/machine/intervals.h"
 #include "sim/machine/machine.h"
+#include "sim/program/calibration.h"
 #include "sim/program/native_run.h"
 #include "sim/program/provenance.h"
 
@@ -177,6 +178,8 @@ void RunCommand::add_to(CLI::App& app) {
         ->type_name("N");
     run.add_flag("--no-native", no_native_,
                  "do not render the frame natively as well, to compare time and picture");
+    run.add_flag("--no-calibration", no_calibration_,
+                 "do not read and show what the machine's file names as its calibration");
     run.add_flag("--quiet", quiet_, "show no progress");
 }
 
@@ -193,6 +196,8 @@ int RunCommand::run() const {
         settings.push_back(
             fmt::format("sim.jitter={}", razor::parse_whole("--jitter", jitter_, {0, 2147483647})));
     const MachineDescription machine_description = describe_machine(machine_.file, settings);
+    const std::optional<Calibration> calibration =
+        no_calibration_ ? std::nullopt : read_calibration(machine_description);
     const Config& config = machine_description.config;
     const Machine machine(config);
     const double most = machine.threads();
@@ -273,6 +278,8 @@ int RunCommand::run() const {
         run.erase("host");
         out.update(run);
         out["machine_provenance"] = provenance_json(machine_description);
+        if (calibration)
+            out["calibration"] = calibration_json(*calibration);
         out["renderer"] = renderer(statistics, trees);
         out["renderer"]["screen_tiles"] = frame.header().tiles;
         host["topology_page_seconds"] = statistics.page_seconds;
@@ -283,7 +290,7 @@ int RunCommand::run() const {
         razor::write_text_file(json_, out.dump(2) + "\n");
     }
     const std::string text =
-        provenance_text(machine_description) +
+        provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
         frame_text(description.settings, workers, frame.header().tiles, statistics, report) +
         print_text(report) + (native ? native_text(*native, report.host_seconds) : "") +
         code_text(frame.plan());

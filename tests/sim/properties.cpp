@@ -87,6 +87,18 @@ Config random_machine(std::mt19937& random) {
     c.core.switch_policy = pick(0, 3) == 0 ? "stall" : "fine";
     c.core.switch_cycles = pick(0, 8);
     c.core.gather = pick(0, 1) == 0 ? "line" : "lane";
+    c.lanes.masked = c.core.gather == "lane" && pick(0, 1) == 0 ? "on" : "off";
+    c.lanes.scatter = pick(0, 1) == 0 ? "on" : "off";
+    c.lanes.shuffle = pick(0, 2) == 0 ? "on" : "off";
+    c.lanes.idle = pick(0, 1) == 0 ? "load" : "skip";
+    c.lanes.piece_instructions = pick(0, 5);
+    c.lanes.piece_references = pick(0, c.lanes.piece_instructions);
+    c.lanes.load_instructions = pick(0, 12);
+    c.lanes.load_references = pick(0, c.lanes.load_instructions);
+    c.lanes.store_instructions = pick(0, 12);
+    c.lanes.store_references = pick(0, c.lanes.store_instructions);
+    for (auto& i : c.instructions)
+        i = pick(0, 3) == 0 ? pick(1, 15) : 1;
     for (auto& l : c.latency)
         l = pick(0, 12);
     for (auto& i : c.interval)

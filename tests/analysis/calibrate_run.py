@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+"""calibrate_run.py CALIBRATE BUILD: the tool on a small frame, and what it refuses. Ends with 77 where there is no valgrind."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+calibrate, build = sys.argv[1:]
+root = os.path.join(os.path.dirname(calibrate), "../..")
+machine = os.path.join(root, "configs/machines/xeon-x5355-2s.toml")
+frame = ["--", "--size", "16x16", "--spp", "1", "--light-samples", "1", "--sky-samples", "1", "--edge-pixels", "16"]
+
+
+def run(*arguments, given=frame):
+    return subprocess.run([sys.executable, calibrate, "--build", build, *arguments, *given], capture_output=True, text=True, check=False)
+
+
+def refuses(word, *arguments):
+    done = run(*arguments)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, (arguments, done)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    profile, out = os.path.join(folder, "profile"), os.path.join(folder, "out.json")
+    with open(profile, "w", encoding="utf-8") as file:
+        file.write("events: Ir\n")
+    refuses("count anew", "sse4", "--machine", machine, "--profile", profile)
+    refuses("No such file", "sse4", "--machine", machine, "--profile", profile + "s")
+    refuses("install valgrind", "sse4", "--machine", machine, "--valgrind", profile + "s")
+    refuses("from 1", "sse4", "--machine", machine, "--registers", "0")
+    refuses("invalid choice", "sse5", "--machine", machine)
+    if not shutil.which("valgrind"):
+        print("no valgrind on the PATH: no kernel was counted")
+        sys.exit(77)
+    refuses("simulating", "sse4", "--machine", machine + "s")
+    done = run("sse4", "--machine", machine, "--registers", "2", "-o", out)
+    if "this build on this processor" in done.stderr:
+        print(done.stderr)
+        sys.exit(77)
+    assert done.returncode == 0, done
+    with open(out, encoding="utf-8") as file:
+        result = json.load(file)
+    assert {row["kernel"] for row in result["kernels"]} >= {"build", "tessellate", "traverse", "intersect", "shade"}, result
+    assert abs(sum(row["share"] for row in result["kernels"]) - 1) < 1e-9, result
+    assert all(0.25 < row["instructions"]["ratio"] < 4 for row in result["kernels"] if row["share"] > 0.05), result
+    assert result["settings"]["core.vector_registers"] == 2 and result["settings"]["lanes.masked"] == "on", result
+    assert result["build"].split()[:4] == [result["build"].split()[0], "lanes", "of", "sse4,"], result
