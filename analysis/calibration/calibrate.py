@@ -59,7 +59,8 @@ def native_counts(options, folder):
     profile = options.profile or os.path.join(folder, "profile")
     said = ""
     if not options.profile:
-        said = ran([options.valgrind, "--tool=callgrind", "--cache-sim=yes", f"--callgrind-out-file={profile}",
+        said = ran([options.valgrind, "--quiet", "--tool=callgrind", "--cache-sim=yes",
+                    f"--callgrind-out-file={profile}",
                     os.path.join(options.build, "analysis/native_frame"), "--isa", options.target, *options.frame],
                    "counting")
     try:

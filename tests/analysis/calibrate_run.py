@@ -17,8 +17,8 @@ def run(*arguments, given=frame):
     return subprocess.run([sys.executable, calibrate, "--build", build, *arguments, *given], capture_output=True, text=True, check=False)
 
 
-def refuses(word, *arguments):
-    done = run(*arguments)
+def refuses(word, *arguments, given=frame):
+    done = run(*arguments, given=given)
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, (arguments, done)
 
 
@@ -34,12 +34,13 @@ with tempfile.TemporaryDirectory() as folder:
     if not shutil.which("valgrind"):
         print("no valgrind on the PATH: no kernel was counted")
         sys.exit(77)
-    refuses("simulating", "sse4", "--machine", machine + "s")
     done = run("sse4", "--machine", machine, "--registers", "2", "-o", out)
     if "this build on this processor" in done.stderr:
         print(done.stderr)
         sys.exit(77)
     assert done.returncode == 0, done
+    refuses("simulating", "sse4", "--machine", machine + "s")
+    refuses("--sky-samples", "sse4", "--machine", machine, given=[*frame, "--sky-samples", "no"])
     with open(out, encoding="utf-8") as file:
         result = json.load(file)
     assert {row["kernel"] for row in result["kernels"]} >= {"build", "tessellate", "traverse", "intersect", "shade"}, result
