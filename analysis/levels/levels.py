@@ -6,8 +6,9 @@
 
 Every scheme renders the same samples; the error is the RMSE of the picture beside one of --reference-lod with edges
 shorter by --reference. Times are processor seconds of one thread for a frame, everything built on the way but the
-topology's pages, which an animation makes once: medians of --frames frames after a first, and of --repeat runs,
-interleaved. "first": the first frame's, pages and all. Shadow rays: the time with them less that without. made/needed:
+topology's pages, which an animation makes once: medians of --frames frames after a first, and of --repeat runs.
+These take turns, and ratios of times are medians, with the least and the largest, of ratios within a turn: whatever slows
+the machine for longer than one cancels. "first": the first frame's, pages and all. Shadow rays: the time with them less that without. made/needed:
 triangles made over twice the pixels covered, over the square of the target edge in pixels.
 
 Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
@@ -59,26 +60,27 @@ def measure(options):
         dark = ["--light-samples", "0", "--sky-samples", "0"]
         references = [view.render(options, scene, folder, f"reference{seed}", "--lod", options.reference_lod, "--seed",
                                   str(seed), "--edge-pixels", str(edge / options.reference))[0] for seed in (1, 2)]
-        times = {}
+        times, last = {}, {}
         for _ in range(options.repeat):
             for scheme in options.schemes:
                 lod = [*level_of_detail(scheme, edge), "--frames", str(options.frames + 1)]
                 camera = view.render(options, scene, folder, "camera", *lod, *dark)[1]
                 whole = view.render(options, scene, folder, "whole", *lod)[1]
-                times.setdefault(scheme, []).append((frame_seconds(camera), frame_seconds(whole), camera, whole))
+                times.setdefault(scheme, []).append((frame_seconds(camera), frame_seconds(whole)))
+                last[scheme] = camera, whole
         for scheme in options.schemes:
-            runs = times[scheme]
-            camera, whole = runs[0][2:]
-            (first_camera, seconds), (first, total) = ([statistics.median(r[i][n] for r in runs) for n in (0, 1)]
-                                                       for i in (0, 1))
+            camera, whole = last[scheme]
+            turns = {"camera": [c[1] for c, _ in times[scheme]], "shadow": [w[1] - c[1] for c, w in times[scheme]],
+                     "first_camera": [c[0] for c, _ in times[scheme]],
+                     "first_shadow": [w[0] - c[0] for c, w in times[scheme]]}
             pictures = [view.render(options, scene, folder, f"seed{seed}", "--seed", str(seed),
                                     *level_of_detail(scheme, edge))[0] for seed in (1, 2)]
             error, noise = errors(options, folder, pictures, references)
             counters = whole["counters"]
             needed = 2 * counters["camera_hits"] / options.spp / edge**2  # pixels covered / half a square edge
-            rows.append({"scheme": scheme, "rmse": error, "noise": noise, "camera_seconds": seconds,
-                         "shadow_seconds": total - seconds, "first_camera_seconds": first_camera,
-                         "first_shadow_seconds": first - first_camera,
+            rows.append({"scheme": scheme, "rmse": error, "noise": noise,
+                         **{f"{rays}_seconds": statistics.median(turns[rays]) for rays in RAYS},
+                         **{f"{rays}_turns": turns[rays] for rays in RAYS},
                          "triangles": camera["counters"]["triangles_made"],
                          "made_over_needed": camera["counters"]["triangles_made"] / needed,
                          "blended": counters["blended_tests"] / max(counters["block_tests"], 1),
@@ -113,20 +115,27 @@ def level_of_detail(scheme, edge):
 
 
 def compare_with(ladder, rows):
-    """Adds each scheme's times over those of a level of equal error of the ladder; for one of less error than all of
-    these, over the finest: one of equal error would take longer, so that the ratio is at most that."""
+    """Adds each scheme's times over those of a level of equal error of the ladder, [least, median, largest] of the turns;
+    for one of less error than all of these, over the finest: one of equal error would take longer, so that the ratio is
+    at most that."""
     levels = sorted((r for r in rows if r["scheme"].startswith(ladder) and r["rmse"] > 0), key=lambda r: r["rmse"])
     for r in rows:
         if levels and r["rmse"] < levels[0]["rmse"]:
             for rays in RAYS:
-                r[f"{rays}_over_{ladder}_at_most"] = r[rays + "_seconds"] / max(levels[0][rays + "_seconds"], 1e-9)
+                r[f"{rays}_over_{ladder}_at_most"] = over(r, rays, levels[0], levels[0], 0)
         for low, high in zip(levels, levels[1:]):
             if low["rmse"] <= r["rmse"] <= high["rmse"] and low["rmse"] < high["rmse"]:
                 part = math.log(r["rmse"] / low["rmse"]) / math.log(high["rmse"] / low["rmse"])
                 for rays in RAYS:
-                    a, b = (max(f[rays + "_seconds"], 1e-9) for f in (low, high))
-                    r[f"{rays}_over_{ladder}"] = r[rays + "_seconds"] / (a * (b / a) ** part)
+                    r[f"{rays}_over_{ladder}"] = over(r, rays, low, high, part)
                 break
+
+
+def over(row, rays, low, high, part):
+    """Of each turn, the time of a row over that at a part of the way from one level to another, in logarithms."""
+    times = zip(*([max(seconds, 1e-9) for seconds in r[rays + "_turns"]] for r in (row, low, high)))
+    ratios = sorted(t / (a * (b / a) ** part) for t, a, b in times)
+    return [ratios[0], statistics.median(ratios), ratios[-1]]
 
 
 def errors(options, folder, pictures, references):
@@ -146,21 +155,25 @@ def errors(options, folder, pictures, references):
 
 
 def ratio(row, rays, ladder):
-    """Beside a level of equal error, as text."""
+    """Beside a level of equal error, as text: the median turn's, and from the least to the largest."""
     name = f"{rays}_over_{ladder}"
-    return f"{row[name]:.2f}" if name in row else f"<{row[name + '_at_most']:.2f}" if name + "_at_most" in row else "-"
+    bound = name + "_at_most" in row
+    if not bound and name not in row:
+        return "-"
+    least, median, largest = row[name + "_at_most" * bound]
+    return f"{'<' * bound}{median:.2f}" + (f" ({least:.2f}-{largest:.2f})" if least != largest else "")
 
 
 def show(rows):
     ladders = [ladder for ladder in LADDERS if any(r["scheme"].startswith(ladder + ":") for r in rows)]
 
     headings = [heading for rays in ("camera", "shadow", "first", "shadow")
-                for heading in (f"{rays + ' s':>8}", *(f"{'/' + ladder:>7}" for ladder in ladders))]
+                for heading in (f"{rays + ' s':>8}", *(f"{'/' + ladder:>17}" for ladder in ladders))]
     print(f"{'scheme':10} {'error':>9} {'noisy':>9} {' '.join(headings)} {'triangles':>10} {'made/needed':>11} "
           f"{'blended':>8} {'grids MB':>9}")
     for r in rows:
         times = [figure for rays in RAYS
-                 for figure in (f"{r[rays + '_seconds']:8.3f}", *(f"{ratio(r, rays, l):>7}" for l in ladders))]
+                 for figure in (f"{r[rays + '_seconds']:8.3f}", *(f"{ratio(r, rays, l):>17}" for l in ladders))]
         print(f"{r['scheme']:10} {r['rmse']:9.5f} {r['noise']:9.5f} {' '.join(times)} {r['triangles']:10d} "
               f"{r['made_over_needed']:11.2f} {r['blended']:8.1%} {r['grid_bytes'] / 1e6:9.1f}")
 
