@@ -74,7 +74,11 @@ struct TlbConfig {
 };
 
 struct CoherenceConfig {
+    std::string plain;
+    integer directory_cycles = 0;
     integer visibility_cycles = 0, atomic_cycles = 0, remote_cycles = 0;
+    /// Whether plain data are kept coherent.
+    bool directory() const { return plain == "directory"; }
 };
 
 struct MemoryConfig {

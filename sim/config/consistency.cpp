@@ -295,6 +295,30 @@ void check_network(const std::string& what, const Config& config) {
                          columns, tiles));
 }
 
+/// What coherence of plain data needs of the caches and of memory.
+void check_coherence(const std::string& what, const Config& config) {
+    if (!config.coherence.directory())
+        return;
+    const auto refuse = [&](const std::string& key, const std::string& value, const std::string& wanted) {
+        fail(what, fmt::format("coherence.plain is \"directory\", for which {} must be {}, not {}; make it "
+                               "that, or coherence.plain \"none\"",
+                               key, wanted, value));
+    };
+    const unsigned levels = config.tile_levels(), last = config.cache_levels() - 1;
+    for (unsigned level = 1; level < levels; ++level)
+        if (config.cache(level).inclusion != "inclusive")
+            refuse(level_name(level) + ".inclusion", config.cache(level).inclusion, "inclusive");
+    const CacheConfig& own = config.cache(levels - 1);
+    if (own.write_policy != "back")
+        refuse(level_name(levels - 1) + ".write_policy", own.write_policy, "back");
+    if (own.write_miss != "allocate")
+        refuse(level_name(levels - 1) + ".write_miss", own.write_miss, "allocate");
+    if (config.beyond_tiles(last) && config.cores_sharing(last) != config.all_cores())
+        refuse(level_name(last) + ".share", config.cache(last).share, "chip");
+    if (config.memory.controller != "immediate")
+        refuse("memory.controller", config.memory.controller, "immediate");
+}
+
 /// What the reference mode stands for.
 void check_mode(const std::string& what, const Config& config) {
     if (config.sim.mode != "reference")
@@ -321,6 +345,7 @@ void check_consistency(const Config& c, const std::string& what) {
     check_tlb(what, c);
     check_network(what, c);
     check_mode(what, c);
+    check_coherence(what, c);
     if (c.all_threads() > 65536)
         fail(what, fmt::format("chip.tiles x chip.cores x chip.threads is {}; it must be at most 65536",
                                c.all_threads()));

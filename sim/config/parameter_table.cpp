@@ -240,6 +240,12 @@ void add_caches(Table& t) {
     add_level(t, "l5", &Config::l5, {{"chip", "tile", "core"}, 0, 0, 16, 80, 8, 128, 64});
     using C = CoherenceConfig;
     auto c = &Config::coherence;
+    t.add("coherence.plain", c, &C::plain, {"none", "directory"},
+          "of data that are not shared words; none: caches keep what others write; directory: lines are "
+          "modified, exclusive, shared or invalid (MESI), in a tile as its caches know of each other, beyond "
+          "the tiles by a full map at each line's bank or memory channel");
+    t.add("coherence.directory_cycles", c, &C::directory_cycles, "cycles", 6, 1, 10000,
+          "of a look-up of the directory, before anything else happens there");
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,
           "from a write of a shared word until others see it");
     t.add("coherence.atomic_cycles", c, &C::atomic_cycles, "cycles", 2, 0, 1000,

@@ -145,6 +145,8 @@ const std::string& nearest_key(std::string_view key) {
 bool applies(const Parameter& p, const Config& config) {
     if (p.key.starts_with("network."))
         return p.key == "network.topology" || !config.network.ideal();
+    if (p.key == "coherence.directory_cycles")
+        return config.coherence.directory();
     if (p.key.starts_with("tlb."))
         return p.key == "tlb.entries" || config.tlb.any();
     if (p.key.size() < 3 || p.key[0] != 'l' || p.key[2] != '.')

@@ -20,6 +20,7 @@ enum class Cause : std::uint8_t {
     l4,
     l5,
     memory,
+    coherence,
     mshrs,
     tlb,
     stores,
@@ -28,7 +29,7 @@ enum class Cause : std::uint8_t {
     synchronise,
     idle,
 };
-inline constexpr std::size_t cause_count = 16;
+inline constexpr std::size_t cause_count = 17;
 struct CauseName {
     const char *name, *meaning;
 };
@@ -42,6 +43,7 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"l4", "waiting for data that came from the L4"},
     {"l5", "waiting for data that came from the L5"},
     {"memory", "waiting for data that came from memory"},
+    {"coherence", "waiting for a line, or the right to write it, that other caches gave up"},
     {"mshrs", "a miss waited for a free MSHR or write-back entry"},
     {"tlb", "waiting for an address's page: the second TLB, or a walk through the page tables"},
     {"stores", "a store waited for a free entry of the store buffer"},
@@ -51,10 +53,12 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"idle", "without work: no worker, or the worker had returned"},
 }};
 
-/// Whether a machine with so many levels of caches, and TLBs or none, has the cause.
-inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb) {
+/// Whether a machine with so many levels of caches, and TLBs and a directory or none, has the cause.
+inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb, bool directory) {
     if (cause == static_cast<std::size_t>(Cause::tlb))
         return tlb;
+    if (cause == static_cast<std::size_t>(Cause::coherence))
+        return directory;
     const auto l1 = static_cast<std::size_t>(Cause::l1), memory = static_cast<std::size_t>(Cause::memory);
     return cause < l1 + cache_levels || cause >= memory;
 }
@@ -63,12 +67,14 @@ inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb) {
 class Due {
 public:
     Due() = default;
-    Due(cycle at, Cause why) : packed_(at << 4U | static_cast<std::uint64_t>(why)) {}
-    cycle at() const { return packed_ >> 4U; }
-    Cause why() const { return static_cast<Cause>(packed_ & 15U); }
+    Due(cycle at, Cause why) : packed_(at << cause_bits | static_cast<std::uint64_t>(why)) {}
+    cycle at() const { return packed_ >> cause_bits; }
+    Cause why() const { return static_cast<Cause>(packed_ & ((1U << cause_bits) - 1)); }
     void later(Due other) { packed_ = other.packed_ > packed_ ? other.packed_ : packed_; }
 
 private:
+    static constexpr unsigned cause_bits = 5;
+    static_assert(cause_count <= 1U << cause_bits);
     std::uint64_t packed_ = 0;
 };
 

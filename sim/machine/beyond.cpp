@@ -37,6 +37,13 @@ Beyond::Beyond(const Config& config, Reply reply)
 
 void Beyond::connect(std::deque<Tile>& tiles) {
     tiles_ = &tiles;
+    if (config_.coherence.directory())
+        coherence_ = std::make_unique<Coherence>(config_, ways_, tiles, [this](Request w) {
+            w.at = ways_.write(asker(w), w.write, w.bytes, std::max(w.at, served_));
+            if (!caches_.empty())
+                w.at = cache_of(w).cache.book({w.write, w.bytes, w.at, w.column});
+            push(w);
+        });
     const unsigned level = config_.tile_levels();
     if (level == config_.cache_levels())
         return;
@@ -73,6 +80,10 @@ void Beyond::accept(std::vector<Request>& leaving) {
 /// What follows is the traffic of the request's tile.
 void Beyond::charge(const Request& r) {
     cache_of(r).charge((*tiles_)[r.tile].attribution);
+}
+
+Attribution& Beyond::attribution_of(const Request& r) {
+    return (*tiles_)[r.tile].attribution;
 }
 
 /// A line is written elsewhere, or dead: word of it goes to each cache that may have it, and acts there.

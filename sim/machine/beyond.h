@@ -9,6 +9,7 @@
 // By memory's controller (memory.controller) it is one of two: immediate_beyond.h, queued_beyond.h.
 #pragma once
 
+#include "sim/machine/coherence.h"
 #include "sim/memory/below.h"
 #include "sim/memory/cache.h"
 #include "sim/network/ways.h"
@@ -95,6 +96,8 @@ public:
     const Network& network() const { return ways_.network(); }
     const std::deque<SharedCache>& caches() const { return caches_; }
     std::uint64_t misplaced() const;
+    /// Null where plain data are not kept coherent.
+    const Coherence* coherence() const { return coherence_.get(); }
 
 protected:
     Beyond(const Config& config, Reply reply);
@@ -106,6 +109,7 @@ protected:
     Ways::Asker asker(const Request& r) const { return {Ways::Asker::tile, r.tile}; }
     SharedCache& cache_of(const Request& r) { return caches_[r.tile / tiles_sharing_]; }
     void charge(const Request& r);
+    Attribution& attribution_of(const Request& r);
     void tell(Request r);
 
     static constexpr std::uint64_t disorder =
@@ -120,6 +124,7 @@ protected:
     Tickets tickets_; // of what caches here ask memory for
     std::deque<SharedCache> caches_;
     Reply reply_;
+    std::unique_ptr<Coherence> coherence_; // if wanted
 
 private:
     SiteAtHand site_;

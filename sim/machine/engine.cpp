@@ -396,6 +396,8 @@ void Engine::finish_frame() {
             for (const Cache& cache : tile.caches[level])
                 misplaced_lines_ += cache.misplaced();
     misplaced_lines_ += beyond_->misplaced();
+    if (const Coherence* coherence = beyond_->coherence())
+        incoherent_lines_ += coherence->incoherent();
     for (Hart& h : harts_) {
         settle_loads(h);
         await_stores(h);
@@ -534,6 +536,9 @@ Report Engine::report() const {
             for (const Cache& cache : tile.caches[level])
                 r.drained = std::max(r.drained, cache.quiet());
     r.misplaced_lines = misplaced_lines_;
+    r.incoherent_lines = incoherent_lines_;
+    if (const Coherence* coherence = beyond_->coherence())
+        r.directory = coherence->counters();
     for (const SharedCache& shared : beyond_->caches()) {
         r.caches(tile_levels_).push_back(shared.cache.counters());
         r.drained = std::max(r.drained, shared.cache.quiet());

@@ -1,7 +1,7 @@
 // One run: all state of the machine, and what the timing port does with it. Time advances in windows: every
 // tile runs to the window's end by itself; what left it is served then, in order of time. Not modelled:
 // instruction fetch, order between a load and an earlier store to the same place inside
-// an issue window, coherence beyond shared words.
+// an issue window.
 #pragma once
 
 #include "isa/services.h"
@@ -259,6 +259,7 @@ private:
         return h.tile->exits[core_in_tile(h) / h.tile->sharing[tile_levels_ - 1]];
     }
     void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
+    void claim(Hart& h, std::uint64_t address, cycle t);
     void publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);
     void look(Hart& sleeper, cycle end);
@@ -350,7 +351,7 @@ private:
     std::function<void(int)> worker_;
     Intervals intervals_;
     Interval at_end_; // of the run: what has been counted
-    std::uint64_t misplaced_lines_ = 0;
+    std::uint64_t misplaced_lines_ = 0, incoherent_lines_ = 0;
     int workers_;
 };
 

@@ -58,6 +58,8 @@ void ImmediateBeyond::serve(cycle end) {
 }
 
 void ImmediateBeyond::serve_from_memory(Request r) {
+    if (coherence_ && serves_alone(r))
+        return;
     Port& port = ports_[port_of(r)];
     if (r.write != Request::nothing) {
         OrderedPool::Grant buffer = port.write_backs.take(r.at);
@@ -67,6 +69,8 @@ void ImmediateBeyond::serve_from_memory(Request r) {
         }
         port.write_backs.hold(buffer.entry,
                               memory_.write(r.write, ways_.write(asker(r), r.write, r.bytes, r.at)));
+        if (coherence_)
+            coherence_->written(r);
         r.write = Request::nothing;
     }
     if (r.read == Request::nothing)
@@ -76,15 +80,59 @@ void ImmediateBeyond::serve_from_memory(Request r) {
         r.at = mshr.at;
         return push(r);
     }
+    if (coherence_) {
+        const Answer answer = read_coherently(r);
+        port.mshrs.hold(mshr.entry, answer.ready);
+        return reply_(r.tile, r.ticket, answer);
+    }
     cycle ready = memory_.read(r.read, ways_.ask(asker(r), r.read, r.at));
     ready = ways_.answer(asker(r), r.read, line_bytes_, ready);
     port.mshrs.hold(mshr.entry, ready);
     reply_(r.tile, r.ticket, {ready, Cause::memory});
 }
 
+/// Of a coherent machine: what needs no MSHR, and no place in the buffer.
+bool ImmediateBeyond::serves_alone(const Request& r) {
+    if (r.kind == Request::claim) {
+        const cycle there = ways_.answer_directory(r.tile, r.write, r.at);
+        coherence_->claim(r, there + coherence_->look_up());
+        return true;
+    }
+    if (r.kind == Request::upgrade && r.stage == Request::arrives && coherence_->grants_silently(r)) {
+        reply_(r.tile, r.ticket, {r.at, Cause::coherence});
+        // It may have been the one that an MSHR was free for.
+        if (std::optional<Request> next = release(ports_[port_of(r)].held, false, r.at))
+            push(*next);
+        return true;
+    }
+    if (r.stage != Request::writes || !caches_.empty())
+        return false;
+    ++attribution_of(r).cell(r.write, r.column).memory_writes; // an owner's, on its way since
+    memory_.write(r.write, ways_.in_order(r.at));
+    return true;
+}
+
+/// A line, or the right to write it, from memory or another tile.
+Answer ImmediateBeyond::read_coherently(const Request& r) {
+    const cycle there = ways_.ask(asker(r), r.read, r.at) + coherence_->look_up();
+    const Coherence::Outcome out = coherence_->ask(r, there);
+    cycle ready = out.at;
+    if (out.from == Coherence::Outcome::below) {
+        ++attribution_of(r).cell(r.read, r.column).memory_reads;
+        ready = memory_.read(r.read, ways_.in_order(out.at));
+        ready = ways_.answer(asker(r), r.read, line_bytes_, ready);
+        coherence_->arrives(r, std::max(ready, out.finished));
+        if (out.finished <= ready)
+            return {ready, Cause::memory};
+    }
+    return {std::max(ready, out.finished), Cause::coherence};
+}
+
 void ImmediateBeyond::serve_from_cache(Request r) {
     charge(r);
-    if (r.kind != Request::lines)
+    if (coherence_ && serves_alone(r))
+        return;
+    if (r.kind == Request::invalidate || r.kind == Request::discard)
         tell(r);
     else if (r.stage == Request::arrives)
         arrive(r);
@@ -117,6 +165,8 @@ void ImmediateBeyond::arrive(Request r) {
         const auto buffer = take(port.write_backs, r);
         if (!buffer)
             return;
+        if (coherence_)
+            coherence_->written(r);
         Request w = r;
         w.read = Request::nothing;
         w.mshr = *buffer;
@@ -132,7 +182,8 @@ void ImmediateBeyond::arrive(Request r) {
         return;
     r.mshr = *mshr;
     r.stage = Request::reads;
-    r.at = cache.book({r.read, line_bytes_, ways_.ask(asker(r), r.read, r.at), r.column});
+    const std::uint32_t bytes = r.kind == Request::upgrade ? 1 : line_bytes_;
+    r.at = cache.book({r.read, bytes, ways_.ask(asker(r), r.read, r.at), r.column});
     push(r);
 }
 
@@ -143,6 +194,8 @@ void ImmediateBeyond::write(Request r) {
         r.at = answer.ready;
         return push(r);
     }
+    if (r.mshr == Request::no_entry) // an owner's, as others read the line
+        return;
     Port& port = ports_[port_of(r)];
     port.write_backs.close(r.mshr, answer.ready);
     if (std::optional<Request> next = release(port.held, true, answer.ready))
@@ -150,12 +203,31 @@ void ImmediateBeyond::write(Request r) {
 }
 
 void ImmediateBeyond::read(Request r) {
-    Answer answer = cache_of(r).cache.serve_booked({r.read, line_bytes_, r.at, r.column}, false);
-    if (answer.refused) {
-        r.at = answer.ready;
-        return push(r);
+    Answer answer{r.at, Cause::coherence};
+    if (coherence_ && !r.found) { // the directory lies beside the cache's tags
+        const cycle known = r.at + cache_of(r).cache.latency() + coherence_->look_up();
+        const Coherence::Outcome out = coherence_->ask(r, known);
+        r.found = true;
+        r.finished = out.finished;
+        answer.ready = std::max(out.at, out.finished);
+        if (out.from == Coherence::Outcome::below) { // later if who was thought to have it has not
+            r.at = out.at > known ? out.at : r.at + coherence_->look_up();
+            return push(r);
+        }
+        r.stage = Request::supplied;
     }
-    answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
+    if (r.stage == Request::reads) {
+        answer = cache_of(r).cache.serve_booked({r.read, line_bytes_, r.at, r.column}, false);
+        if (answer.refused) {
+            r.at = answer.ready;
+            return push(r);
+        }
+        answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
+        if (r.finished > answer.ready)
+            answer = {r.finished, Cause::coherence};
+        if (coherence_)
+            coherence_->arrives(r, answer.ready);
+    }
     Port& port = ports_[port_of(r)];
     port.mshrs.close(r.mshr, answer.ready);
     reply_(r.tile, r.ticket, answer);

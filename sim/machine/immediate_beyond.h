@@ -42,6 +42,8 @@ private:
     };
     Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(memory_, ways_, cache); }
     void serve_from_memory(Request r);
+    bool serves_alone(const Request& r);
+    Answer read_coherently(const Request& r);
     void serve_from_cache(Request r);
     void arrive(Request r);
     /// The request's entry of the pool, held until it is closed; nothing: the request comes again when one is

@@ -160,10 +160,13 @@ void check_memory(const Report& r) {
           sum.writes * parts);
 }
 
-/// What a level sends down arrives, and nothing else but what shared words do at the L2.
-void check_below(const Report& r, const CacheCounters& above, const CacheCounters& c, bool l2) {
-    equal("reads of a level = fills of the one above (L2: + read-modify-writes)", c.reads,
-          above.fills + (l2 ? r.core.modifications : 0));
+/// What a level sends down arrives, and nothing else but what shared words do at the L2. Beyond the tiles,
+/// other tiles bring some of the lines.
+void check_below(const Report& r, const CacheCounters& above, const CacheCounters& c, bool l2, bool beyond) {
+    equal("reads of a level + lines that owners brought = fills of the one above + upgrades without their "
+          "line (L2: + read-modify-writes)",
+          c.reads + (beyond ? r.directory.supplied() : 0),
+          above.fills + (beyond ? r.directory.lost_upgrades : 0) + (l2 ? r.core.modifications : 0));
     equal(
         "writes of a level = write-backs + clean victims + writes through of the one above (L2: + releases)",
         c.writes,
@@ -186,12 +189,15 @@ void check_levels(const Report& r) {
         const bool exclusive = r.config.cache(level).inclusion == "exclusive";
         at_most("lines moved up <= hits of an exclusive level", c.moved_up, exclusive ? c.hits : 0);
         if (level != 0)
-            check_below(r, r.cache_total(level - 1), c, level == 1);
+            check_below(r, r.cache_total(level - 1), c, level == 1, r.config.beyond_tiles(level));
     }
     const CacheCounters l1 = r.l1_total(), last = r.cache_total(levels - 1);
     equal("L1 fills + writes around = misses + prefetches", l1.fills + l1.written_around,
           l1.misses + l1.prefetches + l1.hardware_prefetches);
-    equal("memory reads = fills of the last level", r.memory.reads, last.fills);
+    const bool to_memory = r.config.tile_levels() == levels; // else this is true of tiles' last levels
+    equal("memory reads + lines that owners brought = fills of the last level + upgrades without their line",
+          r.memory.reads + (to_memory ? r.directory.supplied() : 0),
+          last.fills + (to_memory ? r.directory.lost_upgrades : 0));
     equal("memory writes = write-backs + writes through of the last level", r.memory.writes,
           last.write_backs + last.written_through);
     equal("inclusive levels have all lines above them, exclusive ones none", r.misplaced_lines, 0);
@@ -211,15 +217,22 @@ void check_network(const Report& r) {
     const CacheCounters sent = r.cache_total(last);
     const bool beyond = last + 1 != levels;
     const std::uint64_t from_memory = beyond ? r.memory.reads : 0, to_memory = beyond ? r.memory.writes : 0;
-    equal("requests = lines that left tiles and caches beyond them read", n.requests,
-          sent.fills + from_memory);
-    equal("replies = requests", n.replies, n.requests);
+    const DirectoryCounters& d = r.directory;
+    equal("requests = lines that tiles and caches beyond them read + upgrades", n.requests,
+          sent.fills + from_memory + d.upgrades);
+    equal("replies = requests, but for upgrades that had their line", n.replies + d.upgrades,
+          n.requests + d.lost_upgrades);
+    const std::uint64_t words = d.forwards + d.forwards_stale + d.invalidations + d.acknowledgements +
+                                d.upgrades - d.lost_upgrades + d.claims;
+    at_most("words of directories and to them <= words", words, n.words);
+    if (!beyond)
+        equal("other words are for caches beyond the tiles", n.words, words);
     equal("messages that write = write-backs + writes through of tiles and caches beyond them", n.writes,
           sent.write_backs + sent.written_through + to_memory);
     equal("bytes = data + headers", n.bytes,
           n.data_bytes + (n.requests + n.words) * wide(c.request_bytes) + n.replies * wide(c.reply_bytes) +
               n.writes * wide(c.write_bytes));
-    const std::uint64_t read = sent.fills * wide(r.config.cache(last).line_bytes) +
+    const std::uint64_t read = (sent.fills + d.lost_upgrades) * wide(r.config.cache(last).line_bytes) +
                                from_memory * wide(r.config.last_cache().line_bytes);
     at_most("lines read <= data", read, n.data_bytes);
     at_most("data <= lines read and written", n.data_bytes,
@@ -245,6 +258,33 @@ void check_network(const Report& r) {
     at_most("bytes x hops <= flits of links between routers x width", n.byte_hops, crossed);
     at_most("these are full but for a message's last", crossed,
             n.byte_hops + n.hops * wide(c.link_bytes - 1));
+}
+
+/// What tiles ask for, the directory looks up; every message of it is answered.
+void check_directory(const Report& r) {
+    const DirectoryCounters& d = r.directory;
+    const CacheCounters last = r.cache_total(r.config.tile_levels() - 1);
+    if (!r.config.coherence.directory()) {
+        for (const auto& row : directory_counters)
+            equal("without a directory nothing happens there", d.*row.count, 0);
+        for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
+            const CacheCounters c = r.cache_total(level);
+            equal("without coherence nobody asks to write or share", c.upgrades + c.downgrades, 0);
+        }
+        return;
+    }
+    equal("lines that the directory looks up = lines that tiles read", d.reads + d.writes, last.fills);
+    equal("upgrades of the directory and silent ones = those of tiles", d.upgrades + d.silent_upgrades,
+          last.upgrades);
+    at_most("upgrades without their line <= upgrades", d.lost_upgrades, d.upgrades);
+    equal("reads are exclusive or shared", d.exclusive + d.shared, d.reads);
+    equal("forwards = lines that owners brought + stale", d.forwards, d.supplied() + d.forwards_stale);
+    equal("invalidations sent = received + stale", d.invalidations,
+          d.invalidations_received + d.invalidations_stale);
+    equal("invalidations sent = acknowledgements", d.invalidations, d.acknowledgements);
+    at_most("invalidations received <= lines that tiles lost", d.invalidations_received, last.invalidations);
+    equal("lines written back for others = those that tiles sent down", d.written_back, last.downgrades);
+    equal("who has a line is known to the directory, and one alone may write it", r.incoherent_lines, 0);
 }
 
 /// Every miss is answered by the second TLB, another's walk or its own; walks read what the walk cache lacks.
@@ -404,6 +444,7 @@ void check_laws(const Report& r) {
     check_stacks(r);
     check_buffers(r, l1);
     check_tlb(r);
+    check_directory(r);
     check_assembly(r);
     check_network(r);
     check_jitter(r, l1);

@@ -5,6 +5,7 @@
 #include "sim/core/pairing.h"
 #include "sim/core/stalls.h"
 #include "sim/memory/counters.h"
+#include "sim/memory/directory_counters.h"
 #include "sim/memory/traffic.h"
 #include "sim/network/counters.h"
 
@@ -131,7 +132,9 @@ struct Report {
     std::vector<CacheCounters> l1;                             // by core
     std::vector<CacheCounters> l2, l3, l4, l5;                 // by cache, tile after tile
     std::vector<TlbCounters> tlb;                              // by core; none without TLBs
-    std::uint64_t misplaced_lines = 0; // against inclusive and exclusive levels, before the frame's end
+    std::uint64_t misplaced_lines = 0;  // against inclusive and exclusive levels, before the frame's end
+    std::uint64_t incoherent_lines = 0; // that a cache has and the directory, or a cache, does not know of
+    DirectoryCounters directory;        // without one: none
     JitterReport jitter;
     NetworkReport network;
     MemoryCounters memory;

@@ -114,6 +114,16 @@ void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool 
         exit_of(h).tell(Request::invalidate, address, t, h.column);
 }
 
+/// On a coherent machine others that have the word's line lose it by the directory's hand too. That takes no
+/// time of the writer's: coherence.remote_cycles does.
+void Engine::claim(Hart& h, std::uint64_t address, cycle t) {
+    if (!config_.coherence.directory())
+        return;
+    const Cache& last = cache_of(h, tile_levels_ - 1);
+    if (last.holds(address) && !last.owns(address))
+        exit_of(h).tell(Request::claim, address, t, h.column);
+}
+
 /// The word has been written: those that wait for it wake.
 void Engine::publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip) {
     (chip ? published_ : h.tile->published).write({address, written, visible, h.number}, h.tile->earliest);
@@ -162,7 +172,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         if (kind == isa::timing::atomic::store_release) {
             ++h.counters.releases;
             Access release{a, line_bytes_, t + l1_latency_, h.column};
-            release.forced = true;
+            release.forced = release.owned = true;
             h.core->l2.write(release);
             ready = Due(t, Cause::synchronise);
         } else {
@@ -172,6 +182,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
                 wide(config_.coherence.atomic_cycles) + (chip ? wide(config_.coherence.remote_cycles) : 0);
             ready = Due(ready.at() + longer, ready.why());
         }
+        claim(h, a, t);
         if (wrote)
             publish(h, a, t, ready.at() + visibility, chip);
     }

@@ -41,7 +41,9 @@ void overview(std::string& out, const Report& r) {
     for (const auto& row : core_counters)
         if (r.core.*row.count != 0 && row.count != &CoreCounters::instructions)
             out += fmt::format("{:<21} {:>14}\n", row.name, r.core.*row.count);
-    out += "coherence of plain data is not modelled; shared words are kept coherent by invalidation\n";
+    out += r.config.coherence.directory()
+               ? "plain data are kept coherent by a directory, shared words by invalidation as well\n"
+               : "coherence of plain data is not modelled; shared words are kept coherent by invalidation\n";
 }
 
 /// A row for each of few cores or threads, or the least, median and most of many, in per cent of their
@@ -108,6 +110,10 @@ void level(std::string& out, const char* name, const CacheCounters& c) {
         out +=
             fmt::format("           {} back-invalidations, {} clean victims sent down, {} lines moved up\n",
                         c.back_invalidations, c.clean_victims, c.moved_up);
+    if (c.upgrades + c.downgrades != 0)
+        out += fmt::format("           {} rights to write asked for, {} changed lines sent down for others "
+                           "to read, {} lines lost to others\n",
+                           c.upgrades, c.downgrades, c.invalidations);
     if (c.hardware_prefetches + c.prefetches_dropped != 0)
         out +=
             fmt::format("           hardware prefetches: {}, of which {} useful ({} late), {} useless\n",
@@ -142,6 +148,22 @@ void tlb(std::string& out, const Report& r) {
                        ratio(t.walk_reads, t.walks));
 }
 
+/// Nothing where there is none.
+void directory(std::string& out, const Report& r) {
+    if (!r.config.coherence.directory())
+        return;
+    const DirectoryCounters& d = r.directory;
+    out += fmt::format(
+        "directory {} reads ({} exclusive, {} shared), {} writes, {} upgrades ({} had lost the line; {} "
+        "more got the right with it)\n",
+        d.reads, d.exclusive, d.shared, d.writes, d.upgrades, d.lost_upgrades, d.silent_upgrades);
+    out += fmt::format("         forwards: {} lines brought changed, {} unchanged, {} not there any more; {} "
+                       "written back\n",
+                       d.forwards_dirty, d.forwards_clean, d.forwards_stale, d.written_back);
+    out += fmt::format("         invalidations: {} sent, {} to caches that had the line, {} to others\n",
+                       d.invalidations, d.invalidations_received, d.invalidations_stale);
+}
+
 /// Nothing where it is ideal.
 void network(std::string& out, const Report& r) {
     if (r.network.ideal())
@@ -165,6 +187,7 @@ void levels(std::string& out, const Report& r) {
     for (unsigned i = 1; i < r.config.cache_levels(); ++i)
         level(out, fmt::format("L{}", i + 1).c_str(), r.cache_total(i));
     tlb(out, r);
+    directory(out, r);
     network(out, r);
     memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";

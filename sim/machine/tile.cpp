@@ -12,8 +12,8 @@ void Tile::make_caches(const Config& config) {
         const bool last = level + 1 == levels;
         for (std::size_t core = 0; core < cores; core += sharing[level]) {
             if (last)
-                exits.emplace_back(number, static_cast<std::uint32_t>(exits.size()), to_memory, leaving,
-                                   tickets, attribution);
+                exits.emplace_back(number, static_cast<std::uint32_t>(exits.size()), to_memory,
+                                   config.coherence.directory(), leaving, tickets, attribution);
             Below& below = last ? static_cast<Below&>(exits.back()) : cache_of(level + 1, core);
             Cache& cache =
                 caches[level].emplace_back(config, level, last, earliest, site, below, tickets, attribution);

@@ -22,7 +22,9 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
     return (core_cycles * wide(c.chip.clock_ps) + wide(c.memory.clock_ps) - 1) / wide(c.memory.clock_ps);
 }
 
-std::uint64_t shortest_answer(const Config& c) {
+namespace {
+
+std::uint64_t shortest_line(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
     const Ways::Shortest way = Ways::shortest(c);
     const std::uint64_t memory = MemoryLines::shortest_read(c) + way.back;
@@ -34,12 +36,41 @@ std::uint64_t shortest_answer(const Config& c) {
     return queued ? std::min(cache, memory) : cache;
 }
 
+/// Until a directory has looked up what a tile asks for; where a bank takes its turn only what follows
+/// counts.
+std::uint64_t shortest_known(const Config& c) {
+    const unsigned last = c.cache_levels() - 1;
+    return wide(c.coherence.directory_cycles) +
+           (c.beyond_tiles(last) ? wide(c.cache(last).latency) : Ways::shortest(c).there);
+}
+
+} // namespace
+
+std::uint64_t shortest_answer(const Config& c) {
+    return c.coherence.directory() ? std::min(shortest_line(c), shortest_known(c) + Ways::shortest(c).there)
+                                   : shortest_line(c);
+}
+
+namespace {
+
+/// Of a line, from below or from another tile: for the right to write alone hardly anybody waits, and windows
+/// as short as that would take many times as long.
+std::uint64_t shortest_data(const Config& c) {
+    if (!c.coherence.directory())
+        return shortest_line(c);
+    const Ways::Shortest way = Ways::shortest(c);
+    return std::min(shortest_line(c),
+                    shortest_known(c) + way.there + wide(c.cache(c.tile_levels() - 1).latency) + way.back);
+}
+
+} // namespace
+
 std::uint64_t window_cycles(const Config& c) {
     if (c.sim.window != 0)
         return wide(c.sim.window);
     // An operation may follow the last piece of its operand by as many cycles less as it has pieces (rule 1).
     integer pieces = std::max<integer>(1, ISA_WIDTH / c.core.lanes);
-    return wide(std::max<integer>(1, static_cast<integer>(shortest_answer(c)) - (pieces - 1)));
+    return wide(std::max<integer>(1, static_cast<integer>(shortest_data(c)) - (pieces - 1)));
 }
 
 std::uint64_t reach_cycles(const Config& c) {

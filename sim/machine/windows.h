@@ -10,7 +10,8 @@ namespace sim {
 std::uint64_t to_core_cycles(const Config& config, integer memory_clocks);
 /// Memory clocks that have begun by then.
 std::uint64_t to_memory_clocks(const Config& config, std::uint64_t core_cycles);
-/// Core cycles from a tile's request to the answer, at the least: of the cache beyond it, or of memory.
+/// Core cycles from a tile's request to the answer, at the least: of the cache beyond it, of memory, or of a
+/// directory.
 std::uint64_t shortest_answer(const Config& config);
 /// Cycles of a window between meetings of tiles and memory (sim.window, or what it stands for).
 std::uint64_t window_cycles(const Config& config);

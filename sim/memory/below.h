@@ -17,10 +17,13 @@ struct Answer {
     cycle ready;
     Cause from;
     bool refused = false;
-    bool dirty = false; // the line has left an exclusive cache, which had not written it back
+    bool dirty = false;  // the line has left an exclusive cache, which had not written it back
+    bool shared = false; // of a coherent machine: the line is not to be written without asking
 
     static Answer later(cycle when) { return {when, Cause::mshrs, true}; }
 };
+
+class Cache;
 
 /// A request for some bytes of one line, at any address in it.
 struct Access {
@@ -34,6 +37,11 @@ struct Access {
     bool modify = false;   // a read that changes what it reads
     bool forced = false;   // happens at once, whatever is busy
     bool clean = false;    // of a write: what lies below has the same
+    // Of a coherent machine:
+    bool exclusive = false;    // a read of a line that will be written
+    bool owned = false;        // of a write: the right to it is there, or asked for by itself
+    bool stays = false;        // of a write back: the line stays in the cache, clean
+    const Cache* by = nullptr; // the cache above that asks
 };
 
 class Below {
@@ -46,6 +54,9 @@ public:
     virtual Answer read(const Access& a) = 0;
     /// Ready when it is accepted.
     virtual Answer write(const Access& a) = 0;
+    /// Of a coherent machine: the line is above, and will be written. Ready when nobody else has it; with
+    /// `shared` that is not decided yet.
+    virtual Answer own(const Access& a) { return {a.at, Cause::memory}; }
 };
 
 /// What leaves a tile: a dirty line to be written, a line to be read, or the one and then the other; or word
@@ -58,13 +69,21 @@ struct Request {
     std::uint64_t write = nothing, read = nothing; // addresses
     cycle ticket = 0;                              // of the read
     std::size_t column = 0;
-    std::uint32_t bytes = 0;                                              // of the write
-    bool whole = false;                                                   // likewise
-    enum Kind : std::uint8_t { lines, invalidate, discard } kind = lines; // of the line at `write`
+    std::uint32_t bytes = 0; // of the write
+    bool whole = false;      // likewise
+    /// Word is of the line at `write`. Of a coherent machine: an upgrade asks for the right to write the line
+    /// at `read`, which is there; a claim says that a shared word at `write` has been written.
+    enum Kind : std::uint8_t { lines, invalidate, discard, upgrade, claim } kind = lines;
+    bool exclusive = false; // of a read: to write it
+    bool stays = false;     // of a write: its line stays where it was
+    bool found = false;     // the directory has been asked for it
     /// Where it stands: on its way, then at a bank of a cache beyond the tiles, with an entry of its exit's
     /// MSHRs.
-    enum Stage : std::uint8_t { arrives, writes, reads } stage = arrives;
+    /// (supplied: another tile brings the line.)
+    enum Stage : std::uint8_t { arrives, writes, reads, supplied } stage = arrives;
+    static constexpr std::size_t no_entry = ~std::size_t{0};
     std::size_t mshr = 0;
+    cycle finished = 0;   // when all other caches have dropped the line
     std::uint32_t to = 0; // cache beyond the tiles that word of a line goes to
 };
 

@@ -34,9 +34,10 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
       bank_mask_(level == 0 ? 0 : wide(config.banks) - 1), last_(last),
       through_(config.write_policy == "through"), around_(config.write_miss == "around"),
       inclusive_(is(machine, level, "inclusive")), exclusive_(is(machine, level, "exclusive")),
+      coherent_(machine.coherence.directory() && level < machine.tile_levels()),
       sends_clean_(is(machine, level + 1, "exclusive")),
       cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), traffic_(traffic_of_level[level]),
-      array_(sets(config), wide(config.ways), replacement_of(config.replacement)),
+      array_(sets(config), wide(config.ways), replacement_of(config.replacement), coherent_),
       banks_(level == 0 ? 0 : wide(config.banks), Calendar("cache bank", earliest)),
       mshrs_(wide(config.mshrs), tickets), write_backs_(wide(config.write_back_buffer), tickets),
       prefetcher_(config.prefetcher, static_cast<std::uint32_t>(config.prefetch_degree),
@@ -46,7 +47,7 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
         mshrs_.lift_limit();
     if (machine.sim.miss_causes == "on")
         causes_ = std::make_unique<MissCauses>(wide(config.size_bytes / config.line_bytes));
-    special_ = through_ || around_ || causes_ || prefetcher_.kind() != Prefetcher::Kind::none;
+    special_ = through_ || around_ || coherent_ || causes_ || prefetcher_.kind() != Prefetcher::Kind::none;
 }
 
 /// An access that found its line on its way there, or prefetched and not used yet.
@@ -71,12 +72,16 @@ Answer Cache::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer pres
 
 /// Sends a line on its way, from the buffer that it has entered at `t`. Returns 0, or when to try again.
 cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
-                        bool forced) {
+                        bool forced, bool stays) {
     std::uint64_t line = array_.line(entry);
     std::uint64_t address = line << line_shift_;
     const bool dirty = array_.dirty(entry);
-    Answer accepted = below_.write(
-        {address, std::uint32_t{1} << line_shift_, down, column, true, followed, false, forced, !dirty});
+    Access written{address, std::uint32_t{1} << line_shift_, down, column, true, followed, false, forced,
+                   !dirty};
+    written.owned = true;
+    written.stays = stays;
+    written.by = this;
+    Answer accepted = below_.write(written);
     if (accepted.refused)
         return accepted.ready;
     if (dirty) {
@@ -121,7 +126,7 @@ bool Cache::back_invalidate(std::uint64_t address, std::uint64_t bytes) {
 
 /// Reads the line from below, which is asked at `down`. Whoever was there is written back if it is dirty. To
 /// an exclusive level it goes after the read, into the room that this has left.
-Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced) {
+Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced, bool to_write) {
     CacheArray::Entry entry = array_.victim(line);
     cycle retry = 0;
     if (!last_ && !forced && (retry = mshrs_.take(t)) != t)
@@ -139,18 +144,22 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, 
     }
     Access wanted{line << line_shift_, std::uint32_t{1} << line_shift_, down, column};
     wanted.forced = forced;
+    wanted.exclusive = to_write;
+    wanted.by = this;
     Answer below = below_.read(wanted);
     if (below.refused)
         return below;
     if (sends_clean_ && array_.line(entry) != CacheArray::no_line) [[unlikely]]
         write_back(entry, down, down, column, false, true);
     ++counters_.fills;
-    mshrs_.hold({line, t, below.ready, below.from});
+    mshrs_.hold({line, t, below.ready, below.from, to_write ? Pool::What::line_to_write : Pool::What::line});
     count_useless(entry);
     array_.fill(entry, line);
     array_.set_in_flight(entry, true);
     if (below.dirty) [[unlikely]]
         array_.set_dirty(entry, true);
+    if (coherent_) [[unlikely]]
+        array_.set_shared(entry, below.shared);
     return {below.ready, below.from};
 }
 
@@ -279,13 +288,24 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
     if (goes_on && !last_ && !a.forced)
         if (cycle room = write_backs_.take(a.at); room != a.at)
             return Answer::later(room);
+    // Others' copies go, and where a write stays here, it needs the right to it.
+    const bool writes = coherent_ && (a.exclusive || (changes && !a.owned));
     Answer answer{done, cause_};
+    Answer right = answer;
     if (hit) {
         array_.touch(entry);
+        if (writes) [[unlikely]] {
+            if (array_.shared(entry) && (a.exclusive || !through_))
+                if (right = ask_right(a, entry, line, done); right.refused)
+                    return right;
+            drop_others(a, entry);
+        }
         if (changes && !through_)
             array_.set_dirty(entry, true);
         if (array_.in_flight(entry)) [[unlikely]]
             answer = in_flight(entry, line, answer);
+        if (coherent_) [[unlikely]]
+            answer = writes ? later_of(answer, right) : share_others(a, entry, answer);
     } else if (brings) {
         answer = allocate(a, line, write, done);
         if (answer.refused)
@@ -305,13 +325,16 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
         causes_->use(line, !(write && around_));
     if (prefetcher_.kind() != Prefetcher::Kind::none)
         prefetch_after(a, line, brings || std::exchange(used_prefetched_, false), done);
+    if (coherent_) [[unlikely]]
+        answer.shared = !owns(a.address) || (!a.exclusive && above_hold(a.address, a.by));
     return answer;
 }
 
 /// The line of an access that missed comes, and makes room for itself.
 Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle done) {
     Answer answer{done, cause_};
-    if (write && a.whole && a.bytes >> line_shift_ != 0) { // all of the line comes from above
+    if (write && a.whole && a.bytes >> line_shift_ != 0 &&
+        (!coherent_ || a.owned)) { // all of the line comes from above
         CacheArray::Entry entry = array_.victim(line);
         if (inclusive_)
             recall(entry);
@@ -321,7 +344,7 @@ Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle do
         count_useless(entry);
         array_.fill(entry, line);
     } else {
-        answer = fill(line, a.at, done, a.column, a.forced);
+        answer = fill(line, a.at, done, a.column, a.forced, coherent_ && (a.exclusive || write || a.modify));
         if (answer.refused)
             return answer;
     }
@@ -332,7 +355,10 @@ Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle do
 
 /// A write goes on to the level below.
 Answer Cache::send_on(const Access& a, cycle down) {
-    Answer accepted = below_.write({a.address, a.bytes, down, a.column, a.whole, false, false, true});
+    Access on{a.address, a.bytes, down, a.column, a.whole, false, false, true};
+    on.owned = a.owned;
+    on.by = this;
+    Answer accepted = below_.write(on);
     ++counters_.written_through;
     if (!last_)
         write_backs_.hold({a.address >> line_shift_, a.at, accepted.ready, Cause::mshrs});

@@ -5,6 +5,8 @@
 //   goes with it;
 // * exclusive: what the level above evicts comes here, clean or dirty; a line that is read moves up, dirty if
 //   it was; one that is not here passes by. Of several caches above, each may have what another has too.
+// On a coherent machine (coherence.plain) a line that others may have too is marked as shared, and whoever
+// writes it asks below for the right to do so (cache_coherence.cpp).
 // Misses are held in MSHRs, evicted dirty lines in a write-back buffer; those of the last cache of a tile
 // stand where their times are known, beyond the tile. Not modelled: ports and banks of fills; the network to
 // the cores (its time is part of the latency); that a line which must make room before it has come would
@@ -63,7 +65,7 @@ public:
     /// A read-modify-write of a shared word: a read that leaves the line dirty.
     Answer modify(const Access& a) {
         Access change = a;
-        change.modify = true;
+        change.modify = change.owned = true; // its line is claimed by itself
         return serve(change, false);
     }
     /// For accesses in order of time: takes the access's bank; returns when that begins with it. Then, with
@@ -72,6 +74,29 @@ public:
     Answer serve_booked(const Access& a, bool write) { return act(a, write, a.at); }
     /// A shared word in the line was written elsewhere: drops the line, writing it back if it is dirty.
     void invalidate(std::uint64_t address, cycle t, std::size_t column);
+    Answer own(const Access& a) override;
+    /// Nobody below has lines of these bytes but this cache: they may be written here, and above where one
+    /// cache alone has them.
+    void grant(std::uint64_t address, std::uint64_t bytes);
+    /// Somebody else writes the lines of these bytes, which leave this cache and those above; returns whether
+    /// any was dirty.
+    bool lose(std::uint64_t address, std::uint64_t bytes);
+    /// Somebody else reads them: they are shared and clean from now on, likewise. One that was dirty in a
+    /// last cache counts as written back.
+    bool share(std::uint64_t address, std::uint64_t bytes, std::size_t column);
+    bool holds(std::uint64_t address) const {
+        return array_.find(address >> line_shift_) != CacheArray::none;
+    }
+    /// Whether it may be written at once.
+    bool owns(std::uint64_t address) const {
+        const CacheArray::Entry entry = array_.find(address >> line_shift_);
+        return entry != CacheArray::none && !array_.shared(entry);
+    }
+    template <class Visit> void each_address(Visit visit) const {
+        array_.for_each([&](CacheArray::Entry e) { visit(array_.line(e) << line_shift_); });
+    }
+    /// Lines that may be written here, but not below, or that another cache above the one below has too: 0.
+    std::uint64_t incoherent() const;
     /// The line's contents are dead: it need not be written back.
     void discard(std::uint64_t address);
     /// The frame is over: `keep(address)` says which dirty lines are written back; all others are dropped.
@@ -82,7 +107,7 @@ public:
             if (!array_.dirty(e))
                 return;
             if (keep(array_.line(e) << line_shift_))
-                write_back(e, t, t, column, false, true);
+                write_back(e, t, t, column, false, true, true);
             else
                 ++counters_.dropped;
             array_.set_dirty(e, false);
@@ -110,12 +135,10 @@ private:
     Answer waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
                           cycle t, std::size_t column);
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
-    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced = false);
+    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced = false,
+                bool to_write = false);
     void recall(CacheArray::Entry leaving);
     bool back_invalidate(std::uint64_t address, std::uint64_t bytes);
-    bool holds(std::uint64_t address) const {
-        return array_.find(address >> line_shift_) != CacheArray::none;
-    }
     template <class Visit> void each_line(Visit visit) const { // and of those above
         array_.for_each([&](CacheArray::Entry e) { visit(array_.line(e) << line_shift_); });
         for (const Cache* c : above_)
@@ -125,7 +148,12 @@ private:
         return array_.dirty(e) || (sends_clean_ && array_.line(e) != CacheArray::no_line);
     }
     cycle write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
-                     bool forced);
+                     bool forced, bool stays = false);
+    Answer later_of(Answer a, Answer b) const;
+    Answer ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t line, cycle done);
+    void drop_others(const Access& a, CacheArray::Entry entry);
+    Answer share_others(const Access& a, CacheArray::Entry entry, Answer answer);
+    bool above_hold(std::uint64_t address, const Cache* but) const;
     Answer special_access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t,
                           std::size_t column);
     Answer serve(const Access& a, bool write);
@@ -148,6 +176,7 @@ private:
     std::uint64_t latency_, bank_mask_;
     bool last_, through_, around_;
     bool inclusive_, exclusive_;
+    bool coherent_;
     bool sends_clean_;             // to an exclusive level below
     bool special_;                 // an L1 that does more than the least
     bool used_prefetched_ = false; // by the access at hand, for the first time

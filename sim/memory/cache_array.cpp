@@ -32,11 +32,11 @@ Replacement replacement_of(std::string_view name) {
 
 /// srrip has a tag more, which is never anybody's: where the first byte points after a fill, for a line that
 /// was filled is not one that was used.
-CacheArray::CacheArray(std::size_t sets, std::size_t ways, Replacement replacement)
+CacheArray::CacheArray(std::size_t sets, std::size_t ways, Replacement replacement, bool coherent)
     : mask_(sets - 1), ways_(static_cast<std::uint32_t>(ways)), replacement_(replacement),
       order_at_((ways + (replacement == Replacement::srrip ? 1 : 0) + 3) / 4 * 16),
       flags_at_((order_at_ + state_bytes(replacement, ways) + 7) / 8 * 8),
-      stride_((flags_at_ + 24 + 15) / 16 * 16), bytes_(sets * stride_ + 64) {
+      stride_((flags_at_ + (coherent ? 32 : 24) + 15) / 16 * 16), bytes_(sets * stride_ + 64) {
     while ((std::size_t{1} << set_bits_) < sets)
         ++set_bits_;
     std::size_t misaligned = reinterpret_cast<std::uintptr_t>(bytes_.data()) % 64;

@@ -1,6 +1,6 @@
-// Tags of a set-associative cache, replacement, and three flags a line. Knows nothing of time or data. A set
-// lies in consecutive memory of the host, 64 bytes for eight ways: the tags, filled up to groups of four;
-// what replacement remembers; the flags. Replacement remembers
+// Tags of a set-associative cache, replacement, and three flags a line, or four. Knows nothing of time or
+// data. A set lies in consecutive memory of the host, 64 bytes for eight ways: the tags, filled up to groups
+// of four; what replacement remembers; the flags. Replacement remembers
 // * lru: the ways, last used first, a byte each;
 // * plru: a bit for each inner node of a binary tree over the ways, which leads to the half that was not used
 //   last;
@@ -34,7 +34,9 @@ public:
     static constexpr std::uint64_t no_line = ~std::uint64_t{0};
 
     /// `sets` is a power of two, at most 2^25; at most 64 ways, for plru a power of two.
-    explicit CacheArray(std::size_t sets, std::size_t ways, Replacement replacement = Replacement::lru);
+    /// `coherent`: lines have the flag `shared` too.
+    explicit CacheArray(std::size_t sets, std::size_t ways, Replacement replacement = Replacement::lru,
+                        bool coherent = false);
     CacheArray(const CacheArray&) = delete;
     CacheArray& operator=(const CacheArray&) = delete;
 
@@ -123,6 +125,9 @@ public:
     bool dirty(Entry e) const { return flag(e, 0); }
     bool in_flight(Entry e) const { return flag(e, 8); }
     bool prefetched(Entry e) const { return flag(e, 16); }
+    /// Of a coherent array: others may have the line too, so that it is not to be written.
+    bool shared(Entry e) const { return flag(e, 24); }
+    void set_shared(Entry e, bool on) { set_flag(e, 24, on); }
     void set_dirty(Entry e, bool on) { set_flag(e, 0, on); }
     void set_prefetched(Entry e, bool on) { set_flag(e, 16, on); }
     void set_in_flight(Entry e, bool on) { set_flag(e, 8, on); }

@@ -19,8 +19,9 @@ struct CacheCounters {
     std::uint64_t written_through = 0, written_around = 0;
     std::uint64_t hardware_prefetches = 0, prefetches_useful = 0, prefetches_late = 0, prefetches_useless = 0;
     std::uint64_t compulsory = 0, capacity = 0, conflict = 0, coherence = 0;
+    std::uint64_t upgrades = 0, downgrades = 0;
 };
-inline constexpr std::array<CounterRow<CacheCounters>, 26> cache_counters = {{
+inline constexpr std::array<CounterRow<CacheCounters>, 28> cache_counters = {{
     {"reads", &CacheCounters::reads, "read accesses"},
     {"writes", &CacheCounters::writes, "write accesses"},
     {"hits", &CacheCounters::hits, "accesses that found their line, on its way or there"},
@@ -30,7 +31,7 @@ inline constexpr std::array<CounterRow<CacheCounters>, 26> cache_counters = {{
     {"fills", &CacheCounters::fills, "lines read from the level below"},
     {"write_backs", &CacheCounters::write_backs, "dirty lines sent to the level below"},
     {"invalidations", &CacheCounters::invalidations,
-     "lines dropped because a shared word in them was written"},
+     "lines dropped because others wrote them, or a shared word in them"},
     {"back_invalidations", &CacheCounters::back_invalidations,
      "lines dropped because an inclusive level below dropped theirs"},
     {"clean_victims", &CacheCounters::clean_victims, "clean lines sent to the exclusive level below"},
@@ -54,6 +55,10 @@ inline constexpr std::array<CounterRow<CacheCounters>, 26> cache_counters = {{
     {"capacity", &CacheCounters::capacity, "misses that a fully associative cache has too"},
     {"conflict", &CacheCounters::conflict, "misses that a fully associative cache does not have"},
     {"coherence", &CacheCounters::coherence, "misses of lines invalidated since they were last used"},
+    {"upgrades", &CacheCounters::upgrades,
+     "times that the level below was asked for the right to write a line that was here (coherence.plain)"},
+    {"downgrades", &CacheCounters::downgrades,
+     "changed lines that were sent down because others read them (coherence.plain)"},
 }};
 
 /// Of a core's TLB, the second one behind it, and its walks.

@@ -28,6 +28,7 @@ public:
         return answer;
     }
     Answer write(const Access& a) override { return below_.write(a); }
+    Answer own(const Access& a) override { return below_.own(a); }
 
     std::uint64_t lines() const { return lines_; }
     /// That were added to them, all together.

@@ -13,10 +13,13 @@ namespace sim {
 /// emptier.
 class Pool {
 public:
+    /// What of the line is on its way: it, it with the right to write it, that right alone.
+    enum class What : std::uint8_t { line, line_to_write, right };
     struct Hold {
         std::uint64_t line;
         cycle from, until; // until: a cycle or a ticket
         Cause cause;
+        What what = What::line;
     };
 
     Pool(std::size_t entries, Tickets& tickets)
@@ -53,14 +56,11 @@ public:
     }
     /// The hold of a line, or nullptr: it has ended.
     Hold* find(std::uint64_t line) {
-        for (std::size_t i = holds_.size(); i-- > 0;)
-            if (holds_[i].line == line) {
-                Hold& h = holds_[i];
-                if (is_ticket(h.until))
-                    resolve(h);
-                return &h;
-            }
-        return nullptr;
+        return find_latest([line](const Hold& h) { return h.line == line && h.what != What::right; });
+    }
+    /// ... of the right to write it.
+    Hold* find_right(std::uint64_t line) {
+        return find_latest([line](const Hold& h) { return h.line == line && h.what != What::line; });
     }
     /// From now on as many are held as there may be; take() is not asked.
     void lift_limit() {
@@ -70,6 +70,16 @@ public:
     static constexpr cycle unknown = ~cycle{0};
 
 private:
+    template <class Wanted> Hold* find_latest(Wanted wanted) {
+        for (std::size_t i = holds_.size(); i-- > 0;)
+            if (wanted(holds_[i])) {
+                Hold& h = holds_[i];
+                if (is_ticket(h.until))
+                    resolve(h);
+                return &h;
+            }
+        return nullptr;
+    }
     bool resolve(Hold& h) {
         Answered a;
         if (!tickets_.find(h.until, a))

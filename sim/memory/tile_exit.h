@@ -6,6 +6,7 @@
 #include "sim/memory/attribution.h"
 #include "sim/memory/below.h"
 #include "sim/memory/tickets.h"
+#include "sim/memory/under_way.h"
 
 #include <utility>
 
@@ -19,14 +20,14 @@ struct Leaving {
 
 class TileExit final : public Below {
 public:
-    /// The tile's `exit`th; `to_memory`: no cache lies beyond.
-    TileExit(std::uint32_t tile, std::uint32_t exit, bool to_memory, Leaving& leaving, Tickets& tickets,
-             Attribution& attribution)
-        : tile_(tile), exit_(exit), to_memory_(to_memory), leaving_(leaving), tickets_(tickets),
-          attribution_(attribution) {}
+    /// The tile's `exit`th; `to_memory`: no cache lies beyond. `coherent`: who reads memory is found there.
+    TileExit(std::uint32_t tile, std::uint32_t exit, bool to_memory, bool coherent, Leaving& leaving,
+             Tickets& tickets, Attribution& attribution)
+        : tile_(tile), exit_(exit), to_memory_(to_memory), coherent_(coherent), leaving_(leaving),
+          tickets_(tickets), attribution_(attribution) {}
 
     Answer read(const Access& a) override {
-        if (to_memory_)
+        if (to_memory_ && !coherent_)
             ++attribution_.cell(a.address, a.column).memory_reads;
         Request r = request(a);
         r.write = std::exchange(followed_.write, Request::nothing);
@@ -34,8 +35,18 @@ public:
         r.whole = followed_.whole;
         r.read = a.address;
         r.ticket = tickets_.open();
+        r.exclusive = a.exclusive;
         leave(r);
-        return {r.ticket, Cause::memory};
+        return {r.ticket, Cause::memory, false, false, !a.exclusive};
+    }
+    Answer own(const Access& a) override {
+        Request r = request(a);
+        r.read = a.address;
+        r.ticket = tickets_.open();
+        r.kind = Request::upgrade;
+        r.exclusive = true;
+        leave(r);
+        return {r.ticket, Cause::coherence, false, false, true};
     }
     Answer write(const Access& a) override {
         if (to_memory_)
@@ -44,6 +55,7 @@ public:
         r.write = a.address;
         r.bytes = a.bytes;
         r.whole = a.whole;
+        r.stays = a.stays;
         if (a.followed)
             followed_ = r;
         else
@@ -58,6 +70,8 @@ public:
         leave(r);
     }
 
+    UnderWay under_way; // of a coherent machine: lines, by address
+
 private:
     Request request(const Access& a) const {
         Request r{};
@@ -69,11 +83,17 @@ private:
     }
     void leave(Request r) {
         r.sequence = ++leaving_.sequence;
+        if (coherent_ && (r.kind == Request::lines || r.kind == Request::upgrade)) {
+            if (r.write != Request::nothing)
+                under_way.writes(r.write);
+            if (r.read != Request::nothing)
+                under_way.asks(r.read, r.kind == Request::upgrade, r.sequence);
+        }
         leaving_.requests.push_back(r);
     }
 
     std::uint32_t tile_, exit_;
-    bool to_memory_;
+    bool to_memory_, coherent_;
     Request followed_{}; // a write whose read has not come yet
     Leaving& leaving_;
     Tickets& tickets_;

@@ -21,7 +21,8 @@ inline constexpr std::array<CounterRow<NetworkCounters>, 12> network_counters = 
     {"replies", &NetworkCounters::replies, "messages that bring a line"},
     {"writes", &NetworkCounters::writes, "messages with written data"},
     {"words", &NetworkCounters::words,
-     "messages to caches beyond the tiles that a line is to be dropped or dead"},
+     "messages about lines: to caches beyond the tiles that one is to be dropped or dead; of a directory and "
+     "to it (coherence.plain)"},
     {"bytes", &NetworkCounters::bytes, "of all messages"},
     {"data_bytes", &NetworkCounters::data_bytes, "of these, lines and written data"},
     {"flits", &NetworkCounters::flits, "of all messages: cycles that one takes on each of its links"},

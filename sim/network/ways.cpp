@@ -39,9 +39,7 @@ cycle Ways::reach(Network::Message kind, Asker who, std::uint64_t address, std::
     cycle there = network_.send(kind, source(who, address), to, bytes, t);
     if (to < network_.topology().channel(0))
         return there;
-    there = std::max(there, latest_ > disorder_ ? latest_ - disorder_ : 0);
-    latest_ = std::max(latest_, there);
-    return there;
+    return in_order(there);
 }
 
 Ways::Shortest Ways::shortest(const Config& c) {

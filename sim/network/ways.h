@@ -10,6 +10,8 @@
 #include "sim/memory/dram_mapping.h"
 #include "sim/network/network.h"
 
+#include <algorithm>
+
 namespace sim {
 
 class Ways {
@@ -46,6 +48,32 @@ public:
     /// A tile's word about a line to a cache beyond the tiles.
     cycle tell(std::uint32_t tile, std::uint32_t cache, std::uint64_t address, cycle t) {
         return ideal_ ? t : network_.send(Network::Message::word, tile, bank(cache, address), 0, t);
+    }
+    // Of a directory, at the bank or channel of the line; all but lines are words.
+    /// From it to a tile.
+    cycle tell_tile(std::uint64_t address, std::uint32_t tile, cycle t) {
+        return ideal_
+                   ? t
+                   : network_.send(Network::Message::word, target({Asker::tile, tile}, address), tile, 0, t);
+    }
+    /// From a tile to it.
+    cycle answer_directory(std::uint32_t tile, std::uint64_t address, cycle t) {
+        return ideal_
+                   ? t
+                   : network_.send(Network::Message::word, tile, target({Asker::tile, tile}, address), 0, t);
+    }
+    /// A line from a tile to another, or another cache of the tile, and word that one was dropped.
+    cycle pass(std::uint32_t from, std::uint32_t to, std::uint32_t bytes, cycle t) {
+        return ideal_ ? t : network_.send(Network::Message::reply, from, to, bytes, t);
+    }
+    cycle tell_writer(std::uint32_t from, std::uint32_t to, cycle t) {
+        return ideal_ ? t : network_.send(Network::Message::word, from, to, 0, t);
+    }
+    /// What reaches memory at `t`: no earlier than so much before what reached it earlier.
+    cycle in_order(cycle t) {
+        t = std::max(t, latest_ > disorder_ ? latest_ - disorder_ : 0);
+        latest_ = std::max(latest_, t);
+        return t;
     }
     const Network& network() const { return network_; }
 

@@ -174,6 +174,8 @@ std::vector<ValidationRow> elsewhere() {
          "test_sim, DramRules", State::tests},
         {"core: threads, registers, store buffer, pairing", "closed forms", "exact cycles",
          "test_sim, Core, Stores, Pairing", State::tests},
+        {"coherence of plain data: who has which line", "an independent table of states, random accesses",
+         "exact", "test_sim, Coherence: integers equal", State::tests},
         {"coherence of shared words", "hand-derived cycles", "2 %", "test_sim, Sharing and Tiles",
          State::tests},
         {"network: what tiles and memory do over it", "laws, hand-derived cycles, other host threads",
@@ -223,6 +225,7 @@ int ValidateCommand::run() const {
     add(check_reference());
     add(check_tlb());
     add(check_network());
+    add(check_coherence());
     add(check_dram());
     std::vector<ValidationRow> frames;
     FrameChecks().run(frames);

@@ -3,6 +3,7 @@
 #include "sim/config/memory_presets.h"
 #include "sim/memory/dram_bounds.h"
 #include "sim/memory/dram_load.h"
+#include "sim/validation/coherence_forms.h"
 #include "sim/validation/core_forms.h"
 #include "sim/validation/network_forms.h"
 #include "sim/validation/reference_forms.h"
@@ -96,6 +97,19 @@ std::vector<ValidationRow> check_network() {
     for (const NetworkLoad& l : network_loads())
         rows.push_back(compare("network: " + l.name, "closed form: " + l.by, static_cast<double>(l.run()),
                                static_cast<double>(l.expected), 0.02, "cycles"));
+    return rows;
+}
+
+std::vector<ValidationRow> check_coherence() {
+    std::vector<ValidationRow> rows;
+    for (const CoherenceForm& f : coherence_forms()) {
+        std::size_t wrong = f.measured.size() == f.expected.size() ? 0 : 1;
+        std::string first = "their number";
+        for (std::size_t i = 0; i < std::min(f.measured.size(), f.expected.size()); ++i)
+            if (f.measured[i] != f.expected[i] && wrong++ == 0)
+                first = fmt::format("{}: {} cycles for {}", i, f.measured[i], f.expected[i]);
+        rows.push_back(exact("coherence: " + f.name, f.by, f.expected.size(), wrong, first));
+    }
     return rows;
 }
 

@@ -31,6 +31,9 @@ void add_figures(std::set<std::string>& out, const char* share) {
         level->size_bytes = 65536;
         level->share = level == &c.l5 ? "chip" : "tile";
     }
+    c.coherence.plain = "directory";
+    for (CacheConfig* level : {&c.l2, &c.l3, &c.l4})
+        level->inclusion = "inclusive";
     c.chip.tiles = 2;
     c.network.topology = "mesh";
     c.tlb.entries = 8;

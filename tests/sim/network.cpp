@@ -55,7 +55,7 @@ TEST(Network, UnitsAreSpreadEvenly) {
         EXPECT_EQ(t.node(t.bank(0, bank)), 2 * bank);
     EXPECT_EQ(t.node(t.channel(0)), 0U);
     EXPECT_EQ(t.node(t.channel(1)), 4U);
-    c.l3.share = "4";
+    c.l3.share = std::string("4");
     c.l3.banks = 8;
     c.memory.channels = 16;
     const Topology groups(c);

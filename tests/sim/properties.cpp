@@ -56,6 +56,24 @@ void add_tlbs(Config& c, std::mt19937& random) {
     t.address_bits = pick(40, 57);
 }
 
+/// Coherence of plain data, with what it needs.
+void add_directory(Config& c, std::mt19937& random) {
+    c.coherence.plain = "directory";
+    c.coherence.directory_cycles = 1 + static_cast<integer>(random() % 40);
+    const std::array<CacheConfig*, 5> all = {&c.l1, &c.l2, &c.l3, &c.l4, &c.l5};
+    const unsigned levels = c.tile_levels();
+    for (unsigned level = 1; level < levels; ++level) {
+        all[level]->inclusion = "inclusive";
+        all[level]->prefetcher = "none";
+    }
+    all[levels - 1]->write_policy = "back";
+    all[levels - 1]->write_miss = "allocate";
+    if (random() % 2 == 0) { // so small that lines leave in between
+        c.l1.size_bytes = c.l1.line_bytes * c.l1.ways;
+        c.l2.size_bytes = c.l2.line_bytes * c.l2.ways;
+    }
+}
+
 Config random_machine(std::mt19937& random) {
     auto pick = [&](integer low, integer high) {
         return low + static_cast<integer>(random() % u(high - low + 1));
@@ -207,6 +225,8 @@ Config random_machine(std::mt19937& random) {
     c.coherence.atomic_cycles = pick(0, 1000);
     c.coherence.remote_cycles = pick(0, 5000);
     if (pick(0, 1) == 0)
+        add_directory(c, random);
+    else if (pick(0, 1) == 0)
         add_queues(c, random);
     if (pick(0, 1) == 0)
         add_tlbs(c, random);

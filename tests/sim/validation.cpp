@@ -42,6 +42,13 @@ TEST(Validation, TheTlbsFormsPass) {
         EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
 }
 
+TEST(Validation, CoherencesFormsPass) {
+    const std::vector<ValidationRow> rows = check_coherence();
+    EXPECT_EQ(rows.size(), 15U);
+    for (const ValidationRow& row : rows)
+        EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
+}
+
 TEST(Validation, ClosedFormsPass) {
     for (const std::vector<ValidationRow>& rows : {check_core(), check_network(), check_dram()}) {
         EXPECT_GT(rows.size(), 13U);

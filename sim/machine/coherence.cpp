@@ -1,0 +1,179 @@
+#include "sim/machine/coherence.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sim {
+
+Coherence::Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, WriteBack write_back)
+    : exits_(tiles.front().exits.size()), level_(config.tile_levels() - 1),
+      line_bytes_(static_cast<std::uint32_t>(config.cache(level_).line_bytes)),
+      look_up_(static_cast<std::uint64_t>(config.coherence.directory_cycles)), ways_(ways), tiles_(tiles),
+      write_back_(std::move(write_back)) {}
+
+bool Coherence::grants_silently(const Request& r) {
+    const Directory::Line* l = directory_.find(r.read);
+    if (l == nullptr || l->owner != number_of(r))
+        return false;
+    under_way(number_of(r)).asked(r.read, true);
+    ++counters_.silent_upgrades;
+    return true;
+}
+
+Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
+    const bool upgrade = r.kind == Request::upgrade;
+    const std::uint32_t who = number_of(r);
+    under_way(who).asked(r.read, upgrade);
+    Directory::Line& l = directory_.line(r.read);
+    ++(upgrade ? counters_.upgrades : r.exclusive ? counters_.writes : counters_.reads);
+    Outcome out;
+    out.at = t;
+    if (upgrade && l.has(who)) {
+        out.from = Outcome::nobody;
+        out.at = ways_.tell_tile(r.read, r.tile, t);
+    } else if (upgrade) {
+        ++counters_.lost_upgrades;
+    }
+    if (l.owner != Directory::nobody && l.owner != who)
+        forward(r, l, t, out);
+    else if (r.exclusive)
+        out.finished = invalidate(r, l, t);
+    give(r, l);
+    if (out.from != Outcome::below)
+        arrives(r, std::max(out.at, out.finished));
+    return out;
+}
+
+/// Another cache may write the line.
+void Coherence::forward(const Request& r, Directory::Line& l, cycle t, Outcome& out) {
+    const std::uint32_t owner = std::exchange(l.owner, Directory::nobody);
+    const cycle there = ways_.tell_tile(r.read, tile_of(owner), t);
+    Cache& from = cache(owner);
+    ++counters_.forwards;
+    if (!from.holds(r.read) || under_way(owner).asks_line(r.read)) {
+        ++counters_.forwards_stale;
+        out.at = ways_.answer_directory(tile_of(owner), r.read, there + from.latency());
+        return;
+    }
+    const cycle start = std::max(there, l.since) + from.latency();
+    counters_.wait_cycles += start - from.latency() - there;
+    out.from = Outcome::owner;
+    out.at = ways_.pass(tile_of(owner), r.tile, line_bytes_, start); // before it is written back
+    bool dirty = false;
+    if (!r.exclusive) {
+        dirty = from.share(r.read, line_bytes_, r.column);
+        l.sharers.push_back(owner);
+        if (dirty) {
+            ++counters_.written_back;
+            write_back(owner, r, start);
+        }
+    } else if (!under_way(owner).asks(r.read)) {
+        dirty = from.lose(r.read, line_bytes_);
+    }
+    ++(dirty ? counters_.forwards_dirty : counters_.forwards_clean);
+}
+
+/// All sharers but the writer drop the line; returns when they have told it so.
+cycle Coherence::invalidate(const Request& r, const Directory::Line& l, cycle t) {
+    cycle told = 0;
+    for (const std::uint32_t sharer : l.sharers) {
+        if (sharer == number_of(r))
+            continue;
+        const cycle there = ways_.tell_tile(r.read, tile_of(sharer), t);
+        Cache& at = cache(sharer);
+        ++counters_.invalidations;
+        if (at.holds(r.read) && !under_way(sharer).asks(r.read)) {
+            ++counters_.invalidations_received;
+            at.lose(r.read, line_bytes_);
+        } else {
+            ++counters_.invalidations_stale;
+        }
+        ++counters_.acknowledgements;
+        told = std::max(told, ways_.tell_writer(tile_of(sharer), r.tile, there + at.latency()));
+    }
+    return told;
+}
+
+/// The line is the asker's.
+void Coherence::give(const Request& r, Directory::Line& l) {
+    const std::uint32_t who = number_of(r);
+    if (r.exclusive) {
+        l.sharers.clear();
+        l.owner = who;
+    } else if (l.owner == Directory::nobody &&
+               (l.sharers.empty() || (l.sharers.size() == 1 && l.shared_by(who)))) {
+        l.sharers.clear();
+        l.owner = who;
+        ++counters_.exclusive;
+    } else if (l.owner == who) {
+        ++counters_.exclusive;
+    } else {
+        if (!l.shared_by(who))
+            l.sharers.push_back(who);
+        ++counters_.shared;
+        // A right that was given before, and taken while the line was asked for again.
+        if (cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.column)) {
+            ++counters_.written_back;
+            write_back(who, r, r.at);
+        }
+        return;
+    }
+    cache(who).grant(r.read, line_bytes_);
+}
+
+void Coherence::write_back(std::uint32_t from, const Request& r, cycle t) {
+    Request w{};
+    w.at = t;
+    w.tile = tile_of(from);
+    w.exit = static_cast<std::uint32_t>(from % exits_);
+    w.sequence = r.sequence;
+    w.write = r.read;
+    w.bytes = line_bytes_;
+    w.whole = true;
+    w.column = r.column;
+    w.stage = Request::writes;
+    w.to = r.tile + 1; // one of a kind in the order of requests
+    w.mshr = Request::no_entry;
+    write_back_(w);
+}
+
+void Coherence::arrives(const Request& r, cycle ready) {
+    Directory::Line& l = directory_.line(r.read);
+    if (l.owner == number_of(r))
+        l.since = ready;
+}
+
+void Coherence::written(const Request& r) {
+    const std::uint32_t who = number_of(r);
+    const bool again = under_way(who).written(r.write, r.sequence);
+    if (!again && !r.stays)
+        directory_.remove(r.write, who);
+}
+
+void Coherence::claim(const Request& r, cycle t) {
+    ++counters_.claims;
+    Request line = r;
+    line.read = r.write / line_bytes_ * line_bytes_;
+    const Directory::Line* known = directory_.find(line.read);
+    if (known == nullptr || !known->shared_by(number_of(r)))
+        return;
+    line.exclusive = true;
+    Directory::Line& l = directory_.line(line.read);
+    l.since = std::max(t, invalidate(line, l, t));
+    give(line, l);
+}
+
+std::uint64_t Coherence::incoherent() const {
+    std::uint64_t lines = 0;
+    for (std::uint32_t number = 0; number < tiles_.size() * exits_; ++number) {
+        const Cache& c = cache(number);
+        lines += c.incoherent();
+        c.each_address([&](std::uint64_t address) {
+            const Directory::Line* l = directory_.find(address);
+            lines += l == nullptr || !(c.owns(address) ? l->owner == number : l->has(number)) ? 1 : 0;
+        });
+    }
+    return lines;
+}
+
+} // namespace sim

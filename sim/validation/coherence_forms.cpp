@@ -1,0 +1,152 @@
+#include "sim/validation/coherence_forms.h"
+
+#include "isa/address_space.h"
+#include "sim/core/stalls.h"
+#include "sim/machine/engine.h"
+#include "sim/validation/network_forms.h"
+
+#include <fmt/format.h>
+
+namespace sim {
+namespace {
+
+using namespace isa::timing;
+
+constexpr site here{"coherence form", 1};
+constexpr integer delay = 1000; // of an addition, four of which are the gap
+
+integer words(const Config& c) {
+    return flits_of(c.network, c.network.request_bytes);
+}
+integer lines(const Config& c) {
+    return flits_of(c.network, c.network.reply_bytes + c.l2.line_bytes);
+}
+integer way(const Config& c, integer from, integer to) {
+    return hops_between(c, from, to) * c.network.hop_cycles;
+}
+/// Until the directory, at tile 0, has looked up what a tile asks for.
+integer known(const Config& c, integer tile) {
+    return c.l1.latency + c.l2.latency + way(c, tile, 0) + words(c) + c.coherence.directory_cycles;
+}
+/// A line that another tile has, and brings.
+cycle forwarded(const Config& c, integer from, integer to) {
+    return static_cast<cycle>(known(c, to) + way(c, 0, from) + words(c) + c.l2.latency + way(c, from, to) +
+                              lines(c));
+}
+/// A line that nobody has changed, from memory.
+cycle fetched(const Config& c, integer tile) {
+    return static_cast<cycle>(known(c, tile) + c.memory.controller_cycles + c.memory.tCL +
+                              c.memory.burst_clocks() + way(c, 0, tile) + lines(c));
+}
+
+} // namespace
+
+Config coherent_machine(const std::string& topology, integer tiles) {
+    Config c = network_machine(topology, tiles);
+    c.coherence.plain = "directory";
+    c.coherence.directory_cycles = 5;
+    c.l2.inclusion = "inclusive";
+    c.memory.tREFI = 0;
+    c.memory.controller_cycles = 0;
+    return c;
+}
+
+Report act_in_turn(const Config& config, const std::vector<TimedAccess>& accesses,
+                   std::vector<cycle>* latencies) {
+    Config c = config;
+    c.latency[static_cast<std::size_t>(operation::add)] = delay;
+    const int threads = static_cast<int>(c.chip.cores * c.chip.threads);
+    c.chip.placement = "pack";
+    isa::address_space space{std::uint64_t{1} << 20};
+    std::byte* data = space.add("data", -1, std::uint64_t{1} << 16, true);
+    std::vector<cycle> taken(accesses.size());
+    const Report r = Machine(c).run(space, static_cast<int>(c.all_threads()), {{"work"}}, [&](int worker) {
+        stamp clock;
+        for (std::size_t i = 0; i < accesses.size(); ++i) {
+            const TimedAccess& a = accesses[i];
+            std::byte* p = data + a.word * 4;
+            if (a.tile * threads == worker && a.write)
+                store(here, p, 4, clock, stamp{});
+            if (a.tile * threads == worker && !a.write) {
+                const cycle since = clock.last;
+                const stamp s = load(here, p, 4, clock);
+                const cycle there =
+                    is_ticket(s.last) ? running_engine->await(*running_hart, s.last).last : s.last;
+                taken[i] = there - since;
+            }
+            if (i + 1 == accesses.size())
+                break;
+            for (integer t = 0; t < access_gap; t += delay)
+                clock = scalar_op(operation::add, clock);
+        }
+    });
+    if (latencies != nullptr) {
+        latencies->clear();
+        for (std::size_t i = 0; i < accesses.size(); ++i)
+            if (!accesses[i].write)
+                latencies->push_back(taken[i]);
+    }
+    return r;
+}
+
+std::vector<CoherenceForm> coherence_forms() {
+    std::vector<CoherenceForm> out;
+    const auto add = [&out](const char* name, const std::string& topology, const char* by, const Config& c,
+                            const std::vector<TimedAccess>& accesses, const std::vector<cycle>& expected) {
+        out.push_back({fmt::format("{}, {} of {} tiles", name, topology, c.chip.tiles), by, expected, {}});
+        act_in_turn(c, accesses, &out.back().measured);
+    };
+    for (const std::string topology : {"crossbar", "ring", "mesh"}) {
+        const Config c = coherent_machine(topology, 12);
+        // Each reads the word that the other wrote, and writes it.
+        std::vector<TimedAccess> accesses = {{1, 0, true}};
+        std::vector<cycle> expected;
+        for (int turn = 0; turn < 10; ++turn)
+            for (const auto& [from, to] : {std::pair(1, 6), std::pair(6, 1)}) {
+                accesses.insert(accesses.end(), {{to, 0, false}, {to, 0, true}});
+                expected.push_back(forwarded(c, from, to));
+            }
+        add("ping-pong", topology, "request, look-up, forward, line", c, accesses, expected);
+        // The first to read gets it from who wrote it, the others from memory.
+        accesses.clear();
+        expected.clear();
+        for (int turn = 0; turn < 5; ++turn) {
+            accesses.insert(accesses.end(), {{4, 0, true}, {9, 0, false}, {2, 0, false}, {11, 0, false}});
+            expected.insert(expected.end(), {forwarded(c, 4, 9), fetched(c, 2), fetched(c, 11)});
+        }
+        add("a producer and three consumers", topology, "a line brought, the others from memory's open row",
+            c, accesses, expected);
+        // Words of two tiles, which neither the other reads, in a line; and in one of their own.
+        for (const int apart : {1, 16}) {
+            accesses = {{3, 0, true}, {8, apart, true}};
+            expected.clear();
+            for (int turn = 0; turn < 10; ++turn) {
+                accesses.insert(accesses.end(),
+                                {{3, 0, false}, {3, 0, true}, {8, apart, false}, {8, apart, true}});
+                if (apart == 1)
+                    expected.insert(expected.end(), {forwarded(c, 8, 3), forwarded(c, 3, 8)});
+                else
+                    expected.insert(expected.end(), 2, static_cast<cycle>(c.l1.latency));
+            }
+            add(apart == 1 ? "false sharing" : "no sharing", topology,
+                apart == 1 ? "as a ping-pong" : "hits of the L1", c, accesses, expected);
+        }
+        // A write of what another has: it is done when that one has said that it dropped it.
+        const std::vector<TimedAccess> shared = {{7, 0, false}, {5, 0, false}, {5, 0, true}};
+        const integer grant = words(c); // to the writer, goes first from the directory
+        const integer told =
+            known(c, 5) + grant + way(c, 0, 7) + words(c) + c.l2.latency + way(c, 7, 5) + words(c);
+        out.push_back({fmt::format("upgrade, {} of {} tiles", topology, c.chip.tiles),
+                       "request, look-up, invalidation, acknowledgement",
+                       {static_cast<cycle>(2 * access_gap + 1 + told)},
+                       {}});
+        out.back().measured.push_back(0);
+        const Report r = act_in_turn(c, shared);
+        for (const ThreadReport& t : r.threads)
+            if (t.tile == 5)
+                out.back().measured.front() = t.finish;
+    }
+    return out;
+}
+
+} // namespace sim

@@ -1,0 +1,35 @@
+// What coherence of plain data takes, in closed form, for tests and for `razor-sim validate`.
+#pragma once
+
+#include "sim/machine/report.h"
+
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// network_machine() with a directory at its memory channel, at tile 0, of 5 cycles.
+Config coherent_machine(const std::string& topology, integer tiles);
+
+/// One access to a line by a tile.
+struct TimedAccess {
+    int tile;
+    int word; // of the data: 16 a line
+    bool write;
+};
+/// Cycles between two of these, which no access takes.
+inline constexpr integer access_gap = 4000;
+/// Each tile's thread 0 acts when its turn comes, `access_gap` cycles after the last. `latencies`: of those
+/// that read.
+Report act_in_turn(const Config& config, const std::vector<TimedAccess>& accesses,
+                   std::vector<cycle>* latencies = nullptr);
+
+struct CoherenceForm {
+    std::string name, by;
+    std::vector<cycle> expected, measured;
+};
+/// Ping-pong of a line between two tiles, a producer with several consumers, false sharing, a write of what
+/// others share.
+std::vector<CoherenceForm> coherence_forms();
+
+} // namespace sim
