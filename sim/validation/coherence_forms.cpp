@@ -24,9 +24,11 @@ integer lines(const Config& c) {
 integer way(const Config& c, integer from, integer to) {
     return hops_between(c, from, to) * c.network.hop_cycles;
 }
-/// Until the directory, at tile 0, has looked up what a tile asks for.
+/// Until the directory, at tile 0, has looked up what a tile asks for; beside the tags of an L3, if there is
+/// one.
 integer known(const Config& c, integer tile) {
-    return c.l1.latency + c.l2.latency + way(c, tile, 0) + words(c) + c.coherence.directory_cycles;
+    return c.l1.latency + c.l2.latency + way(c, tile, 0) + words(c) + c.coherence.directory_cycles +
+           (c.l3.size_bytes != 0 ? c.l3.latency : 0);
 }
 /// A line that another tile has, and brings.
 cycle forwarded(const Config& c, integer from, integer to) {
@@ -55,7 +57,7 @@ Report act_in_turn(const Config& config, const std::vector<TimedAccess>& accesse
                    std::vector<cycle>* latencies) {
     Config c = config;
     c.latency[static_cast<std::size_t>(operation::add)] = delay;
-    const int threads = static_cast<int>(c.chip.cores * c.chip.threads);
+    const int threads = static_cast<int>(c.chip.threads), cores = static_cast<int>(c.chip.cores);
     c.chip.placement = "pack";
     isa::address_space space{std::uint64_t{1} << 20};
     std::byte* data = space.add("data", -1, std::uint64_t{1} << 16, true);
@@ -65,9 +67,10 @@ Report act_in_turn(const Config& config, const std::vector<TimedAccess>& accesse
         for (std::size_t i = 0; i < accesses.size(); ++i) {
             const TimedAccess& a = accesses[i];
             std::byte* p = data + a.word * 4;
-            if (a.tile * threads == worker && a.write)
+            const bool acts = (a.tile * cores + a.core) * threads == worker;
+            if (acts && a.write)
                 store(here, p, 4, clock, stamp{});
-            if (a.tile * threads == worker && !a.write) {
+            if (acts && !a.write) {
                 const cycle since = clock.last;
                 const stamp s = load(here, p, 4, clock);
                 const cycle there =
@@ -107,6 +110,32 @@ std::vector<CoherenceForm> coherence_forms() {
                 expected.push_back(forwarded(c, from, to));
             }
         add("ping-pong", topology, "request, look-up, forward, line", c, accesses, expected);
+        // With the directory at the only bank of an L3, where others read what is written back.
+        Config l3 = c;
+        l3.l3.size_bytes = 1 << 20;
+        l3.l3.share = "chip";
+        l3.l3.banks = 1;
+        const cycle from_l3 = static_cast<cycle>(known(l3, 10) + way(l3, 0, 10) + lines(l3));
+        std::vector<TimedAccess> more = accesses;
+        std::vector<cycle> longer;
+        for (const cycle t : expected)
+            longer.push_back(t + static_cast<cycle>(l3.l3.latency));
+        more.insert(more.end(), {{6, 0, false}, {10, 0, false}});
+        longer.insert(longer.end(), {forwarded(l3, 1, 6), from_l3});
+        add("ping-pong above an L3", topology, "request, L3 and look-up, forward, line", l3, more, longer);
+        // Cores of a tile: what one has changed comes from its L1, what both have from the L2.
+        Config cores = c;
+        cores.chip.cores = 3;
+        const auto l2 = static_cast<cycle>(c.l1.latency + c.l2.latency),
+                   l1 = static_cast<cycle>(c.l1.latency);
+        add("a neighbour core's line", topology, "L1 and L2, and the other L1", cores,
+            {{2, 0, true, 0},
+             {2, 0, false, 1},
+             {2, 0, false, 2},
+             {2, 0, false, 1},
+             {2, 0, true, 1},
+             {2, 0, false, 0}},
+            {l2 + l1, l2, l1, l2 + l1});
         // The first to read gets it from who wrote it, the others from memory.
         accesses.clear();
         expected.clear();

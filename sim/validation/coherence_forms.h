@@ -16,10 +16,11 @@ struct TimedAccess {
     int tile;
     int word; // of the data: 16 a line
     bool write;
+    int core = 0; // of the tile
 };
 /// Cycles between two of these, which no access takes.
 inline constexpr integer access_gap = 4000;
-/// Each tile's thread 0 acts when its turn comes, `access_gap` cycles after the last. `latencies`: of those
+/// Each core's thread 0 acts when its turn comes, `access_gap` cycles after the last. `latencies`: of those
 /// that read.
 Report act_in_turn(const Config& config, const std::vector<TimedAccess>& accesses,
                    std::vector<cycle>* latencies = nullptr);

@@ -351,6 +351,54 @@ TEST(Coherence, SharedWordsAreInTheDirectory) {
         "words");
 }
 
+// Two tiles that share a line write it in one window: the second one's line is taken while it asks for the
+// right, comes again, and stays.
+TEST(Coherence, WhatIsAskedForAgainStays) {
+    Config c = simple();
+    c.chip.tiles = 2;
+    c.sim.window = 5000;
+    c.latency[static_cast<std::size_t>(operation::add)] = 5000;
+    c.latency[static_cast<std::size_t>(operation::multiply)] = 50;
+    const Report r = run_on(
+        coherent(c),
+        [](std::byte* base, int w) {
+            load(here, base, 4, stamp{});
+            const stamp later = scalar_op(operation::add, stamp{});
+            store(here, base, 4, w == 0 ? later : scalar_op(operation::multiply, later), stamp{});
+            stamp s = later;
+            for (int i = 0; i < 4; ++i)
+                s = scalar_op(operation::add, s);
+            if (w == 1)
+                load(here, base, 4, s);
+        },
+        2);
+    EXPECT_EQ(r.directory.upgrades, 2U);
+    EXPECT_EQ(r.directory.lost_upgrades, 1U);
+    EXPECT_EQ(r.directory.invalidations_stale, 1U);
+    EXPECT_EQ(r.directory.forwards_dirty, 1U);
+    EXPECT_EQ(r.l2[1].misses, 1U);
+    EXPECT_EQ(r.l2[0].invalidations, 1U);
+}
+
+// What is written back when a frame ends stays in its cache, and the next frame finds it there.
+TEST(Coherence, LinesOutliveAFrame) {
+    isa::address_space space{std::uint64_t{1} << 20};
+    std::byte* data = space.add("data", -1, std::uint64_t{1} << 16, false);
+    Config c = simple();
+    c.chip.tiles = 2;
+    c = coherent(c);
+    Report r;
+    ASSERT_NO_THROW(r = Machine(c).run(space, 2, {{"work"}},
+                                       [&](int w) {
+                                           for (int i = 0; i < 8; ++i)
+                                               store(here, data + (w * 8 + i) * 64, 4, stamp{}, stamp{});
+                                       },
+                                       1, {.frames = 2}));
+    EXPECT_EQ(r.memory.writes, 16U);
+    EXPECT_EQ(r.cache_total(1).misses, 0U);
+    EXPECT_EQ(r.directory.upgrades + r.directory.silent_upgrades + r.directory.writes, 0U);
+}
+
 // One access at a time: the windows' length does not matter.
 TEST(Coherence, WindowsChangeNothingForWhoTakesTurns) {
     for (const char* topology : {"ideal", "mesh"})
