@@ -245,7 +245,8 @@ struct alignas(line_bytes) BlockHeader {
     /// How far corners on sides that hang from longer edges are born from where the block has them, and from
     /// the means of the parent's; 0: there are none in either.
     float corner_sway;
-    std::int32_t padding[3];
+    float deviation; // by which the box is wider than its vertices, along any axis, for finer ones
+    std::int32_t padding[2];
 };
 static_assert(sizeof(BlockHeader) == 192);
 inline constexpr int block_header_words = 48;
@@ -310,7 +311,10 @@ struct ItemList {
                         // for all
     float coarse;       // leaves: the target edge length from which on it is fine enough
     float coarsest;     // leaves: what is finer is bounded for target edge lengths up to this
-    std::int32_t padding[3];
+    float most;         // the largest target edge length of rays that come here
+    std::int32_t in_cell; // leaves: so many items are in the cell themselves, the first ones; of the others,
+                          // only what is finer
+    std::int32_t padding;
     float low[3], high[3]; // leaves: of all that is finer or can move, scene coordinates
     std::int32_t padding2[10];
 };

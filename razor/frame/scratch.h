@@ -31,9 +31,10 @@ inline constexpr int scratch_free_lists = scratch_corners + 48;
 inline constexpr int list_sizes = 48;
 inline constexpr int stack_floats = scratch_free_lists + list_sizes;
 
-/// Blocks as fields lately saw them: `blend_slots` of a key and a blended block each. Few, so that they stay
-/// in the first cache: rays seldom come back to one (64 save a tenth of the blending, and cost no less time).
-inline constexpr int blend_slots = 8;
+/// Blocks as fields lately saw them: `blend_slots` of a key and a blended block each. Fields that hits share
+/// come back to a block more often than the 8 that a first cache holds are enough for; of more than 32, few
+/// are found again.
+inline constexpr int blend_slots = 32;
 static_assert(blend_slots >= 4); // two fields of neighbouring numbers need slots of their own (paper_scale.h)
 enum BlendSlot : int {
     slot_line = 0,    // of the block; -1: the slot is empty
@@ -57,7 +58,7 @@ inline constexpr int packet_field = packet_sum + ISA_WIDTH;
 inline constexpr int packet_number = packet_field + 9 * ISA_WIDTH;
 /// Fields that rays lately left surfaces with.
 inline constexpr int packet_left = packet_number + ISA_WIDTH;
-inline constexpr int left_fields = 4;
+inline constexpr int left_fields = 8;
 enum LeftField : int {
     left_origin = 0, // 3
     left_reach = 3,  // how far from the origin a hit may be

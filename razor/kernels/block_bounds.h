@@ -303,10 +303,39 @@ inline sfloat pass_sway(const Block& b, pointer<std::int32_t> pass) {
     return reduce_max(most) * (1.0F + 1.0e-5F);
 }
 
+/// The box of a block's vertices, made wider along each axis: where its finer ones can be.
+inline void bound_surface(const Block& b, const svec& deviation) {
+    pointer<float> x = b.x;
+    vfloat big(3.0e38F);
+    vfloat small(-3.0e38F);
+    sfloat wider[3] = {deviation.x, deviation.y, deviation.z};
+    store(field(b.header, &BlockHeader::deviation), largest_component_of(deviation));
+    for (int k = 0; k < 3; ++k) {
+        vfloat low = big;
+        vfloat high = small;
+        for (sint from = 0; branch(from < b.stride); from += isa::width) {
+            vmask m = first_lanes(b.stride - from);
+            vfloat v = load_vector(x + from, m);
+            low = min(select(m, v, big), low);
+            high = max(select(m, v, small), high);
+        }
+        sfloat least = reduce_min(low);
+        sfloat most = reduce_max(high);
+        sfloat size = max(-least, most);
+        sfloat slack = fma(size, 1.0e-6F, wider[k]); // owners' points differ from ours by rounding
+        least = least - slack;
+        most = most + slack;
+        store(field(b.header, &BlockHeader::box_low) + k, least);
+        store(field(b.header, &BlockHeader::box_high) + k, most);
+        x = x + b.stride;
+    }
+}
+
 /// A bound on how far finer vertices of a limit surface lie from the triangles of a block of less than 8
-/// quads: that of the next level's, evaluated in scratch, and as much again for all levels after it. From
-/// level to level deviations of a smooth surface fall to a quarter, beside extraordinary points at worst to
-/// about a half.
+/// quads, along any axis: that of the next level's, evaluated in scratch, and as much again for all levels
+/// after it. From level to level deviations of a smooth surface fall to a quarter, beside extraordinary
+/// points at worst to about a half. Along an axis of its own a surface may leave its triangles only at later
+/// levels; the next one's box and once its deviation are not wide enough beside extraordinary points, either.
 inline sfloat next_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
     sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
     sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
@@ -324,9 +353,9 @@ inline sfloat next_deviation(const Context& c, const Cage& g, const Dicing& d, c
     return pass_sway(next, passes + (blend_passes - 1) * pass_words) * 2.0F;
 }
 
-/// The same for a block of 8 quads along a side: sum over the controls of the page's bound x the control's
-/// distance from the first one. One lane a control point.
-inline sfloat summed_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+/// A bound on how far finer vertices lie from the triangles of a block of 8 quads along a side: sum over the
+/// controls of the page's bound x the control's distance from the first one. One lane a control point.
+inline svec summed_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
     sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
     sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
     sint n = load(field(g.faces + d.face, &FaceRecord::control_count));
@@ -334,7 +363,8 @@ inline sfloat summed_deviation(const Context& c, const Cage& g, const Dicing& d,
     pointer<float> row = page_weights(c, g, face_class, PageKind::deviation, index);
     sint origin = load(g.controls + first);
     vvec middle = load_broadcast_vec(g.points + origin * 3);
-    vfloat sum(0.0F);
+    vfloat zero(0.0F);
+    vvec sum{zero, zero, zero};
     for (sint from = 0; branch(from < n); from += isa::width) {
         vmask m = first_lanes(n - from);
         vfloat bound = load_vector(row + from, m);
@@ -346,67 +376,43 @@ inline sfloat summed_deviation(const Context& c, const Cage& g, const Dicing& d,
         vvec away = vvec{x, y, z} - middle;
         if (branch(g.place.moved))
             away = moved_directions(g.place, away);
-        vfloat far = largest(abs(away));
-        sum = fma(bound, select(m, far, vfloat(0.0F)), sum);
+        away = select(m, abs(away), vvec{zero, zero, zero});
+        sum = madd(bound, away, sum);
     }
-    return reduce_add(sum);
+    return {reduce_add(sum.x), reduce_add(sum.y), reduce_add(sum.z)};
 }
 
-inline sfloat limit_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
-    if (branch(max(d.nu, d.nv) < block_log2))
-        return next_deviation(c, g, d, b);
-    return summed_deviation(c, g, d, b);
+/// The box of the limit surface under a block, whatever its sides make of it, as wide as all finer vertices
+/// need.
+inline void bound_limit(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+    if (branch(max(d.nu, d.nv) < block_log2)) {
+        sfloat deviation = next_deviation(c, g, d, b);
+        bound_surface(b, {deviation, deviation, deviation});
+    } else {
+        bound_surface(b, summed_deviation(c, g, d, b));
+    }
 }
 
-/// The same for a bilinear patch: a quad of sides h and k deviates by twist x h k / 4 at its centre, and a
+/// The same of a bilinear patch: a quad of sides h and k deviates by twist x h k / 4 at its centre, and a
 /// quarter of that at each finer level.
-inline sfloat bilinear_deviation(const Context& c, const Cage& g, const Dicing& d) {
+inline void bound_bilinear(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
     svec corner[4];
     for (int k = 0; k < 4; ++k)
         corner[k] = straight_corner(c, g, d, k);
     svec one = corner[0] + corner[2];
     svec other = corner[1] + corner[3];
     svec twist = one - other;
-    sfloat x = abs(twist.x);
-    sfloat y = abs(twist.y);
-    sfloat z = abs(twist.z);
-    sfloat most = max(x, max(y, z));
     sint quads_log2 = d.nu + d.nv;
-    sfloat share = as_float((sint(127) - quads_log2) << 23);
-    return most * share * 0.34F;
+    sfloat share = as_float((sint(127) - quads_log2) << 23) * 0.34F;
+    bound_surface(b, {abs(twist.x) * share, abs(twist.y) * share, abs(twist.z) * share});
 }
 
 /// A box that holds nothing yet.
 inline void clear_box(const Block& b) {
+    store(field(b.header, &BlockHeader::deviation), 0.0F);
     for (int k = 0; k < 3; ++k) {
         store(field(b.header, &BlockHeader::box_low) + k, 3.0e38F);
         store(field(b.header, &BlockHeader::box_high) + k, -3.0e38F);
-    }
-}
-
-/// The box of the surface under a block, whatever its sides make of it, as wide as all finer vertices need.
-inline void bound_surface(const Block& b, sfloat deviation) {
-    vfloat big(3.0e38F);
-    vfloat small(-3.0e38F);
-    pointer<float> x = b.x;
-    for (int k = 0; k < 3; ++k) {
-        vfloat low = big;
-        vfloat high = small;
-        for (sint from = 0; branch(from < b.stride); from += isa::width) {
-            vmask m = first_lanes(b.stride - from);
-            vfloat v = load_vector(x + from, m);
-            low = min(select(m, v, big), low);
-            high = max(select(m, v, small), high);
-        }
-        sfloat least = reduce_min(low);
-        sfloat most = reduce_max(high);
-        sfloat size = max(-least, most);
-        sfloat slack = fma(size, 1.0e-6F, deviation); // owners' points differ from ours by rounding
-        least = least - slack;
-        most = most + slack;
-        store(field(b.header, &BlockHeader::box_low) + k, least);
-        store(field(b.header, &BlockHeader::box_high) + k, most);
-        x = x + b.stride;
     }
 }
 

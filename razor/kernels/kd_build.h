@@ -118,8 +118,8 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     cut_low.y = select(plane.axis == 1, plane.at, l.low.y);
     cut_low.z = select(plane.axis == 2, plane.at, l.low.z);
     List child[2];
-    child[0] = make_list(c, plane.below, l.depth + 1, l.low, cut_high);
-    child[1] = make_list(c, plane.above, l.depth + 1, cut_low, l.high);
+    child[0] = make_list(c, plane.below, l.depth + 1, l.most, l.low, cut_high);
+    child[1] = make_list(c, plane.above, l.depth + 1, l.most, cut_low, l.high);
     for (const List& part : child)
         note_list_level_of(part, l);
     sint at[2] = {0, 0};
@@ -262,6 +262,7 @@ inline sint count_closed(const List& l) {
         sbool wanted = target == 0.0F; // by some ray
         wanted = wanted | (target >= power_of_two(level));
         if (branch(wanted | (level == least_level))) {
+            tighten(c, l);
             if (branch(level != least_level))
                 make_finer(c, l, level);
             store(field(node, &KdNode::link), l.line);
@@ -297,7 +298,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
     sint root = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
     svec low = load_svec(field(c.graph, &GraphNodeRecord::low));
     svec high = load_svec(field(c.graph, &GraphNodeRecord::high));
-    List l = make_list(c, 1, 0, low, high);
+    List l = make_list(c, 1, 0, unbounded_target, low, high);
     store(l.items, graph_items);
     sfloat box[6] = {low.x, low.y, low.z, high.x, high.y, high.z};
     for (int k = 0; k < 6; ++k) {

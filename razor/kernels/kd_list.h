@@ -11,6 +11,7 @@ struct List {
     pointer<std::int32_t> items;
     pointer<float> boxes; // low x[stride], y, z, high x, y, z
     sint line, count, stride, depth;
+    sfloat most;    // target edge length, of rays that come here
     svec low, high; // of the cell
 };
 
@@ -43,11 +44,14 @@ inline void free_list(const Context& c, sint line, sint stride) {
     store(first, line);
 }
 
-/// Room for `count` items; the header is written by close_list.
-inline List make_list(const Context& c, sint count, sint depth, const svec& low, const svec& high) {
+/// Room for `count` items, for rays with target edge lengths up to `most`; the header is written by
+/// close_list.
+inline List make_list(const Context& c, sint count, sint depth, sfloat most, const svec& low,
+                      const svec& high) {
     List l;
     l.count = count;
     l.depth = depth;
+    l.most = most;
     l.low = low;
     l.high = high;
     l.stride = list_stride(count);
@@ -87,6 +91,8 @@ inline void close_list(const List& l) {
     store(field(l.header, &ItemList::stride), l.stride);
     store(field(l.header, &ItemList::depth), l.depth);
     store(field(l.header, &ItemList::finer), -1);
+    store(field(l.header, &ItemList::most), l.most);
+    store(field(l.header, &ItemList::in_cell), 0);
     pointer<float> low = field(l.header, &ItemList::cell_low);
     store(low, l.low.x);
     store(low + 1, l.low.y);
@@ -104,6 +110,7 @@ inline List read_list(const Context& c, sint line) {
     l.count = load(field(l.header, &ItemList::count));
     l.stride = load(field(l.header, &ItemList::stride));
     l.depth = load(field(l.header, &ItemList::depth));
+    l.most = load(field(l.header, &ItemList::most));
     l.low = load_svec(field(l.header, &ItemList::cell_low));
     l.high = load_svec(field(l.header, &ItemList::cell_high));
     pointer<float> words = as<float>(l.header) + item_list_words;
@@ -155,156 +162,45 @@ inline vmask is_above(const vfloat& high, const vfloat& plane) {
     return high > plane;
 }
 
+/// Item i's box.
+inline Reach load_box(const List& l, sint i) {
+    pointer<float> at = l.boxes + i;
+    Reach box;
+    box.low.x = load(at);
+    box.low.y = load(at + l.stride);
+    box.low.z = load(at + l.stride * 2);
+    box.high.x = load(at + l.stride * 3);
+    box.high.y = load(at + l.stride * 4);
+    box.high.z = load(at + l.stride * 5);
+    return box;
+}
+inline void store_item(const List& l, sint i, sint item, const Reach& box) {
+    store(l.items + i, item);
+    pointer<float> at = l.boxes + i;
+    store(at, box.low.x);
+    store(at + l.stride, box.low.y);
+    store(at + l.stride * 2, box.low.z);
+    store(at + l.stride * 3, box.high.x);
+    store(at + l.stride * 4, box.high.y);
+    store(at + l.stride * 5, box.high.z);
+}
+
+inline sbool meets_cell(const List& l, const Reach& box) {
+    sbool meets = box.low.x <= l.high.x;
+    meets = meets & (box.high.x >= l.low.x);
+    meets = meets & (box.low.y <= l.high.y);
+    meets = meets & (box.high.y >= l.low.y);
+    meets = meets & (box.low.z <= l.high.z);
+    return meets & (box.high.z >= l.low.z);
+}
+
 /// Appends block `line`, with its box in scene coordinates, if that meets the list's cell; returns the
 /// position after it.
-inline sint append_block(const List& l, sint at, sint line, const svec& low, const svec& high) {
-    sbool meets = low.x <= l.high.x;
-    meets = meets & (high.x >= l.low.x);
-    meets = meets & (low.y <= l.high.y);
-    meets = meets & (high.y >= l.low.y);
-    meets = meets & (low.z <= l.high.z);
-    meets = meets & (high.z >= l.low.z);
-    if (branch(!meets))
+inline sint append_block(const List& l, sint at, sint line, const Reach& box) {
+    if (branch(!meets_cell(l, box)))
         return at;
-    sint item = sint(-1) - line;
-    store(l.items + at, item);
-    pointer<float> box = l.boxes + at;
-    store(box, low.x);
-    store(box + l.stride, low.y);
-    store(box + l.stride * 2, low.z);
-    store(box + l.stride * 3, high.x);
-    store(box + l.stride * 4, high.y);
-    store(box + l.stride * 5, high.z);
+    store_item(l, at, sint(-1) - line, box);
     return at + 1;
-}
-
-/// What rays can want of a leaf's blocks.
-struct Leaf {
-    sint level;     // absolute, of those that have children; least_level: none has
-    svec low, high; // of everything finer, and of everything that can move
-};
-inline constexpr int least_level = -200;
-
-/// Widens the leaf's box by that of everything at or below a block.
-inline void widen(const Context& c, pointer<BlockHeader> block, Leaf& leaf) {
-    sint instance = load(field(block, &BlockHeader::instance));
-    svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
-    svec low = load_svec(field(block, &BlockHeader::box_low));
-    svec high = load_svec(field(block, &BlockHeader::box_high));
-    low = low + origin;
-    high = high + origin;
-    leaf.low = {min(low.x, leaf.low.x), min(low.y, leaf.low.y), min(low.z, leaf.low.z)};
-    leaf.high = {max(high.x, leaf.high.x), max(high.y, leaf.high.y), max(high.z, leaf.high.z)};
-}
-
-/// A side that hangs from an edge longer than the block is where that edge's vertices say, which lie outside
-/// the block, if one of them has not gone. So they count too: with the first coarser block that spans the
-/// edge.
-inline void widen_along_edges(const Context& c, pointer<BlockHeader> block, Leaf& leaf) {
-    sint longest = 0; // by how much an edge is longer, log2
-    for (int s = 0; s < 4; ++s) {
-        sint hang = load(field(block, &BlockHeader::hang) + s);
-        sint curve = load(field(block, &BlockHeader::curve) + s);
-        sint quads = load(field(block, s % 2 == 0 ? &BlockHeader::quads_u : &BlockHeader::quads_v));
-        sint more = hang - log2_quads(quads);
-        more = max(more, longest);
-        longest = select(curve >= 0, more, longest);
-    }
-    if (branch(longest <= 0))
-        return;
-    sint parent = load(field(block, &BlockHeader::parent));
-    while (branch(longest > 0)) {
-        if (branch(parent < 0))
-            break;
-        block = as<BlockHeader>(c.grids + parent);
-        parent = load(field(block, &BlockHeader::parent));
-        --longest;
-    }
-    widen(c, block, leaf);
-}
-
-/// One block after the other: leaves are short.
-inline Leaf survey(const Context& c, const List& l) {
-    Leaf leaf;
-    leaf.level = least_level;
-    leaf.low = {sfloat(3.0e38F), sfloat(3.0e38F), sfloat(3.0e38F)};
-    leaf.high = {sfloat(-3.0e38F), sfloat(-3.0e38F), sfloat(-3.0e38F)};
-    for (sint i = 0; branch(i < l.count); ++i) {
-        sint item = load(l.items + i);
-        pointer<BlockHeader> block = as<BlockHeader>(c.grids + (sint(-1) - item));
-        sint level = load(field(block, &BlockHeader::level));
-        sint movable = load(field(block, &BlockHeader::movable));
-        sint absolute = load(field(block, &BlockHeader::absolute));
-        absolute = max(absolute, leaf.level);
-        leaf.level = select(level > 0, absolute, leaf.level);
-        if (branch((level | movable) != 0)) {
-            widen(c, block, leaf);
-            sint hangs = load(field(block, &BlockHeader::hangs));
-            if (branch(hangs != 0))
-                widen_along_edges(c, block, leaf);
-        }
-    }
-    return leaf;
-}
-
-/// The items of a leaf one level finer: the children, as far as they meet the cell, of the blocks of the
-/// leaf's level; the others stay.
-inline List refine_items(const Context& c, const List& old) {
-    sint level = load(field(old.header, &ItemList::level));
-    sint total = 0;
-    for (sint i = 0; branch(i < old.count); ++i) {
-        sint line = sint(-1) - load(old.items + i);
-        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-        sint absolute = load(field(block, &BlockHeader::absolute));
-        sint finer = load(field(block, &BlockHeader::level));
-        sbool refine = absolute == level;
-        refine = refine & (finer > 0);
-        if (branch(refine)) {
-            ensure_children(c, line, block);
-            sint columns = load(field(block, &BlockHeader::child_columns));
-            sint rows = load(field(block, &BlockHeader::child_rows));
-            total = total + columns * rows;
-        } else {
-            ++total;
-        }
-    }
-    sfloat most = load(field(old.header, &ItemList::coarsest));
-    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
-    most = select(fixed > 0.0F, fixed, most);
-    List l = make_list(c, total, old.depth, old.low, old.high); // the same cell: no deeper in the tree
-    note_list_level(l, level, 1);
-    sint at = 0;
-    for (sint i = 0; branch(i < old.count); ++i) {
-        sint line = sint(-1) - load(old.items + i);
-        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-        sint absolute = load(field(block, &BlockHeader::absolute));
-        sint finer = load(field(block, &BlockHeader::level));
-        sbool refine = absolute == level;
-        refine = refine & (finer > 0);
-        if (branch(refine)) {
-            sint child = load(field(block, &BlockHeader::child_line));
-            sint step = load(field(block, &BlockHeader::child_lines));
-            sint columns = load(field(block, &BlockHeader::child_columns));
-            sint rows = load(field(block, &BlockHeader::child_rows));
-            sint children = columns * rows;
-            for (sint k = 0; branch(k < children); ++k) {
-                Reach box = reach_of(c, child, most);
-                at = append_block(l, at, child, box.low, box.high);
-                child = child + step;
-            }
-        } else {
-            Reach box;
-            box.low.x = load(old.boxes + i);
-            box.low.y = load(old.boxes + old.stride + i);
-            box.low.z = load(old.boxes + old.stride * 2 + i);
-            box.high.x = load(old.boxes + old.stride * 3 + i);
-            box.high.y = load(old.boxes + old.stride * 4 + i);
-            box.high.z = load(old.boxes + old.stride * 5 + i);
-            at = append_block(l, at, line, box.low, box.high);
-        }
-    }
-    l.count = at;
-    return l;
 }
 
 } // namespace build_kernel

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "razor/kernels/hull.h"
-#include "razor/kernels/kd_list.h"
+#include "razor/kernels/kd_leaf.h"
 
 namespace razor::ISA_TARGET {
 inline namespace build_kernel {
@@ -180,8 +180,8 @@ inline sint open_item(const Context& c, const List& l, sint at, sint item) {
     if (branch(item < cluster_items)) {
         pointer<OpenPatch> entry = open_patch(c, item);
         sint line = load(field(entry, &OpenPatch::root));
-        Reach box = reach_of(c, line, 3.0e38F);
-        return append_block(l, at, line, box.low, box.high);
+        Reach box = reach_of(c, line, l.most);
+        return append_block(l, at, line, box);
     }
     if (branch(item < graph_items)) {
         sint cluster = item - cluster_items;
@@ -206,7 +206,7 @@ template <class Wanted> inline List open_items(const Context& c, const List& old
             total = total + (yield_of(c, item) - 1);
         }
     }
-    List l = make_list(c, total, old.depth, old.low, old.high);
+    List l = make_list(c, total, old.depth, old.most, old.low, old.high);
     note_list_level_of(l, old);
     sint at = 0;
     for (sint from = 0; branch(from < old.count); from += isa::width) {

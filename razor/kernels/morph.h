@@ -13,6 +13,7 @@ inline namespace morph_kernel {
 /// The last eighth of the way from 0 to gone_from: the last quarter of an octave.
 inline constexpr float morph_begin = 0.875F;
 inline constexpr float least_target = least_target_edge;
+inline constexpr float unbounded_target = 3.0e38F; // of lists for all rays
 
 /// 2^level, of levels that floats can tell.
 inline sfloat power_of_two(sint level) {

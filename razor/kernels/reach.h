@@ -66,7 +66,7 @@ struct CornerReach {
     void climb(pointer<BlockHeader> block) {
         svec low = load_svec(field(block, &BlockHeader::box_low));
         svec high = load_svec(field(block, &BlockHeader::box_high));
-        target = min(coarsest_target(target, high - low), 3.0e38F);
+        target = min(coarsest_target(target, high - low), unbounded_target);
     }
     Reach place(const svec& anchor) const { return {anchor, anchor}; }
     Reach load_place(pointer<float> at) const {
@@ -89,13 +89,11 @@ struct CornerReach {
     }
 };
 
-/// The box of a block's surface and of everything that its vertices can be moved to where target edge lengths
-/// are at most `target`. Inside a block vertices move towards others of it; so all depends on its corners.
-inline Reach reach_of(const Context& c, sint line, sfloat target) {
+/// A box of block `line`, in its instance's coordinates, made to hold everything that its vertices can be
+/// moved to where target edge lengths are at most `target`; in scene coordinates. Inside a block vertices
+/// move towards others of it; so all depends on its corners.
+inline Reach reach_from(const Context& c, sint line, Reach box, sfloat target) {
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-    Reach box;
-    box.low = load_svec(field(block, &BlockHeader::box_low));
-    box.high = load_svec(field(block, &BlockHeader::box_high));
     sint instance = load(field(block, &BlockHeader::instance));
     sint movable = load(field(block, &BlockHeader::movable));
     sbool morphs = load(field(c.frame, &FrameHeader::morphs)) != 0;
@@ -109,6 +107,15 @@ inline Reach reach_of(const Context& c, sint line, sfloat target) {
     box.low = box.low + origin;
     box.high = box.high + origin;
     return box;
+}
+
+/// That of its box, which holds everything finer, too.
+inline Reach reach_of(const Context& c, sint line, sfloat target) {
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    Reach box;
+    box.low = load_svec(field(block, &BlockHeader::box_low));
+    box.high = load_svec(field(block, &BlockHeader::box_high));
+    return reach_from(c, line, box, target);
 }
 
 } // namespace build_kernel

@@ -347,7 +347,7 @@ struct LightRays {
 /// be blended for each of them: hits no further from the first one, in target edge lengths, and whose target
 /// edge lengths differ by no more than this factor.
 inline constexpr float shared_reach = 16.0F;
-inline constexpr float shared_ratio = 1.02F;
+inline constexpr float shared_ratio = 1.05F;
 inline constexpr float growth_steps = 8.0F; // from 0 to the cap
 /// So far around its hits, in target edge lengths, a field is that of the rays that found them.
 inline constexpr float leaving_reach = 8.0F;

@@ -66,7 +66,7 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
     } else if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {
         place_bilinear(c, g, d, b);
         if (branch(d.level > 0))
-            bound_surface(b, bilinear_deviation(c, g, d));
+            bound_bilinear(c, g, d, b);
         place_sides<true>(c, g, d, b);
         if (branch(s.ancestors_at != 0))
             place_corners<true>(c, g, d, b);
@@ -80,7 +80,7 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
         pointer<float> weights = page_weights(c, g, face_class, PageKind::block, index);
         weigh_all(g, weights, page_stride(s.stride), control_first, control_count, s.stride, b.x, s.stride);
         if (branch(d.level > 0))
-            bound_surface(b, limit_deviation(c, g, d, b));
+            bound_limit(c, g, d, b);
         place_sides<false>(c, g, d, b);
         if (branch(s.ancestors_at != 0))
             place_corners<false>(c, g, d, b);

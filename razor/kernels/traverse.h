@@ -140,7 +140,19 @@ inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, v
     pointer<std::int32_t> mailbox = as<std::int32_t>(c.stack + scratch_mailbox);
     vmask others = g.alive & !here;
     sbool everyone = none(others);
-    sint n = load(field(list, &ItemList::count));
+    if constexpr (F.hanging) {
+        // Boxes here hold what rays up to `most` see. Others, elsewhere, may see a block outside its box:
+        // they have not met it.
+        sfloat most = load(field(list, &ItemList::most));
+        sbool bounded = g.morphs & everyone;
+        bounded = bounded & (most < unbounded_target);
+        if (branch(bounded)) {
+            svec low = load_svec(field(list, &ItemList::low));
+            svec high = load_svec(field(list, &ItemList::high));
+            everyone = most_target_in(g.fields, low, high, g.slack) <= most;
+        }
+    }
+    sint n = load(field(list, &ItemList::in_cell));
     sint stride = load(field(list, &ItemList::stride));
     pointer<float> words = as<float>(list) + item_list_words;
     pointer<std::int32_t> items = as<std::int32_t>(words);
