@@ -331,16 +331,16 @@ inline void bound_surface(const Block& b, const svec& deviation) {
     }
 }
 
-/// A bound on how far finer vertices of a limit surface lie from the triangles of a block of less than 8
-/// quads, along any axis: that of the next level's, evaluated in scratch, and as much again for all levels
-/// after it. From level to level deviations of a smooth surface fall to a quarter, beside extraordinary
-/// points at worst to about a half. Along an axis of its own a surface may leave its triangles only at later
-/// levels; the next one's box and once its deviation are not wide enough beside extraordinary points, either.
-inline sfloat next_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+/// The box of the limit surface under a block of less than 8 quads: that of the next level's vertices,
+/// evaluated in scratch, and for all levels after it as much wider as these lie from the block's triangles,
+/// along any axis: along one of its own a surface may leave them at later levels only. From level to level
+/// deviations of a smooth surface fall to a quarter, beside extraordinary points at worst to about a half.
+inline void bound_by_next_level(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
     sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
     sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
     sint n = load(field(g.faces + d.face, &FaceRecord::control_count));
     Block next;
+    next.header = b.header;
     next.quads_u = b.quads_u * 2;
     next.quads_v = b.quads_v * 2;
     next.stride = vertex_count(next.quads_u, next.quads_v);
@@ -350,7 +350,9 @@ inline sfloat next_deviation(const Context& c, const Cage& g, const Dicing& d, c
     pointer<float> weights = page_weights(c, g, face_class, PageKind::block, index);
     weigh_all(g, weights, page_stride(next.stride), first, n, next.stride, next.x, next.stride);
     pointer<std::int32_t> passes = blend_table(c, next.quads_u, next.quads_v);
-    return pass_sway(next, passes + (blend_passes - 1) * pass_words) * 2.0F;
+    sfloat deviation = pass_sway(next, passes + (blend_passes - 1) * pass_words);
+    bound_surface(next, {deviation, deviation, deviation});
+    store(field(b.header, &BlockHeader::deviation), deviation * 2.0F);
 }
 
 /// A bound on how far finer vertices lie from the triangles of a block of 8 quads along a side: sum over the
@@ -385,12 +387,10 @@ inline svec summed_deviation(const Context& c, const Cage& g, const Dicing& d, c
 /// The box of the limit surface under a block, whatever its sides make of it, as wide as all finer vertices
 /// need.
 inline void bound_limit(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
-    if (branch(max(d.nu, d.nv) < block_log2)) {
-        sfloat deviation = next_deviation(c, g, d, b);
-        bound_surface(b, {deviation, deviation, deviation});
-    } else {
+    if (branch(max(d.nu, d.nv) < block_log2))
+        bound_by_next_level(c, g, d, b);
+    else
         bound_surface(b, summed_deviation(c, g, d, b));
-    }
 }
 
 /// The same of a bilinear patch: a quad of sides h and k deviates by twist x h k / 4 at its centre, and a

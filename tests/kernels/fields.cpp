@@ -30,8 +30,9 @@ void ask(RayMaker& make, float edge_length, Ray& ray) {
     if (make.pick(2) == 0)
         return;
     const Point axis = make.random_direction(), focus = make.random_point();
-    const float slope = make.pick(3) == 0 ? 0.25F : std::exp2(make.uniform(-6, -2));
-    ray.growth = std::clamp(ray.growth, slope - 0.25F, 0.25F - slope);
+    constexpr float cap = gradation_cap; // which kernels hold growth to, but not a slope
+    const float slope = make.pick(3) == 0 ? cap : cap * std::exp2(make.uniform(-4, 0));
+    ray.growth = std::clamp(ray.growth, slope - cap, cap - slope);
     float along = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         ray.slope[k] = slope * axis[k];
