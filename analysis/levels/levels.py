@@ -160,8 +160,8 @@ def ratio(row, rays, ladder):
     bound = name + "_at_most" in row
     if not bound and name not in row:
         return "-"
-    least, median, largest = row[name + "_at_most" * bound]
-    return f"{'<' * bound}{median:.2f}" + (f" ({least:.2f}-{largest:.2f})" if least != largest else "")
+    least, median, largest = (f"{x:.2f}" for x in row[name + "_at_most" * bound])
+    return "<" * bound + median + (f" ({least}-{largest})" if least != largest else "")
 
 
 def show(rows):

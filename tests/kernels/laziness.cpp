@@ -123,10 +123,16 @@ TEST(Laziness, UnseenInstancesTakeNoMemory) {
     const Looked few = look_at_a_corner(10);
     const Looked many = look_at_a_corner(100);
     EXPECT_EQ(many.statistics.instances, 100 * few.statistics.instances);
-    // The same blocks, an entry in the tables of patches for each, and a few more levels of a tree.
+    // The same patches, an entry in the tables of patches for each, and a few more levels of a tree; as
+    // planes are tried at places in a larger box, cells differ, and with them whether a block beside a ray is
+    // made finer.
     EXPECT_EQ(many.statistics.counters.patches_opened, few.statistics.counters.patches_opened);
-    EXPECT_EQ(many.statistics.counters.blocks_made, few.statistics.counters.blocks_made);
-    EXPECT_EQ(many.statistics.grid_bytes, few.statistics.grid_bytes);
+    EXPECT_NEAR(static_cast<double>(many.statistics.counters.blocks_made),
+                static_cast<double>(few.statistics.counters.blocks_made),
+                static_cast<double>(few.statistics.counters.blocks_made) * 0.01);
+    EXPECT_NEAR(static_cast<double>(many.statistics.grid_bytes),
+                static_cast<double>(few.statistics.grid_bytes),
+                static_cast<double>(few.statistics.grid_bytes) * 0.01);
     EXPECT_EQ(many.statistics.patch_table_bytes, few.statistics.patch_table_bytes);
     EXPECT_LE(many.statistics.list_bytes, few.statistics.list_bytes * 5 / 4);
     EXPECT_LE(many.statistics.node_bytes, few.statistics.node_bytes * 5 / 4);
