@@ -7,9 +7,10 @@
 Every scheme renders the same samples; the error is the RMSE of the picture beside one of --reference-lod with edges
 shorter by --reference. Times are processor seconds of one thread for a frame, everything built on the way but the
 topology's pages, which an animation makes once: medians of --frames frames after a first, and of --repeat runs.
-These take turns, and ratios of times are medians, with the least and the largest, of ratios within a turn: whatever slows
-the machine for longer than one cancels. "first": the first frame's, pages and all. Shadow rays: the time with them less that without. made/needed:
-triangles made over twice the pixels covered, over the square of the target edge in pixels.
+These take turns, and ratios of times are medians, with the least and the largest, of ratios within a turn: whatever
+slows the machine for longer than one cancels. "first": the first frame's, pages and all. Shadow rays: the time with them
+less that without. made/needed: triangles made over twice the pixels covered, over the square of the target edge in
+pixels.
 
 Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
 schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
@@ -52,6 +53,9 @@ def parse(arguments=None, **defaults):
 
 def measure(options):
     """A row of figures for each scheme."""
+    for name in ("repeat", "frames"):
+        if getattr(options, name) < 1:
+            view.fail(f"--{name} {getattr(options, name)}: at least 1")
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         scene = view.write_scene(options, folder)

@@ -19,6 +19,11 @@ def add_options(parser, size, repeat):
     parser.add_argument("--json", metavar="FILE")
 
 
+def fail(message):
+    print(f"{os.path.basename(sys.argv[0])}: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
 def run(command):
     """What a command prints, and the rusage of it."""
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -27,7 +32,7 @@ def run(command):
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
         last = (out.strip().splitlines() or ["no message"])[-1]
-        sys.exit(f"{os.path.basename(sys.argv[0])}: {' '.join(command)}: {last}")
+        fail(f"{' '.join(command)}: {last}")
     return out, usage
 
 
@@ -45,7 +50,7 @@ def described(options):
             value = ", ".join(str(kind(x)) for x in numbers.split(","))
             text, found = re.subn(rf"(?m)^{key} = \[.*\]$", f"{key} = [{value}]", text, count=1)
             if not found:
-                sys.exit(f"{os.path.basename(sys.argv[0])}: the scene has no {key} to set; leave the option out")
+                fail(f"the scene has no {key} to set; leave the option out")
     if options.fov:
         text = re.sub(r"(?m)^fov = .*$", f"fov = {options.fov}", text, count=1)
     if options.origin or options.to:

@@ -14,6 +14,7 @@ import sys
 import tomllib
 
 import levels
+from view import fail
 
 COLUMNS = [
     ("scheme", lambda r: f"`{r['scheme']}`"),
@@ -35,11 +36,6 @@ COLUMNS = [
 # Options of levels.py: the command line's, else a view's own, else these.
 DEFAULTS = {"size": "128x128", "spp": 4, "repeat": 3, "frames": 3, "reference": 4, "reference_lod": "camera",
             "schemes": ["recursive", "discrete", "fixed", "fixed:1", "fixed:2"]}
-
-
-def fail(message):
-    print(f"views.py: {message}", file=sys.stderr)
-    sys.exit(2)
 
 
 def read_views(only):

@@ -84,6 +84,11 @@ TEST_F(Levels, TimesAtEqualError) {
     EXPECT_NEAR(discrete.at("camera_over_fixed_at_most").at(1).get<double>(), 2, 1e-9);
     EXPECT_NEAR(discrete.at("shadow_over_fixed_at_most").at(1).get<double>(), 3, 1e-9);
     EXPECT_NE(result.out.find("<2.00"), std::string::npos) << result.out;
+    for (const char* none : {"--repeat 0", "--frames 0"}) {
+        const Outcome refused = script("levels.py", std::string("any.toml --schemes fixed ") + none);
+        EXPECT_EQ(refused.code, 2) << none;
+        EXPECT_EQ(refused.error_lines(), 1) << refused.err;
+    }
     // Between levels of which only one is there: beside none.
     const Outcome alone = script("levels.py", "any.toml --json d.json --schemes recursive fixed --repeat 1");
     ASSERT_EQ(alone.code, 0) << alone.err;
