@@ -16,6 +16,7 @@ Fixed levels are powers of two apart, so none has just the error of another sche
 schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
 by a line through the logarithms of error and time of the two fixed levels beside it; "<" over the finest of them where
 none has as small an error, "-" where none has as large a one. "/object": the same for levels that each instance has of its own.
+"/discrete": over that of "discrete", which has the same levels and blends nothing.
 """
 import argparse
 import json
@@ -91,6 +92,10 @@ def measure(options):
                          "grid_bytes": whole["built"]["grid_bytes"]})
     for ladder in LADDERS:
         compare_with(ladder, rows)
+    for r in rows:
+        for discrete in (d for d in rows if d["scheme"] == "discrete"):
+            for rays in RAYS:
+                r[f"{rays}_over_discrete"] = over(r, rays, discrete, discrete, 0)
     return rows
 
 
@@ -159,7 +164,7 @@ def errors(options, folder, pictures, references):
 
 
 def ratio(row, rays, ladder):
-    """Beside a level of equal error, as text: the median turn's, and from the least to the largest."""
+    """Beside a ladder's level of equal error, or `discrete`, as text: the median turn's, and from the least to the largest."""
     name = f"{rays}_over_{ladder}"
     bound = name + "_at_most" in row
     if not bound and name not in row:
@@ -170,6 +175,7 @@ def ratio(row, rays, ladder):
 
 def show(rows):
     ladders = [ladder for ladder in LADDERS if any(r["scheme"].startswith(ladder + ":") for r in rows)]
+    ladders += ["discrete"] * any(r["scheme"] == "discrete" for r in rows)
 
     headings = [heading for rays in ("camera", "shadow", "first", "shadow")
                 for heading in (f"{rays + ' s':>8}", *(f"{'/' + ladder:>17}" for ladder in ladders))]

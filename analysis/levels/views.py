@@ -24,6 +24,8 @@ COLUMNS = [
     ("shadow rays, s", lambda r: f"{r['shadow_seconds']:.3f}"),
     ("camera, equal error", lambda r: levels.ratio(r, "camera", "fixed")),
     ("shadow, equal error", lambda r: levels.ratio(r, "shadow", "fixed")),
+    ("camera, over `discrete`", lambda r: levels.ratio(r, "camera", "discrete")),
+    ("shadow, over `discrete`", lambda r: levels.ratio(r, "shadow", "discrete")),
     ("first, camera", lambda r: levels.ratio(r, "first_camera", "fixed")),
     ("first, shadow", lambda r: levels.ratio(r, "first_shadow", "fixed")),
     ("triangles", lambda r: f"{r['triangles'] / 1e6:.2f} M"),

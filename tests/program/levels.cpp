@@ -83,6 +83,8 @@ TEST_F(Levels, TimesAtEqualError) {
     EXPECT_FALSE(discrete.contains("camera_over_fixed"));
     EXPECT_NEAR(discrete.at("camera_over_fixed_at_most").at(1).get<double>(), 2, 1e-9);
     EXPECT_NEAR(discrete.at("shadow_over_fixed_at_most").at(1).get<double>(), 3, 1e-9);
+    EXPECT_NEAR(recursive.at("camera_over_discrete").at(1).get<double>(), std::pow(2, -2.5), 1e-9);
+    EXPECT_NEAR(recursive.at("shadow_over_discrete").at(1).get<double>(), std::pow(3, -2.5), 1e-9);
     EXPECT_NE(result.out.find("<2.00"), std::string::npos) << result.out;
     for (const char* none : {"--repeat 0", "--frames 0"}) {
         const Outcome refused = script("levels.py", std::string("any.toml --schemes fixed ") + none);
