@@ -4,12 +4,32 @@
 
 #include <fmt/core.h>
 
+#include <filesystem>
+
 namespace sim {
+namespace {
+
+/// The file's whole name: what is printed may be put into any folder.
+std::string calibration_line(const std::string& file) {
+    std::string quoted;
+    for (const char c : std::filesystem::absolute(file).lexically_normal().string()) {
+        if (c == '"' || c == '\\')
+            quoted += '\\';
+        quoted += c;
+    }
+    return fmt::format("# counts beside those of real builds; analysis/calibration writes them\n"
+                       "calibration = \"{}\"\n",
+                       quoted);
+}
+
+} // namespace
 
 std::string print_machine(const MachineDescription& machine) {
     std::string out, section;
     if (!machine.origins.empty())
         out = fmt::format("# {}, with everything that it inherits, defaults and overrides.\n", machine.name);
+    if (!machine.calibration.empty())
+        out += calibration_line(machine.calibration);
     std::size_t i = 0;
     for (const Parameter& p : parameters()) {
         if (!applies(p, machine.config)) {

@@ -192,5 +192,20 @@ TEST(Printing, RoundTripsValuesAndMarks) {
     EXPECT_EQ(print_machine(again.config), print_machine(first.config));
 }
 
+// What is printed may lie in another folder than the file that names its calibration.
+TEST(Printing, KeepsTheCalibration) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "a \"b\" \\c");
+    std::filesystem::create_directories(folder / "else where");
+    folder.file("root.toml", "calibration = \"a \\\"b\\\" \\\\c/counts.json\"\n[chip]\ncores = 16\n");
+    const MachineDescription first =
+        describe_machine(folder.file("top.toml", "inherit = \"root.toml\"\n").string());
+    const MachineDescription again =
+        describe_machine(folder.file("else where/printed.toml", print_machine(first)).string());
+    EXPECT_EQ(again.calibration, (folder / "a \"b\" \\c/counts.json").string());
+    EXPECT_EQ(print_machine(again.config), print_machine(first.config));
+    EXPECT_EQ(print_machine(first.config).find("calibration ="), std::string::npos);
+}
+
 } // namespace
 } // namespace sim::test
