@@ -184,8 +184,10 @@ std::vector<ValidationRow> elsewhere() {
          State::tests},
         {"assumptions: halved and doubled", "the study's conclusion", "reported",
          "by hand, analysis/sweep/assumptions.py", State::tests},
-        {"the whole: native points, zen4-2c", "host times of 20 settings", "reported", "", State::unbuilt},
-        {"the whole: the paper's characterisation", "its Table 2", "reported", "", State::unbuilt},
+        {"the whole: frames of 26 points, simulated", "the same frames rendered by a host", "reported",
+         "analysis/whole/whole.py; a table in sim/README.md", State::tests},
+        {"the whole: instructions, lanes, windows", "what was published of Razor on a Xeon and Niagara",
+         "reported", "analysis/whole/characterise.py; a table in sim/README.md", State::tests},
     };
 }
 
