@@ -10,6 +10,9 @@
 #include <bit>
 #include <cstdint>
 #include <vector>
+#ifdef __BMI2__
+#include <immintrin.h>
+#endif
 
 namespace sim {
 
@@ -65,18 +68,10 @@ public:
             std::uint64_t free = ~w & open;
             if (free == 0)
                 continue;
-            auto low = static_cast<unsigned>(std::countr_zero(free));
-            first = first == no_slot ? number * 64 + low : first;
-            std::uint64_t wanted = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
-            if ((free >> low & wanted) == wanted) { // all in one piece
-                w |= wanted << low;
-                return {first, number * 64 + low + count - 1};
-            }
-            std::uint64_t rest = free; // what stays free
-            for (; count != 0 && rest != 0; --count)
-                rest &= rest - 1;
-            std::uint64_t taken = free ^ rest;
+            first = first == no_slot ? number * 64 + static_cast<unsigned>(std::countr_zero(free)) : first;
+            const std::uint64_t taken = lowest(free, count);
             w |= taken;
+            count -= static_cast<std::uint32_t>(std::popcount(taken));
             if (count == 0)
                 return {first, number * 64 + 63 - static_cast<unsigned>(std::countl_zero(taken))};
         }
@@ -111,6 +106,18 @@ public:
 
 private:
     static constexpr Slot no_slot = ~Slot{0};
+
+    /// The lowest `count` bits, 1 to 64, that are set in `free`, or all.
+    static std::uint64_t lowest(std::uint64_t free, std::uint32_t count) {
+#ifdef __BMI2__
+        return _pdep_u64(~std::uint64_t{0} >> (64 - count), free);
+#else
+        std::uint64_t rest = free; // what stays free
+        for (; count != 0 && rest != 0; --count)
+            rest &= rest - 1;
+        return free ^ rest;
+#endif
+    }
 
     std::uint64_t& word(std::uint64_t number) {
         if (number - first_ > mask_) [[unlikely]] // also what is earlier than the first

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <utility>
 #include <vector>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 namespace sim {
 
@@ -29,21 +33,53 @@ public:
     Use use(std::uint32_t value) {
         if (capacity_ == 0 || value == 0 || recent_[0] == value)
             return Use::resident;
+#ifdef __AVX2__
+        if (capacity_ <= 8) {
+            const __m256i equal = _mm256_cmpeq_epi32(eight(), _mm256_set1_epi32(static_cast<int>(value)));
+            const auto at = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
+            if (at != 0) {
+                push(static_cast<std::size_t>(std::countr_zero(at)), value);
+                return Use::resident;
+            }
+            return bring_back(value);
+        }
+#endif
         for (std::size_t i = 1; i < capacity_; ++i)
             if (recent_[i] == value) {
                 push(i, value);
                 return Use::resident;
             }
+        return bring_back(value);
+    }
+
+private:
+    Use bring_back(std::uint32_t value) {
         push(capacity_ - 1, value);
         std::uint32_t& stored = stored_[value % stored_.size()];
         Use where = stored == value ? Use::stored : Use::unstored;
         stored = value;
         return where;
     }
-
-private:
+#ifdef __AVX2__
+    __m256i eight() const {
+        return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(recent_.data()));
+    }
+#endif
+    /// The value at `out` goes, those before it move up by one, and `value` is first.
     void push(std::size_t out, std::uint32_t value) {
         std::uint32_t* recent = recent_.data();
+#ifdef __AVX2__
+        if (capacity_ <= 8) { // all at once
+            const __m256i before = _mm256_setr_epi32(0, 0, 1, 2, 3, 4, 5, 6);
+            const __m256i place = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            const __m256i stays = _mm256_cmpgt_epi32(place, _mm256_set1_epi32(static_cast<int>(out)));
+            const __m256i from = _mm256_blendv_epi8(before, place, stays);
+            const __m256i moved = _mm256_permutevar8x32_epi32(eight(), from);
+            const __m256i first = _mm256_set1_epi32(static_cast<int>(value));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(recent), _mm256_blend_epi32(moved, first, 1));
+            return;
+        }
+#endif
         if (out > 16) {
             std::memmove(recent + 1, recent, out * sizeof(std::uint32_t));
             recent[0] = value;

@@ -50,7 +50,7 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instruction
         h.accounted = at.first;
     }
     if (at.last >= h.accounted) {
-        cycle least = (instructions + issue_width_ - 1) / issue_width_;
+        cycle least = issue_width_ == 1 ? instructions : (instructions + issue_width_ - 1) / issue_width_;
         cycle busy = std::min<cycle>(least, at.last + 1 - h.accounted);
         h.account(h.accounted, h.accounted + busy, Cause::busy);
         h.account(h.accounted + busy, at.last + 1, Cause::slots);

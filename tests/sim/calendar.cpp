@@ -34,7 +34,7 @@ TEST(Calendar, EqualsASetOfSlots) {
                 for (std::uint32_t k = 0; k < length; ++k)
                     taken.insert(want + k);
             } else {
-                auto count = static_cast<std::uint32_t>(1 + random() % 20);
+                auto count = static_cast<std::uint32_t>(1 + random() % 64);
                 Calendar::Span span = calendar.take(from, count);
                 for (std::uint32_t k = 0; k < count; ++k, ++want) {
                     while (!free(want))

@@ -1,0 +1,62 @@
+// Registers of values against a list of the last ones used.
+#include "sim/core/registers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <random>
+#include <set>
+
+namespace sim::test {
+namespace {
+
+TEST(Registers, EqualAListOfTheLastUsed) {
+    std::mt19937 random(5);
+    for (std::size_t capacity : {1, 2, 3, 7, 8, 9, 16, 17, 40}) {
+        RegisterFile file(capacity);
+        std::deque<std::uint32_t> held; // last used first
+        std::set<std::uint32_t> stored;
+        const auto hold = [&](std::uint32_t value) {
+            held.push_front(value);
+            if (held.size() > capacity)
+                held.pop_back();
+        };
+        std::uint32_t last = 0;
+        std::array<int, 3> seen{};
+        for (int i = 0; i < 20000; ++i) {
+            if (last == 0 || random() % 3 == 0) {
+                last = file.make();
+                hold(last);
+                continue;
+            }
+            // Not so old that whether it was stored is forgotten.
+            const auto back = static_cast<std::uint32_t>(random() % std::min(last, std::uint32_t{60}));
+            const std::uint32_t value = last - back;
+            auto expected = RegisterFile::Use::resident;
+            if (const auto at = std::find(held.begin(), held.end(), value); at != held.end())
+                held.erase(at);
+            else
+                expected =
+                    stored.insert(value).second ? RegisterFile::Use::unstored : RegisterFile::Use::stored;
+            hold(value);
+            const RegisterFile::Use use = file.use(value);
+            ASSERT_EQ(use, expected) << "of " << capacity << ", step " << i;
+            ++seen[static_cast<std::size_t>(use)];
+        }
+        for (const int count : seen)
+            EXPECT_GT(count, 100) << capacity;
+    }
+}
+
+TEST(Registers, UnlimitedOnesAreNeverReloaded) {
+    RegisterFile file(0);
+    const std::uint32_t first = file.make();
+    for (int i = 0; i < 3000; ++i)
+        file.make();
+    EXPECT_EQ(file.use(first), RegisterFile::Use::resident);
+    EXPECT_EQ(file.use(0), RegisterFile::Use::resident);
+}
+
+} // namespace
+} // namespace sim::test
