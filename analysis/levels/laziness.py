@@ -31,7 +31,7 @@ def main():
     options.razor = options.razor or shutil.which("razor") or "build/release/razor/program/razor"
     rows = {}
     with tempfile.TemporaryDirectory() as folder:
-        scene = view.write_scene(options, folder)
+        scene = view.write_scene(options, f"{folder}/scene.toml")
         runs = {"lazy": [], "eager": []}
         for _ in range(options.repeat):
             runs["lazy"].append(view.render(options, scene, folder, "lazy"))

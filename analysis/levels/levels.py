@@ -42,6 +42,8 @@ def parser(size="512x512", repeat=3):
     p.add_argument("--reference", type=float, default=8, help="how much shorter edges of the reference are")
     p.add_argument("--reference-lod", default="camera", help="the reference's scheme")
     p.add_argument("--schemes", nargs="+", default=SCHEMES)
+    p.add_argument("--write-scene", metavar="FILE",
+                   help="write what is seen as a scene, for razor and razor-sim, and end")
     return p
 
 
@@ -59,7 +61,7 @@ def measure(options):
             view.fail(f"--{name} {getattr(options, name)}: at least 1")
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        scene = view.write_scene(options, folder)
+        scene = view.write_scene(options, os.path.join(folder, "scene.toml"))
         with open(scene) as file:
             edge = float(re.search(r"(?m)^edge_pixels = (.*)$", file.read())[1])
         dark = ["--light-samples", "0", "--sky-samples", "0"]
@@ -101,6 +103,8 @@ def measure(options):
 
 def main():
     options = parse()
+    if options.write_scene:
+        return view.write_scene(options, options.write_scene)
     rows = measure(options)
     show(rows)
     if options.json:

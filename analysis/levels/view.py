@@ -58,10 +58,13 @@ def described(options):
     return text
 
 
-def write_scene(options, folder):
-    scene = os.path.join(folder, "scene.toml")
-    with open(scene, "w") as file:
-        file.write(described(options))
+def write_scene(options, scene):
+    text = described(options)
+    try:
+        with open(scene, "w") as file:
+            file.write(text)
+    except OSError as error:
+        fail(f"{scene}: {error.strerror}; give a file in a folder that is there")
     return scene
 
 

@@ -14,6 +14,7 @@ import sys
 import tomllib
 
 import levels
+import view
 from view import fail
 
 COLUMNS = [
@@ -60,11 +61,16 @@ def main():
     if not os.path.isdir(given.scenes):
         fail(f"{given.scenes}: no such folder; give that of the models")
     all_rows, missing, views = {}, [], read_views(given.only)
-    print("| view | " + " | ".join(name for name, _ in COLUMNS) + " |")
-    print("|" + " --- |" * (len(COLUMNS) + 1))
+    if given.write_scene and len(views) != 1:
+        fail(f"--write-scene {given.write_scene}: of one view; say which with --only")
+    if not given.write_scene:
+        print("| view | " + " | ".join(name for name, _ in COLUMNS) + " |")
+        print("|" + " --- |" * (len(COLUMNS) + 1))
     for v in views:
         model = os.path.join(given.scenes, v["model"])
         if not os.path.exists(model):
+            if given.write_scene:
+                fail(f"{model}: no such file; {v['name']} is seen in it")
             missing.append(f"{v['name']} ({v['model']})")
             continue
         own = levels.parse([model, *v["options"]])
@@ -72,12 +78,15 @@ def main():
             value = getattr(given, name)
             setattr(own, name, v.get(name, default) if value is None else value)
         own.razor = given.razor or own.razor
+        if given.write_scene:
+            view.write_scene(own, given.write_scene)
+            continue
         all_rows[v["name"]] = rows = levels.measure(own)
         for r in rows:
             print(f"| {v['name']} | " + " | ".join(text(r) for _, text in COLUMNS) + " |", flush=True)
     for v in missing:
         print(f"skipped: {v} is not there", file=sys.stderr)
-    if given.json:
+    if given.json and not given.write_scene:
         with open(given.json, "w") as file:
             json.dump({"command": shlex.join(sys.argv), "views": all_rows}, file, indent=1)
             file.write("\n")

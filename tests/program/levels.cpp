@@ -130,5 +130,27 @@ TEST_F(Levels, ViewsAreOneTable) {
     }
 }
 
+TEST_F(Levels, AViewIsASceneOfItsOwn) {
+    std::filesystem::create_directories(folder_.path() / "models/spot");
+    folder_.file("models/spot/spot_quadrangulated.obj", "");
+    const Outcome result = script("views.py", "models --only cow --write-scene cow.toml");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    std::ifstream scene(folder_ / "cow.toml");
+    EXPECT_EQ((std::string{std::istreambuf_iterator<char>(scene), {}}),
+              "edge_pixels = 2.0\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\n");
+    ASSERT_EQ(script("levels.py", "any.toml --from 1,2,3 --write-scene seen.toml").code, 0);
+    std::ifstream seen(folder_ / "seen.toml");
+    EXPECT_EQ((std::string{std::istreambuf_iterator<char>(seen), {}}),
+              "edge_pixels = 2.0\nposition = [1.0, 2.0, 3.0]\ntarget = [0, 0, 1]\n");
+    for (const char* wrong : {"models --write-scene a.toml", "models --only crowd --write-scene a.toml",
+                              "models --only cow --write-scene nowhere/a.toml"}) {
+        const Outcome refused = script("views.py", wrong);
+        EXPECT_EQ(refused.code, 2) << wrong;
+        EXPECT_EQ(refused.error_lines(), 1) << refused.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.toml"));
+}
+
 } // namespace
 } // namespace razor
