@@ -4,7 +4,7 @@
     analysis/whole/characterise.py
     analysis/whole/characterise.py car.obj woman.obj --json c.json -- --size 48x48 --spp 1
 
-Frames of the built-in scene and of the models given; what follows -- goes to every run (without, 96 x 96 pixels with a
+Frames of the built-in scene and of the models given; what follows -- goes to every run (without, 64 x 64 pixels with a
 shadow ray to the light and one to the sky for each).
 The published ranges are those of Govindaraju et al. 2008 as an excerpt of its Table 2 gives them, of other scenes on real
 machines: a value within its range is plausible, not proven, and no parameter was fitted to any of them.
@@ -25,7 +25,7 @@ import tempfile
 import frames
 from frames import Mistake, simulation
 
-FRAME = ["--size", "96x96", "--spp", "1", "--light-samples", "1", "--sky-samples", "1"]
+FRAME = ["--size", "64x64", "--spp", "1", "--light-samples", "1", "--sky-samples", "1"]
 
 
 def mix(report, *classes):
