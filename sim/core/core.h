@@ -24,10 +24,10 @@ struct SharedUnit {
 
 struct Core {
     Core(const Config& config, const cycle& earliest, std::size_t pairing_ports, const SiteAtHand& site,
-         Cache& l2, Below& below, Tickets& tickets, Attribution& attribution)
+         Below& words, Below& below, Tickets& tickets, Attribution& attribution)
         : issue("issue slots", earliest, static_cast<unsigned>(config.core.issue_width)),
           ports("L1 ports", earliest, static_cast<unsigned>(config.l1.ports)), predictor(config.core),
-          l1(config, 0, false, earliest, site, below, tickets, attribution), l2(l2) {
+          l1(config, 0, false, earliest, site, below, tickets, attribution), words(words) {
         for (std::size_t i = 0; i < units.size(); ++i)
             if (config.interval[i] > 1)
                 units[i].emplace("unit", earliest);
@@ -43,7 +43,7 @@ struct Core {
     SharedUnit* shared = nullptr;
     Predictor predictor;
     Cache l1;
-    Cache& l2;
+    Below& words;             // the L2, where shared words are changed
     std::unique_ptr<Mmu> mmu; // null: addresses need no translation
     Hart* running = nullptr;  // policy stall: who holds the core ...
     cycle busy_until = 0;     // ... and the cycle after its last issue

@@ -21,8 +21,10 @@ Answered Engine::await(Hart& h, cycle ticket) {
 /// For an access at cycle `since` that the L1 had no room for: returns the cycle, and when it has come, at
 /// which to try again.
 cycle Engine::await_room(Hart& h, cycle since, cycle until) {
-    if (until != Answer::unknown)
+    if (until != Answer::unknown && !maybe_sooner(until))
         return turn(h, until);
+    if (until != Answer::unknown)
+        h.tile->events->look_again(latest(until));
     h.tile->parked.push_back({&h, 0});
     Away away;
     h.tile->scheduler.park();
@@ -47,7 +49,18 @@ void Engine::await_stores(Hart& h) {
     h.complete.later(Due(h.stored, Cause::memory));
 }
 
-/// Forgets tickets of loads that are answered, all others stay.
+/// Forgets tickets of stores that are answered, all others stay.
+void Engine::settle_stores(Hart& h) {
+    std::erase_if(h.storing, [&](cycle ticket) {
+        Answered a;
+        const bool known = h.tile->tickets.find(ticket, a);
+        if (known)
+            h.stored = std::max(h.stored, a.last);
+        return known;
+    });
+}
+
+/// Likewise of loads.
 void Engine::settle_loads(Hart& h) {
     std::erase_if(h.loading, [&](cycle ticket) {
         Answered a;
@@ -197,13 +210,7 @@ void Engine::stored(Hart& h, const Data& data) {
     if (data.open == 0) [[likely]]
         return;
     if (h.storing.size() >= 32)
-        std::erase_if(h.storing, [&](cycle ticket) {
-            Answered a;
-            bool known = h.tile->tickets.find(ticket, a);
-            if (known)
-                h.stored = std::max(h.stored, a.last);
-            return known;
-        });
+        settle_stores(h);
     h.storing.insert(h.storing.end(), data.tickets.begin(), data.tickets.begin() + data.open);
 }
 
@@ -371,15 +378,21 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
 }
 
 /// The line of each level below the L1 around this address is dead if it lies in [begin, end).
-void Engine::discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end, cycle at) {
+void Engine::discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end,
+                           cycle issued) {
+    cycle at = issued;
     for (unsigned level = 1; level < cache_levels_; ++level) {
         const std::uint64_t bytes = wide(config_.cache(level).line_bytes), first = address / bytes * bytes;
         if (first < begin || first + bytes > end)
             return;
-        if (level < tile_levels_)
+        at += wide(config_.cache(level - 1).latency);
+        if (level < tile_levels_ && h.tile->events)
+            h.tile->arrivals[level][core_in_tile(h) / h.tile->sharing[level]]->discard(
+                first, at, level == 1 ? h.core->l1.number() : cache_of(h, level - 1).number());
+        else if (level < tile_levels_)
             cache_of(h, level).discard(first);
         else if (first == address)
-            exit_of(h).tell(Request::discard, first, at, h.column);
+            exit_of(h).tell(Request::discard, first, issued, h.column);
     }
 }
 

@@ -97,11 +97,11 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
         for (integer c = 0; c < config.chip.cores; ++c) {
             const std::size_t group = wide(c) / tile.sharing[1];
-            Cache& l2 = tile.caches[1][group];
+            Below& l2 = tile.way_to(1, wide(c));
             Below& below = config.sim.jitter != 0 ? static_cast<Below&>(tile.jitters[group]) : l2;
             Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, l2,
                                                  below, tile.tickets, tile.attribution);
-            l2.add_above(core.l1);
+            tile.caches[1][group].add_above(core.l1);
             if (tlb_) {
                 if (c % config.cores_sharing_tlb() == 0)
                     tile.second_tlbs.emplace_back(wide(config.tlb.second_entries),
@@ -119,8 +119,10 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             }
         }
     }
-    for (Tile& tile : tiles_)
+    for (Tile& tile : tiles_) {
         order_.push_back(&tile);
+        follow_events(tile);
+    }
     beyond_->connect(tiles_);
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)
@@ -174,6 +176,8 @@ void Engine::run_tile(Tile& tile) {
         look(*sleeper, window_end_);
     if (tile.scheduler.next() < window_end_)
         tile.scheduler.run(window_end_);
+    if (tile.events)
+        tile.events->come_to(window_end_);
 }
 
 void Engine::run_tiles() {
@@ -213,7 +217,7 @@ void Engine::perform_deeds() {
                 fail(std::current_exception());
                 return;
             }
-            resume(*d.hart);
+            resume(*d.hart, window_end_);
         } else {
             host_threads_.one(host_thread(*d.hart->tile), [&](int) {
                 running_hart = d.hart;
@@ -227,29 +231,45 @@ void Engine::perform_deeds() {
     }
 }
 
-/// A thread that had left goes on after the window. What it does to shared words comes after what the others
-/// did meanwhile.
-void Engine::resume(Hart& h) {
-    h.now = std::max(h.now, window_end_);
-    come_back(h, window_end_);
-    h.tile->scheduler.wake(Scheduler::key(window_end_, h.number));
+/// A thread that had left goes on at cycle `t`, when the window has ended if it waited for that. What it does
+/// to shared words comes after what the others did meanwhile.
+void Engine::resume(Hart& h, cycle t) {
+    h.now = std::max(h.now, t);
+    come_back(h, t);
+    h.tile->scheduler.wake(Scheduler::key(t, h.number));
 }
 
-/// Those whose tickets are answered go on.
-void Engine::answer_parked(Tile& tile) {
+/// Those go on whose tickets are answered, or whose L1 may have room.
+void Engine::answer_parked(Tile& tile, cycle t, const std::function<bool(const Hart&)>& has_room) {
     std::erase_if(tile.parked, [&](const Tile::Parked& p) {
         Answered a{};
-        if (p.ticket != 0 && !tile.tickets.find(p.ticket, a))
+        if (p.ticket != 0 ? !tile.tickets.find(p.ticket, a) : !has_room(*p.hart))
             return false;
-        resume(*p.hart);
+        resume(*p.hart, t);
         return true;
     });
+}
+
+/// Where caches within tiles act in order of time, threads go on as soon as these have answered.
+void Engine::follow_events(Tile& tile) {
+    if (tile.events)
+        tile.events->tell([this, &tile](cycle t, const Cache* by) {
+            answer_parked(tile, t, [&](const Hart& h) {
+                return by == nullptr || by->level() != 0 || by == &h.core->l1;
+            });
+        });
 }
 
 /// Drops tickets that lie behind the next operation of every thread of the tile.
 void Engine::forget_tickets(Tile& tile) {
     if (tile.tickets.size() < 4096)
         return;
+    if (tile.events) // many are of the last loads and stores of threads that others outlive
+        for (Hart* h : tile.harts)
+            if (h->finished) {
+                settle_loads(*h);
+                settle_stores(*h);
+            }
     cycle earliest = window_end_;
     for (Hart* h : tile.harts)
         if (h->worker >= 0 && h->waits_for == nullptr && !h->finished)
@@ -260,7 +280,10 @@ void Engine::forget_tickets(Tile& tile) {
 /// No request that is not served yet arrives at memory before `arrival`.
 void Engine::set_floors(cycle arrival) {
     for (Tile& tile : tiles_)
-        tile.tickets.set_floor(arrival + shortest_read_);
+        if (tile.events)
+            tile.events->set_floor(arrival + shortest_read_);
+        else
+            tile.tickets.set_floor(arrival + shortest_read_);
 }
 
 /// What the order of the following must not matter for.
@@ -291,16 +314,42 @@ bool Engine::run_window() {
         shuffle();
     if (!failure_)
         perform_deeds();
-    for (Tile* tile : order_)
-        beyond_->accept(tile->leaving.requests);
-    beyond_->serve(window_end_);
-    set_floors(window_end_);
+    serve_window();
     for (Tile* tile : order_) {
-        answer_parked(*tile);
+        answer_parked(*tile, window_end_, [](const Hart&) { return true; });
         forget_tickets(*tile);
         tile->attribution.publish_notes();
     }
     return true;
+}
+
+/// What left the tiles in the window is answered, as far as it can be by now.
+void Engine::serve_window() {
+    for (Tile* tile : order_)
+        beyond_->accept(tile->leaving.requests);
+    beyond_->serve(window_end_);
+    set_floors(window_end_);
+    for (Tile* tile : order_)
+        if (tile->events)
+            tile->events->try_again();
+}
+
+/// No thread does anything any more: windows go on until nothing is on its way within the tiles.
+void Engine::settle_tiles() {
+    const auto busy = [this] {
+        return std::any_of(tiles_.begin(), tiles_.end(),
+                           [](const Tile& t) { return t.events && t.events->busy(); });
+    };
+    while (busy()) {
+        const cycle next = next_event();
+        window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
+        set_floors(next);
+        for (Tile& tile : tiles_) {
+            tile.earliest = window_end_ - window_cycles_ > reach_ ? window_end_ - window_cycles_ - reach_ : 0;
+            run_tile(tile);
+        }
+        serve_window();
+    }
 }
 
 void Engine::run_workers() {
@@ -386,6 +435,7 @@ Report Engine::run() {
 /// are written back; those of transient data are dropped.
 void Engine::finish_frame() {
     auto serve_all = [this] {
+        settle_tiles();
         for (Tile& tile : tiles_)
             beyond_->accept(tile.leaving.requests);
         beyond_->serve(Beyond::everything);

@@ -57,7 +57,7 @@ public:
     void scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
     void prefetch(Hart& h, const void* p, Due ready);
     void discard(Hart& h, const void* p, std::uint32_t bytes, Due ready);
-    void discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end, cycle at);
+    void discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end, cycle issued);
     void before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due ready, bool waits = false);
     stamp after_atomic(Hart& h, isa::timing::atomic kind, const void* p, bool wrote);
     stamp wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due ready);
@@ -163,6 +163,7 @@ private:
     cycle await_room(Hart& h, cycle since, cycle until);
     void await_stores(Hart& h);
     void settle_loads(Hart& h);
+    void settle_stores(Hart& h);
 
     /// For a thread that others have overtaken meanwhile, up to cycle `t`.
     void come_back(Hart& h, cycle t) const {
@@ -283,8 +284,11 @@ private:
     void run_tile(Tile& tile);
     int host_thread(const Tile& tile) const { return static_cast<int>(tile.number) % host_threads_.count(); }
     void perform_deeds();
-    void resume(Hart& h);
-    void answer_parked(Tile& tile);
+    void resume(Hart& h, cycle t);
+    void answer_parked(Tile& tile, cycle t, const std::function<bool(const Hart&)>& has_room);
+    void follow_events(Tile& tile);
+    void settle_tiles();
+    void serve_window();
     void shuffle();
     void forget_tickets(Tile& tile);
     void fail(const std::exception_ptr& why);

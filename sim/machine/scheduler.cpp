@@ -41,21 +41,33 @@ Scheduler::Key Scheduler::pop() {
 void Scheduler::go_on(Key k) {
     current_ = static_cast<std::uint32_t>(k & ((Key{1} << thread_bits) - 1));
     if (exact())
-        horizon_ = queue_.empty() ? limit_ - 1 : std::min(limit_ - 1, queue_.front());
+        horizon_ =
+            std::min(queue_.empty() ? limit_ - 1 : std::min(limit_ - 1, queue_.front()), first_event() - 1);
     else if (whole_windows_)
         horizon_ = limit_ - 1;
     else
         horizon_ = std::min(limit_, key((cycle_of(k) / quantum_ + 1) * quantum_, 0)) - 1;
 }
 
+/// All that come before the earliest thread.
+void Scheduler::let_events_happen() {
+    for (Key first = first_event(); first < limit_ && (queue_.empty() || first <= queue_.front());
+         first = first_event())
+        events_->step();
+}
+
 /// From the thread that runs, which is in the queue or parked, to the next one.
 void Scheduler::leave() {
-    Fibre& self = *threads_[current_]->fibre;
+    const std::uint32_t left = current_;
+    Fibre& self = *threads_[left]->fibre;
+    if (events_ != nullptr && !stepping_)
+        let_events_happen();
     if (stepping_ || queue_.empty() || queue_.front() >= limit_) {
         self.switch_to(main_);
     } else {
         go_on(pop());
-        self.switch_to(*threads_[current_]->fibre);
+        if (current_ != left)
+            self.switch_to(*threads_[current_]->fibre);
     }
     if (cancelling_)
         throw Cancelled{};
@@ -64,7 +76,7 @@ void Scheduler::leave() {
 void Scheduler::yield(Key k) {
     if (cancelling_ || std::uncaught_exceptions() > 0)
         return; // unwinding: destructors act at once
-    if (!stepping_ && k < limit_ && (queue_.empty() || k < queue_.front())) {
+    if (!stepping_ && k < limit_ && (queue_.empty() || k < queue_.front()) && k < first_event()) {
         go_on(k);
         return;
     }
@@ -122,9 +134,11 @@ void Scheduler::run(cycle end) {
                 failure_ = std::current_exception();
                 return;
             }
-        } else if (queue_.empty() || queue_.front() >= limit_) {
-            return;
         } else {
+            if (events_ != nullptr)
+                let_events_happen();
+            if (queue_.empty() || queue_.front() >= limit_)
+                return;
             go_on(pop());
         }
         main_.switch_to(*threads_[current_]->fibre);

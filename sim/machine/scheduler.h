@@ -2,7 +2,8 @@
 // until its next operation lies behind the horizon, then the earliest other one runs. With exact order the
 // horizon is the next thread's operation; with a quantum it is the end of the quantum that the operation lies
 // in. No thread passes the end of the window that run() was given, and a quantum that is no shorter than a
-// window does not cut it: each thread has all of it in turn. Keys order by (cycle, core, thread).
+// window does not cut it: each thread has all of it in turn. Keys order by (cycle, core, thread). In the
+// reference mode events of the tile (tile_events.h) happen in between.
 #pragma once
 
 #include "sim/core/fibre.h"
@@ -16,6 +17,19 @@
 #include <vector>
 
 namespace sim {
+
+/// What happens by itself between the threads' operations, before those of the same cycle.
+class Timeline {
+public:
+    Timeline() = default;
+    Timeline(const Timeline&) = delete;
+    Timeline& operator=(const Timeline&) = delete;
+    virtual ~Timeline() = default;
+    /// The earliest event happens.
+    virtual void step() = 0;
+
+    cycle next = ~cycle{0}; // of these; ~0: there is none
+};
 
 class Scheduler {
 public:
@@ -31,14 +45,21 @@ public:
     /// Adds a thread that begins at cycle `t`: a new one (ascending numbers), or one that has ended once
     /// more.
     void add(std::uint32_t thread, cycle t, std::function<void()> body);
+    /// Of a scheduler with exact order: from now on these events have their place among the operations.
+    void follow(Timeline& events) { events_ = &events; }
+    /// One of them was added.
+    void foresee(cycle t) { horizon_ = std::min(horizon_, key(t, 0) == 0 ? 0 : key(t, 0) - 1); }
 
     // From outside of all threads:
     /// Runs threads until none is earlier than cycle `end`, or one has failed.
     void run(cycle end);
     /// Runs one thread that has parked until it parks or yields again, or ends.
     void step(std::uint32_t thread);
-    /// The earliest cycle at which a thread wants to go on; ~0 if none does.
-    cycle next() const { return queue_.empty() ? ~cycle{0} : cycle_of(queue_.front()); }
+    /// The earliest cycle at which a thread wants to go on, or something happens; ~0 if none does.
+    cycle next() const {
+        const cycle event = events_ == nullptr ? ~cycle{0} : events_->next;
+        return queue_.empty() ? event : std::min(event, cycle_of(queue_.front()));
+    }
     std::size_t unfinished() const { return unfinished_; }
     /// What the first thread that failed threw.
     const std::exception_ptr& failure() const { return failure_; }
@@ -51,7 +72,7 @@ public:
     Key horizon() const { return horizon_; }
     /// Returns when no thread is earlier than this one would be with `k`.
     void wait_turn(Key k) {
-        if (k >= limit_ || (!queue_.empty() && k > queue_.front()))
+        if (k >= limit_ || (!queue_.empty() && k > queue_.front()) || k >= first_event())
             yield(k);
     }
     /// Lets earlier threads run first.
@@ -70,6 +91,12 @@ private:
     };
     struct Cancelled {};
 
+    /// Operations from this key on come after the next event.
+    Key first_event() const {
+        constexpr Key none = ~Key{0};
+        return events_ == nullptr || events_->next > cycle_of(none) ? none : key(events_->next, 0);
+    }
+    void let_events_happen();
     void push(Key k);
     Key pop();
     void go_on(Key k);
@@ -82,6 +109,7 @@ private:
     std::vector<Key> queue_; // a heap, smallest first: every thread that could run but does not
     std::vector<std::unique_ptr<Thread>> threads_; // by number; null where there is none
     std::size_t unfinished_ = 0;
+    Timeline* events_ = nullptr;
     Key horizon_ = 0, limit_ = 0;
     std::uint32_t current_ = 0;
     Fibre main_;

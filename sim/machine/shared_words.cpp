@@ -56,13 +56,20 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
         h.tile->site = {};
-        cycle asks = begins + l1_latency_;
-        Answer line = h.core->l2.modify({a, line_bytes_, asks, h.column});
+        Access change{a, line_bytes_, begins + l1_latency_, h.column}; // a read that leaves the line dirty
+        change.modify = change.owned = true;                           // its line is claimed by itself
+        change.asker = h.core->l1.number();
+        Answer line = h.core->words.read(change);
         while (line.refused)
             [[unlikely]] {
-                asks = await_room(h, asks, line.ready);
-                line = h.core->l2.modify({a, line_bytes_, asks, h.column});
+                change.at = await_room(h, change.at, line.ready);
+                line = h.core->words.read(change);
             }
+        if (h.tile->events && is_ticket(line.ready)) { // its place in the queue is that of the L2's answer
+            const Answered there = await(h, line.ready);
+            line.ready = there.last;
+            line.from = there.from;
+        }
         auto [ready_at, behind] =
             h.tile->queues.enter(a, line.ready, wide(config_.coherence.atomic_cycles), h.tile->tickets);
         Answered there{ready_at, ready_at, line.from};
@@ -173,7 +180,8 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
             ++h.counters.releases;
             Access release{a, line_bytes_, t + l1_latency_, h.column};
             release.forced = release.owned = true;
-            h.core->l2.write(release);
+            release.asker = h.core->l1.number();
+            h.core->words.write(release);
             ready = Due(t, Cause::synchronise);
         } else {
             ready = h.acting;

@@ -14,13 +14,16 @@ void Tile::make_caches(const Config& config) {
             if (last)
                 exits.emplace_back(number, static_cast<std::uint32_t>(exits.size()), to_memory,
                                    config.coherence.directory(), leaving, tickets, attribution);
-            Below& below = last ? static_cast<Below&>(exits.back()) : cache_of(level + 1, core);
+            Below& below = last ? static_cast<Below&>(exits.back()) : way_to(level + 1, core);
             Cache& cache =
                 caches[level].emplace_back(config, level, last, earliest, site, below, tickets, attribution);
+            if (events)
+                arrivals[level].push_back(&events->before(cache));
             if (!last)
                 cache_of(level + 1, core).add_above(cache);
             if (level == 1)
-                jitters.emplace_back(config, number, static_cast<std::uint32_t>(jitters.size()), cache);
+                jitters.emplace_back(config, number, static_cast<std::uint32_t>(jitters.size()),
+                                     way_to(level, core));
         }
     }
 }

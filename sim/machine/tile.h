@@ -8,11 +8,13 @@
 #include "sim/machine/intervals.h"
 #include "sim/machine/published.h"
 #include "sim/machine/scheduler.h"
+#include "sim/machine/tile_events.h"
 #include "sim/machine/word_queues.h"
 #include "sim/memory/jitter.h"
 #include "sim/memory/tile_exit.h"
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 namespace sim {
@@ -23,6 +25,8 @@ struct Tile {
         : number(number), attribution(lines, number, columns),
           scheduler(static_cast<std::uint64_t>(config.sim.quantum), window,
                     static_cast<std::size_t>(config.sim.stack_kib) * 1024) {
+        if (config.sim.mode == "reference")
+            events.emplace(scheduler, tickets, site);
         make_caches(config);
     }
 
@@ -55,7 +59,9 @@ struct Tile {
     std::vector<Hart*> harts;
     Sites sites;
     Scheduler scheduler;
-    Published published; // words that only this tile has touched
+    std::optional<TileEvents> events;                           // of the reference mode: ...
+    std::array<std::vector<Arrivals*>, most_levels> arrivals{}; // ... what comes to each of the caches
+    Published published;                                        // words that only this tile has touched
     WordQueues queues;
     std::vector<Hart*> sleepers;
     std::vector<Parked> parked;
@@ -64,6 +70,10 @@ struct Tile {
 
     /// The cache of a level that this core of the tile uses.
     Cache& cache_of(unsigned level, std::size_t core) { return caches[level][core / sharing[level]]; }
+    /// The way there.
+    Below& way_to(unsigned level, std::size_t core) {
+        return events ? static_cast<Below&>(*arrivals[level][core / sharing[level]]) : cache_of(level, core);
+    }
 
 private:
     void make_caches(const Config& config);

@@ -10,7 +10,8 @@
 namespace sim {
 
 /// When an access is served (a cycle or a ticket), and what serves it. Or, refused: nothing has happened, for
-/// an MSHR or buffer is not free; ask again at that cycle, or (unknown) when the window has ended. Small
+/// an MSHR or buffer is not free; ask again at that cycle, or (unknown) when something was answered, or
+/// (maybe_sooner) at the first of both. Small
 /// enough for two registers.
 struct Answer {
     static constexpr cycle unknown = ~cycle{0};
@@ -38,10 +39,25 @@ struct Access {
     bool forced = false;   // happens at once, whatever is busy
     bool clean = false;    // of a write: what lies below has the same
     // Of a coherent machine:
-    bool exclusive = false;    // a read of a line that will be written
-    bool owned = false;        // of a write: the right to it is there, or asked for by itself
-    bool stays = false;        // of a write back: the line stays in the cache, clean
-    const Cache* by = nullptr; // the cache above that asks
+    bool exclusive = false; // a read of a line that will be written
+    bool owned = false;     // of a write: the right to it is there, or asked for by itself
+    bool stays = false;     // of a write back: the line stays in the cache, clean
+    Cache* by = nullptr;    // the cache above that asks
+    // For caches that answer in order of time:
+    std::uint32_t asker = 0; // the number of the cache above that asks, or of the core's L1
+};
+
+/// What is on its way to a cache from those above it.
+class Coming {
+public:
+    Coming() = default;
+    Coming(const Coming&) = delete;
+    Coming& operator=(const Coming&) = delete;
+    virtual ~Coming() = default;
+
+    /// A cache below drops its line of these bytes: whole lines among them that are on their way to be
+    /// written go there instead. Returns whether any was dirty.
+    virtual bool recall(std::uint64_t address, std::uint64_t bytes) = 0;
 };
 
 class Below {

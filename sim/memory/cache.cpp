@@ -19,6 +19,11 @@ std::size_t sets(const CacheConfig& c) {
     return wide(c.size_bytes / (c.ways * c.line_bytes));
 }
 
+/// Within a tile, in order of time.
+bool heard(const Config& machine, unsigned level) {
+    return machine.sim.mode == "reference" && level < machine.tile_levels();
+}
+
 } // namespace
 
 Cache::Cache(const Config& machine, unsigned level, bool last, const cycle& earliest, const SiteAtHand& site,
@@ -39,7 +44,8 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
       cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), traffic_(traffic_of_level[level]),
       array_(sets(config), wide(config.ways), replacement_of(config.replacement), coherent_),
       banks_(level == 0 ? 0 : wide(config.banks), Calendar("cache bank", earliest)),
-      mshrs_(wide(config.mshrs), tickets), write_backs_(wide(config.write_back_buffer), tickets),
+      mshrs_(wide(config.mshrs), tickets, heard(machine, level)),
+      write_backs_(wide(config.write_back_buffer), tickets, heard(machine, level)),
       prefetcher_(config.prefetcher, static_cast<std::uint32_t>(config.prefetch_degree),
                   wide(config.prefetch_sites)),
       tickets_(tickets), below_(below), site_(site), attribution_(&attribution) {
@@ -81,6 +87,7 @@ cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_
     written.owned = true;
     written.stays = stays;
     written.by = this;
+    written.asker = number_;
     Answer accepted = below_.write(written);
     if (accepted.refused)
         return accepted.ready;
@@ -107,9 +114,9 @@ void Cache::recall(CacheArray::Entry leaving) {
         array_.set_dirty(leaving, true);
 }
 
-/// Drops all lines of these bytes here and above; returns whether any was dirty.
+/// Drops all lines of these bytes here, above and between; returns whether any was dirty.
 bool Cache::back_invalidate(std::uint64_t address, std::uint64_t bytes) {
-    bool dirty = false;
+    bool dirty = coming_ != nullptr && coming_->recall(address, bytes);
     for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
         for (Cache* c : above_)
             dirty |= c->back_invalidate(at, std::uint64_t{1} << line_shift_);
@@ -146,6 +153,7 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, 
     wanted.forced = forced;
     wanted.exclusive = to_write;
     wanted.by = this;
+    wanted.asker = number_;
     Answer below = below_.read(wanted);
     if (below.refused)
         return below;
@@ -241,11 +249,37 @@ Answer Cache::act(const Access& a, bool write, cycle start) {
     Answer answer = perform(a, a.address >> line_shift_, write, start + latency_, hit);
     if (answer.refused)
         return answer;
+    count_access(a, write, hit);
+    return answer;
+}
+
+void Cache::count_access(const Access& a, bool write, bool hit) {
     counters_.hits += hit ? 1 : 0;
     Traffic& cell = attribution_->cell(a.address, a.column);
     ++(write ? counters_.writes : counters_.reads);
     ++(cell.*(write ? traffic_.writes : traffic_.reads));
-    return answer;
+}
+
+Answer Cache::pass(const Access& a) {
+    count_access(a, true, true);
+    return {a.at + latency_, cause_};
+}
+
+bool Cache::came_dirty(std::uint64_t address) {
+    const CacheArray::Entry entry = array_.find(address >> line_shift_);
+    if (entry != CacheArray::none)
+        array_.set_dirty(entry, true);
+    return entry != CacheArray::none;
+}
+
+void Cache::send_back(std::uint64_t address, cycle t, std::size_t column) {
+    Access written{address, std::uint32_t{1} << line_shift_, t, column, true};
+    written.owned = written.forced = true;
+    written.by = this;
+    written.asker = number_;
+    below_.write(written);
+    ++counters_.write_backs;
+    ++(attribution_->cell(address, column).*traffic_.write_backs);
 }
 
 /// A read of an exclusive cache.
@@ -262,6 +296,8 @@ Answer Cache::move_up(const Access& a, CacheArray::Entry entry, std::uint64_t li
             return Answer::later(room);
         Access wanted{line << line_shift_, std::uint32_t{1} << line_shift_, done, a.column};
         wanted.forced = a.forced;
+        wanted.by = a.by; // who gets it
+        wanted.asker = number_;
         answer = below_.read(wanted);
         if (answer.refused)
             return answer;
@@ -358,6 +394,7 @@ Answer Cache::send_on(const Access& a, cycle down) {
     Access on{a.address, a.bytes, down, a.column, a.whole, false, false, true};
     on.owned = a.owned;
     on.by = this;
+    on.asker = number_;
     Answer accepted = below_.write(on);
     ++counters_.written_through;
     if (!last_)

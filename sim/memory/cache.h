@@ -52,7 +52,14 @@ public:
         return {t + latency_, Cause::l1};
     }
     /// `upper` lies directly above this one.
-    void add_above(Cache& upper) { above_.push_back(&upper); }
+    void add_above(Cache& upper) {
+        upper.number_ = static_cast<std::uint32_t>(above_.size());
+        above_.push_back(&upper);
+    }
+    /// Among those above the same cache.
+    std::uint32_t number() const { return number_; }
+    /// This one acts in order of time, on what comes that way.
+    void act_on(Coming& coming) { coming_ = &coming; }
     /// Whose traffic follows: of a cache that several tiles share.
     void charge(Attribution& attribution) { attribution_ = &attribution; }
     /// Begins a fill if the line is absent and an MSHR is free.
@@ -62,16 +69,16 @@ public:
     Answer read(const Access& a) override { return serve(a, false); }
     /// A line written back from above, or a released word.
     Answer write(const Access& a) override { return serve(a, true); }
-    /// A read-modify-write of a shared word: a read that leaves the line dirty.
-    Answer modify(const Access& a) {
-        Access change = a;
-        change.modify = change.owned = true; // its line is claimed by itself
-        return serve(change, false);
-    }
     /// For accesses in order of time: takes the access's bank; returns when that begins with it. Then, with
     /// that as its cycle, or one to try again at:
     cycle book(const Access& a);
     Answer serve_booked(const Access& a, bool write) { return act(a, write, a.at); }
+    /// A write that is on its way no longer, as the level below recalled its line.
+    Answer pass(const Access& a);
+    /// A line that was asked for comes dirty, from an exclusive level; false: it is not here any more.
+    bool came_dirty(std::uint64_t address);
+    /// ... and goes back.
+    void send_back(std::uint64_t address, cycle t, std::size_t column);
     /// A shared word in the line was written elsewhere: drops the line, writing it back if it is dirty.
     void invalidate(std::uint64_t address, cycle t, std::size_t column);
     Answer own(const Access& a) override;
@@ -121,6 +128,9 @@ public:
     /// alone.
     std::uint64_t misplaced() const;
     std::uint64_t latency() const { return latency_; }
+    std::uint64_t line_of(std::uint64_t address) const { return address >> line_shift_; }
+    Cause cause() const { return cause_; }
+    unsigned level() const { return level_; }
     /// From this cycle on no bank is busy.
     cycle quiet() const { return quiet_; }
 
@@ -158,6 +168,7 @@ private:
                           std::size_t column);
     Answer serve(const Access& a, bool write);
     Answer act(const Access& a, bool write, cycle start);
+    void count_access(const Access& a, bool write, bool hit);
     std::uint32_t slots_of(const Access& a) const {
         return (a.bytes + (1U << bank_shift_) - 1) >> bank_shift_;
     }
@@ -194,6 +205,8 @@ private:
     const SiteAtHand& site_;
     Attribution* attribution_;
     std::vector<Cache*> above_;
+    std::uint32_t number_ = 0;
+    Coming* coming_ = nullptr;
 };
 
 } // namespace sim

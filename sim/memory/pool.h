@@ -22,10 +22,12 @@ public:
         What what = What::line;
     };
 
-    Pool(std::size_t entries, Tickets& tickets)
-        : entries_(entries), limit_(2 * entries + 8), tickets_(tickets) {}
+    /// `heard`: who waits for an entry hears of every answer.
+    Pool(std::size_t entries, Tickets& tickets, bool heard = false)
+        : entries_(entries), limit_(2 * entries + 8), heard_(heard), tickets_(tickets) {}
 
-    /// The first cycle from `t` on at which an entry is free; unknown if that depends on open tickets.
+    /// The first cycle from `t` on at which an entry is free; unknown if that depends on open tickets, or
+    /// (who waits hears of their answers) at_most(the cycle).
     cycle take(cycle t) {
         for (;;) {
             std::size_t held = 0;
@@ -45,7 +47,7 @@ public:
             if (held < entries_)
                 return t;
             if (open && next > tickets_.floor())
-                return unknown;
+                return heard_ && next != unknown ? at_most(next) : unknown;
             t = next;
         }
     }
@@ -104,7 +106,7 @@ private:
     }
 
     std::size_t entries_, limit_;
-    bool unlimited_ = false;
+    bool unlimited_ = false, heard_;
     std::vector<Hold> holds_;
     Tickets& tickets_;
 };

@@ -1,6 +1,6 @@
-// Times that are not known yet. What lies beyond a tile is answered at the end of a window; until then a
-// request is a ticket: a number with the top bit set, in place of a cycle. Whoever needs the cycle asks again
-// once the window has ended. A tile has tickets of its own.
+// Times that are not known yet. What lies beyond a tile is answered at the end of a window, and what a cache
+// in it does in order of time when that has acted; until then a request is a ticket: a number with the top
+// bit set, in place of a cycle. Whoever needs the cycle asks again then. A tile has tickets of its own.
 #pragma once
 
 #include "sim/core/stalls.h"
@@ -14,6 +14,18 @@ namespace sim {
 inline constexpr cycle ticket_bit = cycle{1} << 63U;
 inline bool is_ticket(cycle c) {
     return c >= ticket_bit;
+}
+
+/// A cycle to try again at, or sooner, when something is answered.
+inline constexpr cycle sooner_bit = cycle{1} << 62U;
+inline cycle at_most(cycle c) {
+    return c | sooner_bit;
+}
+inline bool maybe_sooner(cycle c) {
+    return !is_ticket(c) && (c & sooner_bit) != 0;
+}
+inline cycle latest(cycle c) {
+    return c & ~sooner_bit;
 }
 
 /// When the first and the last part of what a ticket stands for are there, and what brought the last.
@@ -33,6 +45,12 @@ public:
         Entry& e = entries_[(ticket ^ ticket_bit) - begin_];
         e.time = {ready, ready, from};
         e.answered = true;
+    }
+    /// With whatever `other`, a younger one, is answered with.
+    void answer_like(cycle ticket, cycle other) {
+        Entry& e = entries_[(ticket ^ ticket_bit) - begin_];
+        e.parts = other;
+        e.part_count = like_other;
     }
     /// One for several accesses together: what is known of them, and the tickets of the rest.
     cycle join(const Answered& known, const cycle* tickets, std::uint32_t count) {
@@ -72,13 +90,13 @@ public:
     std::size_t size() const { return entries_.size(); }
     /// Forgets the oldest answered tickets whose time has come by then: nobody's next operation is earlier.
     void forget(cycle by) {
-        while (!entries_.empty() && entries_.front().answered && entries_.front().time.last <= by) {
+        while (!entries_.empty() && known(entries_.front()) && entries_.front().time.last <= by) {
             entries_.pop_front();
             ++begin_;
         }
         std::uint64_t parts = parts_begin_ + parts_.size();
         for (const Entry& e : entries_)
-            if (e.part_count != 0) {
+            if (e.part_count != 0 && e.part_count != like_other) {
                 parts = e.parts;
                 break;
             }
@@ -89,12 +107,19 @@ public:
 private:
     struct Entry {
         Answered time;
-        std::uint64_t parts = 0;
+        std::uint64_t parts = 0; // the first one's place, or the other ticket
         std::uint32_t part_count = 0;
         bool bounded = false; // its part counts from `time` on
         bool answered = false;
     };
+    static constexpr std::uint32_t like_other = ~std::uint32_t{0};
+
+    bool known(Entry& e) { return e.answered || (e.part_count == like_other && gather(e)); }
     bool gather(Entry& e) {
+        if (e.part_count == like_other) {
+            e.answered = find(e.parts, e.time);
+            return e.answered;
+        }
         Answered all = e.time;
         for (std::uint64_t i = e.parts; i < e.parts + e.part_count; ++i) {
             Answered part;

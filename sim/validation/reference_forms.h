@@ -9,7 +9,7 @@ namespace sim {
 /// plain_core() in the reference mode, memory clocks being cycles; without refreshes, but for what asks for
 /// them.
 Config plain_reference();
-/// Reads of memory end to end; each in exact cycles.
+/// Reads of memory end to end, and of an L2 that several cores ask; each in exact cycles.
 std::vector<CoreForm> reference_forms();
 
 } // namespace sim

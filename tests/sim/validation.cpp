@@ -30,7 +30,7 @@ TEST(Validation, ABarIsABar) {
 
 TEST(Validation, TheReferenceModesFormsPass) {
     const std::vector<ValidationRow> rows = check_reference();
-    EXPECT_EQ(rows.size(), 4U);
+    EXPECT_EQ(rows.size(), 8U);
     for (const ValidationRow& row : rows)
         EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
 }
