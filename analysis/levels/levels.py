@@ -130,10 +130,10 @@ def level_of_detail(scheme, edge):
 def compare_with(ladder, rows):
     """Adds each scheme's times over those of a level of equal error of the ladder, [least, median, largest] of the turns;
     for one of less error than all of these, over the finest: one of equal error would take longer, so that the ratio is
-    at most that."""
+    at most that. None where the error is lost in the noise."""
     levels = sorted((r for r in rows if r["scheme"].startswith(ladder) and r["rmse"] > 0), key=lambda r: r["rmse"])
     for r in rows:
-        if levels and r["rmse"] < levels[0]["rmse"]:
+        if levels and 0 < r["rmse"] < levels[0]["rmse"]:
             for rays in RAYS:
                 r[f"{rays}_over_{ladder}_at_most"] = over(r, rays, levels[0], levels[0], 0)
         for low, high in zip(levels, levels[1:]):
