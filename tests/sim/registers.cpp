@@ -13,7 +13,7 @@ namespace {
 
 TEST(Registers, EqualAListOfTheLastUsed) {
     std::mt19937 random(5);
-    for (std::size_t capacity : {1, 2, 3, 7, 8, 9, 16, 17, 40}) {
+    for (const std::size_t capacity : {1U, 2U, 3U, 7U, 8U, 9U, 16U, 17U, 40U}) {
         RegisterFile file(capacity);
         std::deque<std::uint32_t> held; // last used first
         std::set<std::uint32_t> stored;
