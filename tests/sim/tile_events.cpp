@@ -294,6 +294,33 @@ TEST(TileEvents, DirtyLinesThatMoveUpAreNotLost) {
     EXPECT_EQ(r.l1[0].dropped + r.l2[0].dropped, u(lines));
 }
 
+// What an inclusive level recalls while it is on its way back there is not lost either: each line that was
+// stored to once goes to memory or is dirty in the end.
+TEST(TileEvents, DirtyLinesThatAreRecalledOnTheirWayAreNotLost) {
+    Config c = machine();
+    c.chip.cores = 4;
+    c.chip.threads = 1;
+    c.l1.size_bytes = 256, c.l1.ways = 1;
+    c.l2.inclusion = "inclusive";
+    c.l2.size_bytes = 1024, c.l2.ways = 1, c.l2.banks = 1, c.l2.bank_bytes = 4; // its bank makes them wait
+    constexpr int lines = 40;
+    const Shared s;
+    const Report r = s.run(c, 4, [&](int w) {
+        std::byte* base = reinterpret_cast<std::byte*>(s.plain()) + w * lines * 64;
+        for (int i = 0; i < lines; ++i) {
+            store(here, base + i * 64, 4, stamp{}, stamp{});
+            load(here, base + (i * 13 % (i + 1)) * 64, 4, stamp{});
+        }
+        for (int i = 0; i < 4 * lines; ++i)
+            load(here, base + (i * 7 % lines) * 64, 4, stamp{});
+    });
+    std::uint64_t dirty = r.l2[0].dropped;
+    for (const CacheCounters& l1 : r.l1)
+        dirty += l1.dropped;
+    EXPECT_GT(r.l2[0].write_backs, u(2 * lines));
+    EXPECT_EQ(r.memory.writes + dirty, u(4 * lines));
+}
+
 // Read-modify-writes of a word by several cores follow each other.
 TEST(TileEvents, NoReadModifyWriteIsLostAndEachTakesItsTime) {
     Config c = machine();
