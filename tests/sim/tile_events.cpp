@@ -301,8 +301,11 @@ TEST(TileEvents, DirtyLinesThatAreRecalledOnTheirWayAreNotLost) {
     c.chip.cores = 4;
     c.chip.threads = 1;
     c.l1.size_bytes = 256, c.l1.ways = 1;
-    c.l2.inclusion = "inclusive";
-    c.l2.size_bytes = 1024, c.l2.ways = 1, c.l2.banks = 1, c.l2.bank_bytes = 4; // its bank makes them wait
+    c.l3 = c.l2;
+    c.l2.share = "core", c.l3.share = "tile";
+    c.l2.inclusion = c.l3.inclusion = "inclusive";
+    c.l2.size_bytes = 512, c.l2.ways = 1, c.l2.banks = 1, c.l2.bank_bytes = 4; // its bank makes them wait
+    c.l3.size_bytes = 1024, c.l3.ways = 1;
     constexpr int lines = 40;
     const Shared s;
     const Report r = s.run(c, 4, [&](int w) {
@@ -314,10 +317,11 @@ TEST(TileEvents, DirtyLinesThatAreRecalledOnTheirWayAreNotLost) {
         for (int i = 0; i < 4 * lines; ++i)
             load(here, base + (i * 7 % lines) * 64, 4, stamp{});
     });
-    std::uint64_t dirty = r.l2[0].dropped;
-    for (const CacheCounters& l1 : r.l1)
-        dirty += l1.dropped;
-    EXPECT_GT(r.l2[0].write_backs, u(2 * lines));
+    std::uint64_t dirty = 0;
+    for (unsigned level = 0; level < 3; ++level)
+        for (const CacheCounters& cache : r.caches(level))
+            dirty += cache.dropped;
+    EXPECT_GT(r.caches(2).front().write_backs, u(2 * lines));
     EXPECT_EQ(r.memory.writes + dirty, u(4 * lines));
 }
 
