@@ -67,4 +67,4 @@ def show(lazy, eager):
 
 
 if __name__ == "__main__":
-    main()
+    view.run_program(main)

@@ -193,4 +193,4 @@ def show(rows):
 
 
 if __name__ == "__main__":
-    main()
+    view.run_program(main)

@@ -24,6 +24,15 @@ def fail(message):
     sys.exit(2)
 
 
+def run_program(main):
+    """Runs a program of this folder; Ctrl-C ends it with a line and exit code 130."""
+    try:
+        main()
+    except KeyboardInterrupt:
+        print(f"{os.path.basename(sys.argv[0])}: stopped", file=sys.stderr)
+        sys.exit(130)
+
+
 def run(command):
     """What a command prints, and the rusage of it."""
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

@@ -125,14 +125,5 @@ def run(options):
         frames.write_json(options.json, {"command": shlex.join(["characterise.py", *sys.argv[1:]]), "figures": rows})
 
 
-def main():
-    try:
-        run(parse(sys.argv[1:]))
-    except (Mistake, argparse.ArgumentError) as mistake:
-        print(f"characterise.py: {mistake}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(frames.main(lambda: run(parse(sys.argv[1:]))))

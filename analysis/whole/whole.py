@@ -219,14 +219,5 @@ def run(options):
                                          "machines": comparisons})
 
 
-def main():
-    try:
-        run(parse(sys.argv[1:]))
-    except (Mistake, argparse.ArgumentError) as mistake:
-        print(f"whole.py: {mistake}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(frames.main(lambda: run(parse(sys.argv[1:]))))
