@@ -246,7 +246,8 @@ struct alignas(line_bytes) BlockHeader {
     /// the means of the parent's; 0: there are none in either.
     float corner_sway;
     float deviation; // by which the box is wider than its vertices, along any axis, for finer ones
-    std::int32_t padding[2];
+    isa::shared<std::int32_t> seen; // a BuildState ...
+    std::int32_t seen_line;         // ... of the block as the camera's field sees it: the line of its slot
 };
 static_assert(sizeof(BlockHeader) == 192);
 inline constexpr int block_header_words = 48;

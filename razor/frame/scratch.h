@@ -29,23 +29,27 @@ inline constexpr int scratch_corners = scratch_climb + 16;
 /// the next ones.
 inline constexpr int scratch_free_lists = scratch_corners + 48;
 inline constexpr int list_sizes = 48;
-inline constexpr int stack_floats = scratch_free_lists + list_sizes;
+/// The corners of a block whose children ask for theirs: [corner][box].
+inline constexpr int scratch_siblings = scratch_free_lists + list_sizes;
+inline constexpr int stack_floats = scratch_siblings + 24;
 
-/// Blocks as fields lately saw them: `blend_slots` of a key and a blended block each. Fields that hits share
-/// come back to a block more often than the 8 that a first cache holds are enough for; of more than 32, few
-/// are found again.
+/// A block as a field sees it is kept with its key in a slot. The camera's field is one for the whole frame:
+/// what it sees lies among the grids, once for all who share them (BlockHeader::seen). What others lately
+/// saw, each worker has in `blend_slots` of its own. Fields that hits share come back to a block more often
+/// than 8 are enough for; of more than 32, few are found again.
 inline constexpr int blend_slots = 32;
 static_assert(blend_slots >= 4); // two fields of neighbouring numbers need slots of their own (paper_scale.h)
 enum BlendSlot : int {
     slot_line = 0,    // of the block; -1: the slot is empty
     slot_field = 1,   // its number
     slot_level = 2,   // of the leaf, which decides what its sides hang from
-    slot_normals = 3, // 1: they are made
+    slot_normals = 3, // a BuildState
     slot_longest = 4, // 4 sides: log2 of their sub-edges on one edge, as packets test them
     slot_block = 16,  // laid out as a block
     slot_floats = slot_block + blend_floats
 };
 inline constexpr int blends_floats = blend_slots * slot_floats;
+inline constexpr int slot_lines = (slot_floats * 4 + line_bytes - 1) / line_bytes;
 
 inline constexpr int packet_origin = 0;                              // 3 vectors
 inline constexpr int packet_inverse = packet_origin + 3 * ISA_WIDTH; // 3 vectors: 1 / direction
@@ -56,6 +60,7 @@ inline constexpr int packet_sum =
 /// number: lanes of one number have the same field, in whatever packet of the worker.
 inline constexpr int packet_field = packet_sum + ISA_WIDTH;
 inline constexpr int packet_number = packet_field + 9 * ISA_WIDTH;
+inline constexpr int camera_number = 0; // of the field of all camera rays
 /// Fields that rays lately left surfaces with.
 inline constexpr int packet_left = packet_number + ISA_WIDTH;
 inline constexpr int left_fields = 8;

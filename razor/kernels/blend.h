@@ -90,12 +90,9 @@ struct Births {
 inline Births births_in(pointer<BlockHeader> block) {
     Births b;
     b.inside = load(field(block, &BlockHeader::absolute));
-    b.earliest = 0;
-    for (int s = 0; s < 4; ++s) {
-        sint sooner = early_on_side(block, s);
-        b.earliest = min(sooner, b.earliest);
-        b.early[s] = vint(sooner);
-    }
+    b.earliest = earliest_inside(block);
+    for (int s = 0; s < 4; ++s)
+        b.early[s] = vint(early_on_side(block, s));
     return b;
 }
 
@@ -271,7 +268,7 @@ inline sbool blend_whole_edge(const Context& c, const Field& f, pointer<BlockHea
 /// How far vertices of the block are from their anchors where target edge lengths are at most `target`.
 inline sfloat sway_of(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sint absolute = load(field(block, &BlockHeader::absolute));
-    sint earliest = absolute + earliest_birth(block);
+    sint earliest = absolute + earliest_inside(block);
     sfloat sway = load(field(block, &BlockHeader::sway));
     for (int p = 1; p < blend_passes; ++p) {
         sfloat more = load(field(block, &BlockHeader::sway) + p);
@@ -293,19 +290,43 @@ inline sint hang_at(pointer<BlockHeader> block, int s, sint level) {
     return hang + select(curve < 0, sint(0), more);
 }
 
-/// Where block `line` as field `number` sees it is kept.
-inline pointer<float> blend_slot(const Context& c, sint number, sint line) {
+/// Of a blended block: whether that is how rays see it in a leaf of `level` ("no leaf": whatever its sides
+/// hang from).
+inline constexpr int no_leaf = -1000;
+inline sbool fits_leaf(pointer<float> slot, sint level) {
+    sbool any = level == no_leaf;
+    return any | (load(as<std::int32_t>(slot) + slot_level) == level);
+}
+
+/// A slot, and whether it holds what was asked for.
+struct Kept {
+    pointer<float> slot;
+    sbool there;
+};
+
+/// Block `line` as field `number` sees it in a leaf of `level`, if it is kept; else the worker's slot for it.
+inline Kept find_blended(const Context& c, sint number, sint line, sint level) {
+    Kept kept;
+    if (branch(number == camera_number)) {
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        sint seen = load_acquire(field(block, &BlockHeader::seen));
+        if (branch(seen == ready)) {
+            sint at = load(field(block, &BlockHeader::seen_line));
+            kept.slot = as<float>(c.grids + at);
+            kept.there = fits_leaf(kept.slot, level);
+            if (branch(kept.there))
+                return kept;
+        }
+    }
     sint mixed = number * 40503;
     mixed = line * 7919 + mixed;
     sint slot = (mixed >> 8) & (blend_slots - 1);
-    return c.blends + slot * slot_floats;
-}
-
-/// Whether it is there now, whatever its sides hang from.
-inline sbool holds_block(pointer<float> slot, sint number, sint line) {
-    pointer<std::int32_t> key = as<std::int32_t>(slot);
-    sbool same = load(key + slot_line) == line;
-    return same & (load(key + slot_field) == number);
+    kept.slot = c.blends + slot * slot_floats;
+    pointer<std::int32_t> key = as<std::int32_t>(kept.slot);
+    kept.there = load(key + slot_line) == line;
+    kept.there = kept.there & (load(key + slot_field) == number);
+    kept.there = kept.there & fits_leaf(kept.slot, level);
+    return kept;
 }
 
 /// Forgets all.
@@ -324,7 +345,7 @@ inline void clear_blends(const Context& c) {
     store(key + slot_line, line);
     store(key + slot_field, number);
     store(key + slot_level, level);
-    store(key + slot_normals, 0);
+    store_release(as<shared_int>(slot) + slot_normals, absent);
     pointer<float> out = slot + slot_block;
     blend_vertices(c, f, line, out);
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
@@ -345,6 +366,34 @@ inline void clear_blends(const Context& c) {
         bound_cells(out + block_header_words, stride, quads_u, quads_v, shift, from, m, lo, hi);
         store_cells(out + blend_cells + from, lo, hi, m);
     }
+}
+
+/// Blends a block that find_blended() did not find, and keeps it, for all if the field is the camera's (and
+/// no leaf of another level was first), else in the worker's slot; finish(slot) does what is left to do.
+/// Returns where it lies.
+template <class Finish>
+inline pointer<float> keep_blended(const Context& c, const Field& f, sint number, sint line, sint level,
+                                   pointer<float> slot, Finish finish) {
+    if (branch(number == camera_number)) {
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        build_once(field(block, &BlockHeader::seen), [&] {
+            sint at =
+                allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, slot_lines, trap_grids_full);
+            sint absolute = load(field(block, &BlockHeader::absolute));
+            note_level(c.grids + at, slot_lines, absolute);
+            pointer<float> shared = as<float>(c.grids + at);
+            blend_block(c, f, number, line, level, shared);
+            finish(shared);
+            store(field(block, &BlockHeader::seen_line), at);
+        });
+        sint at = load(field(block, &BlockHeader::seen_line));
+        pointer<float> shared = as<float>(c.grids + at);
+        if (branch(fits_leaf(shared, level)))
+            return shared;
+    }
+    blend_block(c, f, number, line, level, slot);
+    finish(slot);
+    return slot;
 }
 
 } // namespace morph_kernel

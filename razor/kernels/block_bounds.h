@@ -227,13 +227,14 @@ inline void bound_block(const Block& b, sint cells_at) {
 }
 
 /// The block's box, made to hold the ends of ancestors: where these move, so do the vertices between them.
-inline void bound_ancestors(const Dicing& d, const Block& b) {
+inline void bound_ancestors(const Block& b) {
     svec low = load_svec(field(b.header, &BlockHeader::box_low));
     svec high = load_svec(field(b.header, &BlockHeader::box_high));
     pointer<float> ancestors = b.words + b.ancestors_at;
     for (int s = 0; s < 4; ++s) {
         sint quads = s % 2 == 0 ? b.quads_u : b.quads_v;
-        if (branch((sint(1) << d.side[s].hang) > quads)) {
+        sint hang = load(field(b.header, &BlockHeader::hang) + s); // 0 if the side is inside the patch
+        if (branch((sint(1) << hang) > quads)) {
             for (int e = 0; e < 2; ++e) {
                 svec end = load_svec(ancestors + (6 * s + 3 * e));
                 low = {min(end.x, low.x), min(end.y, low.y), min(end.z, low.z)};

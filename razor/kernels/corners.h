@@ -97,9 +97,7 @@ template <class Corners> inline pointer<float> find_corners(const Context& c, Co
         sint parent = load(field(block, &BlockHeader::parent));
         if (branch(parent < 0))
             break;
-        sint absolute = load(field(block, &BlockHeader::absolute));
-        sint birth = absolute + earliest_birth(block) + block_log2;
-        if (branch(seen.at_rest(block, birth)))
+        if (branch(seen.at_rest(block, birth_of_corners(block))))
             break;
         store(climb + depth, at);
         ++depth;

@@ -264,10 +264,9 @@ template <Features F, bool Mixed>
         vmask same = moved & (numbers == vint(number));
         moved = moved & !same;
         g.alive = same;
-        pointer<float> slot = blend_slot(c, number, listed.line);
-        sbool there = holds_block(slot, number, listed.line);
-        there = there & (load(as<std::int32_t>(slot) + slot_level) == listed.level);
-        if (branch(!there)) {
+        Kept kept = find_blended(c, number, listed.line, listed.level);
+        pointer<float> slot = kept.slot;
+        if (branch(!kept.there)) {
             // It is blended only if they meet a cell where its vertices may be.
             v.cells_at = anchors_cells_at;
             v.words = as<float>(header);
@@ -280,9 +279,10 @@ template <Features F, bool Mixed>
             if (branch(!near))
                 continue;
             Field seen = field_of(c, lane, origin);
-            blend_block(c, seen, number, listed.line, listed.level, slot);
-            if constexpr (F.hanging)
-                find_longest_edges(c, seen, v, header, slot);
+            slot = keep_blended(c, seen, number, listed.line, listed.level, slot, [&](pointer<float> made) {
+                if constexpr (F.hanging)
+                    find_longest_edges(c, seen, v, header, made);
+            });
         }
         tally(c.counters->blended_tests, 1);
         v.field = lane;

@@ -124,6 +124,7 @@ inline constexpr float worth_tightening = 1.0F / 16;
 /// A leaf's list as rays meet it: boxes of the blocks alone, without what is finer, and first those that are
 /// in the cell.
 inline void tighten(const Context& c, const List& l) {
+    Siblings siblings(l.most);
     sint in_cell = 0;
     for (sint i = 0; branch(i < l.count); ++i) {
         sint item = load(l.items + i);
@@ -132,7 +133,7 @@ inline void tighten(const Context& c, const List& l) {
         sfloat deviation = load(field(block, &BlockHeader::deviation));
         Reach box = load_box(l, i);
         if (branch(deviation > largest(box.high - box.low) * worth_tightening))
-            box = reach_from(c, line, vertices_of(block), l.most);
+            box = reach_from(c, line, vertices_of(block), siblings);
         sint at = i;
         if (branch(meets_cell(l, box))) {
             if (branch(in_cell != i)) {
@@ -174,6 +175,7 @@ inline List refine_items(const Context& c, const List& old) {
     most = select(fixed > 0.0F, fixed, most);
     List l = make_list(c, total, old.depth, most, old.low, old.high); // the same cell: no deeper in the tree
     note_list_level(l, level, 1);
+    Siblings siblings(most);
     sint at = 0;
     for (sint i = 0; branch(i < old.count); ++i) {
         sint line = sint(-1) - load(old.items + i);
@@ -189,7 +191,7 @@ inline List refine_items(const Context& c, const List& old) {
             sint rows = load(field(block, &BlockHeader::child_rows));
             sint children = columns * rows;
             for (sint k = 0; branch(k < children); ++k) {
-                Reach box = reach_of(c, child, most);
+                Reach box = reach_of(c, child, siblings);
                 at = append_block(l, at, child, box);
                 child = child + step;
             }

@@ -180,7 +180,8 @@ inline sint open_item(const Context& c, const List& l, sint at, sint item) {
     if (branch(item < cluster_items)) {
         pointer<OpenPatch> entry = open_patch(c, item);
         sint line = load(field(entry, &OpenPatch::root));
-        Reach box = reach_of(c, line, l.most);
+        Siblings siblings(l.most);
+        Reach box = reach_of(c, line, siblings);
         return append_block(l, at, line, box);
     }
     if (branch(item < graph_items)) {

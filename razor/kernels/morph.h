@@ -99,12 +99,27 @@ inline sint early_on_side(pointer<BlockHeader> block, int k) {
     return select(curve < 0, of_straight, early);
 }
 
-/// The least of the four, at most 0.
-inline sint earliest_birth(pointer<BlockHeader> block) {
+/// The least of those of the sides that have vertices between their ends; at most 0.
+inline sint earliest_inside(pointer<BlockHeader> block) {
     sint early = 0;
-    for (int k = 0; k < 4; ++k)
-        early = min(early, early_on_side(block, k));
+    for (int k = 0; k < 4; ++k) {
+        sint quads = load(field(block, k % 2 == 0 ? &BlockHeader::quads_u : &BlockHeader::quads_v));
+        sint on_side = early_on_side(block, k);
+        early = min(early, select(quads > 1, on_side, sint(0)));
+    }
     return early;
+}
+
+/// Corners of the block that are born at all are born at this absolute level or above. Those of the patch
+/// never move, so that sides no longer than the block do not count.
+inline sint birth_of_corners(pointer<BlockHeader> block) {
+    sint early = 0;
+    for (int k = 0; k < 4; ++k) {
+        sint exponent = load(field(block, &BlockHeader::exponent) + k % 2);
+        sint on_side = early_on_side(block, k);
+        early = min(early, select(exponent > block_log2, on_side, sint(0)));
+    }
+    return load(field(block, &BlockHeader::absolute)) + block_log2 + early;
 }
 
 /// Absolute level at which the middle of a sub-face's edge k (0: side 0, 1: side 3) is born.

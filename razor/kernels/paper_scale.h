@@ -83,18 +83,17 @@ inline sint level_of_number(sint number) {
 /// level k + 1 lies elsewhere.
 inline pointer<float> level_slot(const Context& c, sint k, sint line) {
     sint number = number_of_level(k);
-    pointer<float> slot = blend_slot(c, number, line);
-    sbool there = holds_block(slot, number, line);
-    if (branch(!there)) {
+    Kept kept = find_blended(c, number, line, no_leaf);
+    if (branch(!kept.there)) {
         Field f;
         f.origin = {sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
         f.slope = f.origin;
         f.radius = 0.0F;
         f.growth = 0.0F;
         f.base = power_of_two(k);
-        blend_block(c, f, number, line, least_level - 1, slot); // for no leaf
+        blend_block(c, f, number, line, no_leaf, kept.slot);
     }
-    return slot;
+    return kept.slot;
 }
 
 /// Weight of a vertex of level k that projects to distance t (equations 2 to 5).

@@ -39,11 +39,9 @@ inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat 
     for (;;) {
 
         sint parent = load(field(block, &BlockHeader::parent));
-        sint absolute = load(field(block, &BlockHeader::absolute));
-        sint birth = absolute + earliest_birth(block) + block_log2;
         if (branch(parent < 0))
             break;
-        if (branch(target < moving_from(birth)))
+        if (branch(target < moving_from(birth_of_corners(block))))
             break;
         sum = sum + load(field(block, &BlockHeader::corner_sway));
         block = as<BlockHeader>(c.grids + parent);
@@ -69,13 +67,13 @@ struct CornerReach {
         target = min(coarsest_target(target, high - low), unbounded_target);
     }
     Reach place(const svec& anchor) const { return {anchor, anchor}; }
-    Reach load_place(pointer<float> at) const {
+    static Reach load_place(pointer<float> at) {
         Reach box;
         box.low = load_svec(at);
         box.high = load_svec(at + 3);
         return box;
     }
-    void store_place(pointer<float> at, const Reach& box) const {
+    static void store_place(pointer<float> at, const Reach& box) {
         store_svec(at, box.low);
         store_svec(at + 3, box.high);
     }
@@ -89,19 +87,59 @@ struct CornerReach {
     }
 };
 
+/// Corners of one block after the other: what children of one block share is found once, if they come
+/// together.
+class Siblings {
+public:
+    explicit Siblings(sfloat target) : target_(target), seen_{target} {}
+
+    /// As find_corners() for this target.
+    pointer<float> corners_of(const Context& c, sint line) {
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        CornerReach own{target_};
+        sbool alone = own.at_rest(block, birth_of_corners(block));
+        sint parent_line = load(field(block, &BlockHeader::parent));
+        if (branch(alone | (parent_line < 0)))
+            return find_corners(c, own, line);
+        pointer<BlockHeader> parent = as<BlockHeader>(c.grids + parent_line);
+        pointer<float> shared = c.stack + scratch_siblings;
+        if (branch(parent_line != parent_)) {
+            parent_ = parent_line;
+            seen_ = own;
+            seen_.climb(parent);
+            pointer<float> corners = find_corners(c, seen_, parent_line);
+            for (int k = 0; k < 4; ++k) {
+                Reach box = seen_.load_place(corners + CornerReach::words * k);
+                seen_.store_place(shared + CornerReach::words * k, box);
+            }
+        }
+        sint patch = load(field(block, &BlockHeader::patch));
+        sint root_line = load(field(c.open + patch, &OpenPatch::root));
+        pointer<BlockHeader> root = as<BlockHeader>(c.grids + root_line);
+        pointer<float> corners = c.stack + scratch_corners;
+        move_corners(seen_, parent, block, shared, corners);
+        move_middles(seen_, block, root, corners);
+        return corners;
+    }
+
+private:
+    sfloat target_;
+    sint parent_ = -1; // of whom these are children ...
+    CornerReach seen_; // ... and what its corners, and all above, are seen by
+};
+
 /// A box of block `line`, in its instance's coordinates, made to hold everything that its vertices can be
-/// moved to where target edge lengths are at most `target`; in scene coordinates. Inside a block vertices
-/// move towards others of it; so all depends on its corners.
-inline Reach reach_from(const Context& c, sint line, Reach box, sfloat target) {
+/// moved to where target edge lengths are at most that of `siblings`; in scene coordinates. Inside a block
+/// vertices move towards others of it; so all depends on its corners.
+inline Reach reach_from(const Context& c, sint line, Reach box, Siblings& siblings) {
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     sint instance = load(field(block, &BlockHeader::instance));
     sint movable = load(field(block, &BlockHeader::movable));
     sbool morphs = load(field(c.frame, &FrameHeader::morphs)) != 0;
     if (branch(morphs & (movable != 0))) {
-        CornerReach seen{target};
-        pointer<float> corners = find_corners(c, seen, line);
+        pointer<float> corners = siblings.corners_of(c, line);
         for (int k = 0; k < 4; ++k)
-            box = hold(box, seen.load_place(corners + CornerReach::words * k));
+            box = hold(box, CornerReach::load_place(corners + CornerReach::words * k));
     }
     svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
     box.low = box.low + origin;
@@ -110,12 +148,12 @@ inline Reach reach_from(const Context& c, sint line, Reach box, sfloat target) {
 }
 
 /// That of its box, which holds everything finer, too.
-inline Reach reach_of(const Context& c, sint line, sfloat target) {
+inline Reach reach_of(const Context& c, sint line, Siblings& siblings) {
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     Reach box;
     box.low = load_svec(field(block, &BlockHeader::box_low));
     box.high = load_svec(field(block, &BlockHeader::box_high));
-    return reach_from(c, line, box, target);
+    return reach_from(c, line, box, siblings);
 }
 
 } // namespace build_kernel

@@ -78,14 +78,9 @@ inline vfloat position_error(const vvec& p, const vvec& origin) {
     return max(size, shift) * (16.0F / 16777216.0F);
 }
 
-/// Normals of the block whose vertices lie blended in a slot, with the same weights, beside them.
-inline pointer<float> blended_normals(const Context& c, sint line, pointer<float> normals,
-                                      pointer<float> slot) {
+/// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them.
+inline void blend_normals(const Context& c, sint line, pointer<float> normals, pointer<float> slot) {
     pointer<float> area = slot + slot_block;
-    sint made = load(as<std::int32_t>(slot) + slot_normals);
-    if (branch(made != 0))
-        return area + blend_normals_at;
-    store(as<std::int32_t>(slot) + slot_normals, 1);
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     sint quads_u = load(field(block, &BlockHeader::quads_u));
     sint quads_v = load(field(block, &BlockHeader::quads_v));
@@ -114,21 +109,26 @@ inline pointer<float> blended_normals(const Context& c, sint line, pointer<float
         }
         pass = pass + pass_words;
     }
-    return x;
+}
+
+/// Returns them, once they are there.
+inline pointer<float> blended_normals(const Context& c, sint line, pointer<float> normals,
+                                      pointer<float> slot) {
+    build_once(as<shared_int>(slot) + slot_normals, [&] { blend_normals(c, line, normals, slot); });
+    return slot + (slot_block + blend_normals_at);
 }
 
 /// The slot that holds the block as the field of that lane sees it.
 inline pointer<float> blended_slot(const Context& c, sint lane, sint line) {
     sint number = load(as<std::int32_t>(c.packets + packet_number) + lane);
-    pointer<float> slot = blend_slot(c, number, line);
-    sbool there = holds_block(slot, number, line);
-    if (branch(!there)) {
+    Kept kept = find_blended(c, number, line, no_leaf);
+    if (branch(!kept.there)) {
         pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
         sint instance = load(field(block, &BlockHeader::instance));
         svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
-        blend_block(c, field_of(c, lane, origin), number, line, least_level - 1, slot); // for no leaf
+        blend_block(c, field_of(c, lane, origin), number, line, no_leaf, kept.slot);
     }
-    return slot;
+    return kept.slot;
 }
 
 /// The corners of the triangles hit, and their vertices' normals interpolated (zero where they have none).

@@ -43,6 +43,7 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
     store(field(h, &BlockHeader::parent), parent);
     store_release(field(h, &BlockHeader::normals), absent);
     store_release(field(h, &BlockHeader::children), absent);
+    store_release(field(h, &BlockHeader::seen), absent);
     // Only sides on the patch's border can hang.
     sbool border[4] = {row == 0, column == s.columns - 1, row == s.rows - 1, column == 0};
     sint hangs = 0;
@@ -89,7 +90,7 @@ inline void place_block(const Context& c, const Cage& g, const Dicing& d, const 
     }
     bound_block(b, s.cells_at);
     if (branch(s.ancestors_at != 0))
-        bound_ancestors(d, b);
+        bound_ancestors(b);
     sfloat corners = 0.0F;
     if (branch(!flat)) {
         measure_sway(c, b);

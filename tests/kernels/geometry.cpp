@@ -252,6 +252,47 @@ TEST_P(Geometry, BoxesHoldTheirContents) {
         }
 }
 
+/// What can move a block's vertices lies in one box: its own, and the ends of the edges that its sides hang
+/// from, but nothing that only other blocks of the patch hang from.
+TEST_P(Geometry, BoxesOfAncestorsHoldTheBlocksOwn) {
+    int inner = 0;
+    for (int i = 0; i < patch_count(); ++i) {
+        const int coarsest =
+            block_at(*frame_, frame_->header().trees.get()[0].patches.get()[i].root).header->level;
+        for (int level = 0; level <= coarsest; ++level)
+            for (const BlockView& b : blocks_of(*frame_, i, 0, level)) {
+                if (b.header->ancestors_at == 0)
+                    continue;
+                Point low, high;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    low[k] = b.header->box_low[k];
+                    high[k] = b.header->box_high[k];
+                }
+                bool hangs = false;
+                for (int s = 0; s < 4; ++s) {
+                    if (1 << b.header->hang[s] <= b.segments(s))
+                        continue;
+                    hangs = true;
+                    const FlatEdge e = b.ancestor(s, 0);
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        low[k] = std::min({low[k], e.from[k], e.to[k]});
+                        high[k] = std::max({high[k], e.from[k], e.to[k]});
+                    }
+                }
+                inner += hangs ? 0 : 1;
+                const float* box = b.words + b.header->ancestors_at + ancestor_box;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    ASSERT_EQ(box[k], low[k]) << "patch " << i << ", level " << level;
+                    ASSERT_EQ(box[k + 3], high[k]) << "patch " << i << ", level " << level;
+                }
+            }
+    }
+    RecordProperty("inner_blocks", inner);
+    if (GetParam() == "bevelled_slab") {
+        EXPECT_GT(inner, 0);
+    }
+}
+
 /// A block's box holds every vertex of all finer levels under it, by how much those may stray from its
 /// triangles.
 TEST_P(Geometry, BoxesHoldAllFinerVertices) {

@@ -38,6 +38,39 @@ TEST(SharedTree, ManyWorkersOneTree) {
     }
 }
 
+/// Blocks as all camera rays see them lie among the grids: what one worker blended is there for the others,
+/// and for all its samples.
+TEST(SharedTree, CameraRaysShareBlendedBlocks) {
+    Scene scene = named_scene("urchin_stretched")->scene;
+    Settings& s = scene.settings;
+    s.width = s.height = 96;
+    s.lod = Lod::recursive;
+    s.edge_pixels = 2;
+    s.samples = 8;
+    s.light_samples = s.sky_samples = 0;
+    const KernelTable& kernels = *native_targets().back();
+    std::vector<float> first;
+    std::int64_t once = 0; // blended by one worker
+    for (const auto& [workers, share] : {std::pair{1, 0}, std::pair{6, 0}, std::pair{6, 3}}) {
+        Frame frame(scene, {.workers = workers, .tree_of_worker = tree_groups(workers, share)});
+        run_workers(frame, kernels);
+        const FrameHeader& h = frame.header();
+        const float* film = h.film.get();
+        std::vector<float> picture(film,
+                                   film + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes);
+        const FrameStatistics stats = frame.statistics();
+        if (first.empty()) {
+            first = picture;
+            once = stats.counters.blended_blocks;
+            EXPECT_GT(once, 20);
+            EXPECT_GT(stats.counters.blended_tests, 4 * once);
+        }
+        EXPECT_EQ(std::memcmp(first.data(), picture.data(), first.size() * sizeof(float)), 0);
+        // Trees that are entered in another order end in other leaves, here and there.
+        EXPECT_LT(stats.counters.blended_blocks, once * stats.trees * 11 / 10);
+    }
+}
+
 // Any table of workers and trees: the same picture, and statistics that count each tree's own patches and
 // nodes.
 TEST(SharedTree, EveryTreeIsCountedByItself) {
