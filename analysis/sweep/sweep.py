@@ -9,15 +9,22 @@ cycles, and what both took of the host:
 
     analysis/sweep/sweep.py --reference --machine configs/machines/study.toml --key sim.quantum --values 1 10 100 1000 -- --size 64x64 --spp 1
 
+With --seeds N each row is N runs, with sim.jitter 1 to N: the figures are means, and what chance leaves open is printed
+beside the cycles (and the error), as half the width of a 95 % interval. Steps no larger than that do not count:
+
+    analysis/sweep/sweep.py --seeds 10 --machine configs/machines/tiny.toml --key l2.ways --values 2..16 -- --size 64x64 --spp 1
+
 A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (-g settings too). Runs are deterministic;
 --jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
 """
 import argparse
 import re
+import statistics
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
+import chance
 import simulation
 from simulation import Mistake
 
@@ -26,14 +33,14 @@ NEVER_WAITS = {"busy", "idle"}  # causes of the CPI stack that are no waiting fo
 
 # Name in the table, width, text of a row's figure.
 COLUMNS = [
-    ("cycles", 12, lambda r: f"{r['cycles']}"),
+    ("cycles", 12, lambda r: f"{r['cycles']:.0f}"),
     ("of first", 9, lambda r: f"{r['of_first']:.3f}"),
     ("M vops", 9, lambda r: f"{r['vops'] / 1e6:.2f}"),
     ("IPC/core", 9, lambda r: f"{r['ipc']:.3f}"),
     ("L1 miss", 9, lambda r: f"{r['l1_miss']:.2%}"),
     ("L2 miss", 9, lambda r: f"{r['l2_miss']:.2%}"),
-    ("DRAM reads", 11, lambda r: f"{r['dram_reads']}"),
-    ("writes", 10, lambda r: f"{r['dram_writes']}"),
+    ("DRAM reads", 11, lambda r: f"{r['dram_reads']:.0f}"),
+    ("writes", 10, lambda r: f"{r['dram_writes']:.0f}"),
     ("GB/s", 8, lambda r: f"{r['dram_gb_s']:.2f}"),
     ("busiest resource", 18, lambda r: f"{r['resource']} {r['utilisation']:.0%}"),
     ("largest wait", 18, lambda r: f"{r['wait']} {r['waiting']:.0%}"),
@@ -47,6 +54,9 @@ ERRORS = [
     ("M vops/s", 9, lambda r: f"{r['vops'] / r['host_seconds'] / 1e6:.2f}"),
 ]
 REFERENCE = "reference"  # the value of that run's row
+# With --seeds, behind the cycles and the error.
+CHANCE = ("+-", 9, lambda r: f"{r['chance']:.2%}")
+ERROR_CHANCE = ("+-", 9, lambda r: f"{r['error_chance']:.2%}")
 
 
 def amount(text):
@@ -72,9 +82,11 @@ def expand(words):
     return values
 
 
-def run(options, value, folder):
-    setting = "sim.mode=reference" if value == REFERENCE else f"{options.key}={value}"
-    return simulation.run(options.simulator, options.machine, [setting], options.more, folder)
+def run(options, value, seed, folder):
+    settings = ["sim.mode=reference" if value == REFERENCE else f"{options.key}={value}"]
+    if seed:
+        settings.append(f"sim.jitter={seed}")
+    return simulation.run(options.simulator, options.machine, settings, options.more, folder)
 
 
 def share(part, whole):
@@ -111,22 +123,41 @@ def figures(report, value):
     }
 
 
+def mean_of(runs):
+    """One row of those of several seeds: means, and words where most agree."""
+    row = {}
+    for name, first in runs[0].items():
+        values = [r[name] for r in runs]
+        if isinstance(first, str):
+            row[name] = statistics.mode(values)
+        else:
+            row[name] = first if len(runs) == 1 else statistics.fmean(values)
+    row["chance"] = share(chance.half_width([r["cycles"] for r in runs]), row["cycles"])
+    return row
+
+
 def direction(rows, name, tolerance):
-    """How a figure goes along the values, in words, and whether it ever rises or falls beyond the tolerance."""
-    steps = [(a["value"], b["value"], share(b[name] - a[name], a[name])) for a, b in zip(rows, rows[1:])]
-    rises = [s for s in steps if s[2] > tolerance]
-    falls = [s for s in steps if s[2] < -tolerance]
+    """How a figure goes along the values, in words, and whether it ever rises or falls beyond the tolerance, and beyond
+    what chance leaves open of the cycles."""
+    steps = [(a["value"], b["value"], share(b[name] - a[name], a[name]),
+              max(tolerance, chance.of_difference(a["chance"], b["chance"]))) for a, b in zip(rows, rows[1:])]
+    rises = [s[:3] for s in steps if s[2] > s[3]]
+    falls = [s[:3] for s in steps if s[2] < -s[3]]
     if rises and falls:
         few = rises if len(rises) <= len(falls) else falls
         odd = ", ".join(f"{a} to {b} ({change:+.1%})" for a, b, change in few)
         word = "falls but rises" if few is rises else "rises but falls"
         return f"not monotone: {word} from {odd}", True, True
     word = "rises" if rises else "falls" if falls else "stays"
-    return f"monotone: {word}, {rows[-1][name]} of {rows[0][name]}", bool(rises), bool(falls)
+    return f"monotone: {word}, {rows[-1][name]:.0f} of {rows[0][name]:.0f}", bool(rises), bool(falls)
 
 
 def table(options, rows):
-    columns = COLUMNS[:1] + ERRORS + COLUMNS[2:] if options.reference else COLUMNS
+    columns = COLUMNS[:1] + ERRORS + COLUMNS[2:] if options.reference else list(COLUMNS)
+    if options.seeds > 1:
+        columns[1:1] = [CHANCE]
+        if options.reference:
+            columns[3:3] = [ERROR_CHANCE]
     width = max(len(options.key), *(len(r["value"]) for r in rows)) + 1
     print(f"{options.key:<{width}}" + "".join(f"{name:>{w}}" for name, w, _ in columns))
     for row in rows:
@@ -141,7 +172,10 @@ def parse(arguments):
     parser.add_argument("--expect", choices=["falling", "rising"], help="what the cycles must do")
     parser.add_argument("--tolerance", type=float, default=0.5, metavar="PERCENT", help="of a step; 0.5 by default")
     parser.add_argument("--reference", action="store_true", help="compare with a run in the reference mode")
+    parser.add_argument("--seeds", type=int, default=1, metavar="N", help="runs a row, each with noise of its own")
     options = parser.parse_args(arguments)
+    if options.seeds < 1:
+        raise Mistake(f"--seeds {options.seeds}: give a number from 1")
     if not options.tolerance >= 0:
         raise Mistake(f"--tolerance {options.tolerance}: give a percentage from 0")
     options.values = expand(options.values)
@@ -151,18 +185,19 @@ def parse(arguments):
 def sweep(options):
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
         values = [REFERENCE] * options.reference + options.values
-        folders = [tempfile.mkdtemp(dir=folder) for _ in values]
-        runs = [pool.submit(run, options, v, f) for v, f in zip(values, folders)]
+        seeds = range(1, options.seeds + 1) if options.seeds > 1 else [0]
+        runs = {v: [pool.submit(run, options, v, s, tempfile.mkdtemp(dir=folder)) for s in seeds] for v in values}
         try:
-            rows = [figures(r.result(), v) for r, v in zip(runs, values)]
+            rows = [mean_of([figures(r.result(), v) for r in runs[v]]) for v in values]
         except Mistake:
-            for r in runs:
-                r.cancel()
+            pool.shutdown(wait=False, cancel_futures=True)
             raise
     for row in rows:
         row["of_first"] = share(row["cycles"], rows[0]["cycles"])
         if options.reference:
             row["error"] = row["of_first"] - 1
+            between = chance.of_difference(row["chance"], rows[0]["chance"])
+            row["error_chance"] = 0.0 if row is rows[0] else row["of_first"] * between
     if options.csv:
         names = {"value": options.key}
         simulation.write_csv(options.csv, [{names.get(k, k): v for k, v in row.items()} for row in rows])

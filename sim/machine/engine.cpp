@@ -264,12 +264,12 @@ void Engine::follow_events(Tile& tile) {
 void Engine::forget_tickets(Tile& tile) {
     if (tile.tickets.size() < 4096)
         return;
-    if (tile.events) // many are of the last loads and stores of threads that others outlive
-        for (Hart* h : tile.harts)
-            if (h->finished) {
-                settle_loads(*h);
-                settle_stores(*h);
-            }
+    // Many are of the last loads and stores of threads that others outlive.
+    for (Hart* h : tile.harts)
+        if (h->finished) {
+            settle_loads(*h);
+            settle_stores(*h);
+        }
     cycle earliest = window_end_;
     for (Hart* h : tile.harts)
         if (h->worker >= 0 && h->waits_for == nullptr && !h->finished)

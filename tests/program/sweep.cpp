@@ -52,6 +52,7 @@ TEST_F(Sweep, RefusesMistakes) {
         {"--key l2.size_bytes --values 0..2", "give A..B"},
         {"--key l2.size_bytes --values 1MiB --csv none/s.csv", "none/s.csv"},
         {"--key l2.size_bytes --values 1MiB --jobs 0", "--jobs 0"},
+        {"--key l2.size_bytes --values 1MiB --seeds 0", "--seeds 0"},
         {"--key l2.size_bytes --values 1MiB --tolerance nan", "--tolerance nan"},
         {"--key l2.size_bytes --values 1MiB --nothing", "--nothing"},
         {"--key l2.size_bytes --values 1MiB --simulator none", "--simulator none"},
@@ -99,6 +100,41 @@ TEST_F(Sweep, ComparesWithTheReferenceMode) {
         "run --quiet --machine " + tiny + " -g sim.mode=reference --json a.json " + frame;
     ASSERT_EQ(simulator(reference).code, 0);
     EXPECT_EQ(report("a.json").at("cycles").get<double>(), cycles[0]);
+}
+
+// Rows of several seeds: means, and half the width of the interval that Student's t gives for two runs.
+TEST_F(Sweep, RunsSeveralSeeds) {
+    folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+    const std::string frame = "--scene box.toml --size 24x24 --spp 1 --workers 2";
+    const Outcome result = sweep("--seeds 2 --key l2.size_bytes --values 8KiB 64KiB --csv s.csv -- " + frame);
+    ASSERT_EQ(result.code, 0) << result.out << result.err;
+    double cycles[2];
+    for (const int seed : {1, 2}) {
+        const std::string one = std::string("run --quiet --machine ") + tiny +
+                                " -g l2.size_bytes=8KiB -g sim.jitter=" + std::to_string(seed) +
+                                " --json a.json " + frame;
+        ASSERT_EQ(simulator(one).code, 0);
+        cycles[seed - 1] = report("a.json").at("cycles").get<double>();
+    }
+    ASSERT_NE(cycles[0], cycles[1]);
+    std::istringstream table(text("s.csv"));
+    std::string head, row, cell;
+    std::getline(table, head);
+    std::getline(table, row);
+    std::istringstream names(head), cells(row);
+    int found = 0;
+    const double mean = (cycles[0] + cycles[1]) / 2;
+    for (std::string name; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
+        if (name == "cycles") {
+            EXPECT_DOUBLE_EQ(std::stod(cell), mean);
+            ++found;
+        }
+        if (name.starts_with("chance")) {
+            EXPECT_NEAR(std::stod(cell), 12.706 * std::abs(cycles[0] - cycles[1]) / 2 / mean, 1e-9);
+            ++found;
+        }
+    }
+    EXPECT_EQ(found, 2) << head;
 }
 
 // A machine of which everything is known: cycles are a formula of its settings.

@@ -321,6 +321,25 @@ TEST(Caches, NextLinesComeLate) {
     EXPECT_EQ(r.l1[0].prefetches_useless, 1U);
 }
 
+// A thread ends when its last load is there, however long others go on after it and whatever they ask for.
+TEST(Caches, ThreadsEndWhenTheirLastLoadsAreThere) {
+    const auto finish_of_first = [](int loads_of_other) {
+        Config c = equal_clocks();
+        c.chip.cores = 2;
+        const Report r = run_on(
+            c,
+            [=](std::byte* base, int w) {
+                for (int i = 0; i < (w == 0 ? 1 : loads_of_other); ++i)
+                    load(here, base + (w + 2 * i) * line, 4, stamp{});
+            },
+            2);
+        return r.threads.at(0).finish;
+    };
+    const cycle alone = finish_of_first(0);
+    EXPECT_GT(alone, idle_read(equal_clocks()));
+    EXPECT_EQ(finish_of_first(20000), alone);
+}
+
 TEST(Caches, MissesHaveCauses) {
     Config c = equal_clocks();
     c.sim.miss_causes = "on";
