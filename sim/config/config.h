@@ -75,10 +75,11 @@ struct TlbConfig {
 
 struct CoherenceConfig {
     std::string plain;
-    integer directory_cycles = 0;
+    integer directory_cycles = 0, snoop_cycles = 0;
     integer visibility_cycles = 0, atomic_cycles = 0, remote_cycles = 0;
     /// Whether plain data are kept coherent.
-    bool directory() const { return plain == "directory"; }
+    bool kept() const { return plain != "none"; }
+    bool snoops() const { return plain == "snoop"; }
 };
 
 struct MemoryConfig {
@@ -100,10 +101,11 @@ struct MemoryConfig {
 /// Between the tiles and what lies beyond them.
 struct NetworkConfig {
     std::string topology;
-    integer link_bytes = 0, hop_cycles = 0, columns = 0;
+    integer link_bytes = 0, hop_cycles = 0, columns = 0, buses = 0;
     integer request_bytes = 0, reply_bytes = 0, write_bytes = 0; // besides the line
 
     bool ideal() const { return topology == "ideal"; }
+    bool bus() const { return topology == "bus"; }
 };
 
 /// How the renderer uses the machine.

@@ -293,16 +293,21 @@ void check_network(const std::string& what, const Config& config) {
              fmt::format("network.columns is {}, which does not divide chip.tiles, {}: every row of a mesh "
                          "is full; make it a divisor, or 0",
                          columns, tiles));
+    const integer buses = config.network.buses;
+    if (config.network.bus() && tiles % buses != 0)
+        fail(what, fmt::format("network.buses is {}, which does not divide chip.tiles, {}: every bus has as "
+                               "many; make it a divisor",
+                               buses, tiles));
 }
 
 /// What coherence of plain data needs of the caches and of memory.
 void check_coherence(const std::string& what, const Config& config) {
-    if (!config.coherence.directory())
+    if (!config.coherence.kept())
         return;
     const auto refuse = [&](const std::string& key, const std::string& value, const std::string& wanted) {
-        fail(what, fmt::format("coherence.plain is \"directory\", for which {} must be {}, not {}; make it "
+        fail(what, fmt::format("coherence.plain is \"{}\", for which {} must be {}, not {}; make it "
                                "that, or coherence.plain \"none\"",
-                               key, wanted, value));
+                               config.coherence.plain, key, wanted, value));
     };
     const unsigned levels = config.tile_levels(), last = config.cache_levels() - 1;
     for (unsigned level = 1; level < levels; ++level)
@@ -313,6 +318,10 @@ void check_coherence(const std::string& what, const Config& config) {
         refuse(level_name(levels - 1) + ".write_policy", own.write_policy, "back");
     if (own.write_miss != "allocate")
         refuse(level_name(levels - 1) + ".write_miss", own.write_miss, "allocate");
+    if (config.coherence.snoops() && !config.network.bus())
+        refuse("network.topology", config.network.topology, "bus");
+    if (config.coherence.snoops() && config.beyond_tiles(last))
+        refuse(level_name(last) + ".share", config.cache(last).share, "tile");
     if (config.beyond_tiles(last) && config.cores_sharing(last) != config.all_cores())
         refuse(level_name(last) + ".share", config.cache(last).share, "chip");
     if (config.memory.controller != "immediate")

@@ -240,12 +240,15 @@ void add_caches(Table& t) {
     add_level(t, "l5", &Config::l5, {{"chip", "tile", "core"}, 0, 0, 16, 80, 8, 128, 64});
     using C = CoherenceConfig;
     auto c = &Config::coherence;
-    t.add("coherence.plain", c, &C::plain, {"none", "directory"},
+    t.add("coherence.plain", c, &C::plain, {"none", "directory", "snoop"},
           "of data that are not shared words; none: caches keep what others write; directory: lines are "
           "modified, exclusive, shared or invalid (MESI), in a tile as its caches know of each other, beyond "
-          "the tiles by a full map at each line's bank or memory channel");
+          "the tiles by a full map at each line's bank or memory channel; snoop: beyond the tiles as their "
+          "last caches see each other's requests on buses (network.topology)");
     t.add("coherence.directory_cycles", c, &C::directory_cycles, "cycles", 6, 1, 10000,
           "of a look-up of the directory, before anything else happens there");
+    t.add("coherence.snoop_cycles", c, &C::snoop_cycles, "cycles", 6, 1, 10000,
+          "from a request on a bus until all caches there have said what they have of its line");
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,
           "from a write of a shared word until others see it");
     t.add("coherence.atomic_cycles", c, &C::atomic_cycles, "cycles", 2, 0, 1000,
@@ -287,9 +290,10 @@ void add_network(Table& t) {
     using C = NetworkConfig;
     auto s = &Config::network;
     t.add(
-        "network.topology", s, &C::topology, {"ideal", "crossbar", "ring", "mesh"},
+        "network.topology", s, &C::topology, {"ideal", "crossbar", "ring", "mesh", "bus"},
         "between tiles and what lies beyond them; ideal: neither time nor limit; crossbar: from any port to "
-        "any other in one hop; ring: both ways round, the shorter one; mesh: along the row, then the column");
+        "any other in one hop; ring: both ways round, the shorter one; mesh: along the row, then the column; "
+        "bus: one that all take in turn, or several that meet where memory is");
     t.add("network.link_bytes", s, &C::link_bytes, "bytes/cycle", 32, 1, 1024,
           "width of a link or port, one way");
     t.add("network.hop_cycles", s, &C::hop_cycles, "cycles", 3, 0, 1000,
@@ -298,6 +302,8 @@ void add_network(Table& t) {
         "network.columns", s, &C::columns, "", 0, 0, 1024,
         "nodes of a row of a mesh, a divisor of chip.tiles; 0: as near a square as there is, rows no longer "
         "than columns");
+    t.add("network.buses", s, &C::buses, "", 1, 1, 1024,
+          "buses that tiles are divided among in order, so many as divide chip.tiles (topology = bus)");
     t.add("network.request_bytes", s, &C::request_bytes, "bytes", 8, 1, 256,
           "of a request for a line, or a word about one to a cache beyond the tiles");
     t.add("network.reply_bytes", s, &C::reply_bytes, "bytes", 8, 0, 256,

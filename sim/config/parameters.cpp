@@ -143,10 +143,14 @@ const std::string& nearest_key(std::string_view key) {
 }
 
 bool applies(const Parameter& p, const Config& config) {
+    if (p.key == "network.buses")
+        return config.network.bus();
     if (p.key.starts_with("network."))
         return p.key == "network.topology" || !config.network.ideal();
     if (p.key == "coherence.directory_cycles")
-        return config.coherence.directory();
+        return config.coherence.kept() && !config.coherence.snoops();
+    if (p.key == "coherence.snoop_cycles")
+        return config.coherence.snoops();
     if (p.key.starts_with("tlb."))
         return p.key == "tlb.entries" || config.tlb.any();
     if (p.key.size() < 3 || p.key[0] != 'l' || p.key[2] != '.')

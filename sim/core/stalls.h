@@ -53,12 +53,12 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"idle", "without work: no worker, or the worker had returned"},
 }};
 
-/// Whether a machine with so many levels of caches, and TLBs and a directory or none, has the cause.
-inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb, bool directory) {
+/// Whether a machine with so many levels of caches, with TLBs or none, coherent or not, has the cause.
+inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb, bool coherent) {
     if (cause == static_cast<std::size_t>(Cause::tlb))
         return tlb;
     if (cause == static_cast<std::size_t>(Cause::coherence))
-        return directory;
+        return coherent;
     const auto l1 = static_cast<std::size_t>(Cause::l1), memory = static_cast<std::size_t>(Cause::memory);
     return cause < l1 + cache_levels || cause >= memory;
 }

@@ -37,9 +37,11 @@ Beyond::Beyond(const Config& config, Reply reply)
 
 void Beyond::connect(std::deque<Tile>& tiles) {
     tiles_ = &tiles;
-    if (config_.coherence.directory())
+    if (config_.coherence.kept())
         coherence_ = std::make_unique<Coherence>(config_, ways_, tiles, [this](Request w) {
-            w.at = ways_.write(asker(w), w.write, w.bytes, std::max(w.at, served_));
+            w.at = std::max(w.at, served_);
+            if (!config_.coherence.snoops()) // else memory has it as it passes
+                w.at = ways_.write(asker(w), w.write, w.bytes, w.at);
             if (!caches_.empty())
                 w.at = cache_of(w).cache.book({w.write, w.bytes, w.at, w.column});
             push(w);

@@ -8,8 +8,10 @@ namespace sim {
 Coherence::Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, WriteBack write_back)
     : exits_(tiles.front().exits.size()), level_(config.tile_levels() - 1),
       line_bytes_(static_cast<std::uint32_t>(config.cache(level_).line_bytes)),
-      look_up_(static_cast<std::uint64_t>(config.coherence.directory_cycles)), ways_(ways), tiles_(tiles),
-      write_back_(std::move(write_back)) {}
+      snoops_(config.coherence.snoops()),
+      look_up_(snoops_ ? 0 : static_cast<std::uint64_t>(config.coherence.directory_cycles)),
+      snoop_(snoops_ ? static_cast<std::uint64_t>(config.coherence.snoop_cycles) : 0), ways_(ways),
+      tiles_(tiles), write_back_(std::move(write_back)), heard_(ways_.network().topology().buses()) {}
 
 bool Coherence::grants_silently(const Request& r) {
     const Directory::Line* l = directory_.find(r.read);
@@ -28,9 +30,14 @@ Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
     ++(upgrade ? counters_.upgrades : r.exclusive ? counters_.writes : counters_.reads);
     Outcome out;
     out.at = t;
+    if (snoops_) {
+        pass_on(r, t);
+        forget_dropped(r, l);
+        out.known = said_;
+    }
     if (upgrade && l.has(who)) {
         out.from = Outcome::nobody;
-        out.at = ways_.tell_tile(r.read, r.tile, t);
+        out.at = snoops_ ? said_ : ways_.tell_tile(r.read, r.tile, t);
     } else if (upgrade) {
         ++counters_.lost_upgrades;
     }
@@ -44,15 +51,47 @@ Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
     return out;
 }
 
+/// The request is on its own bus at `t`: to the others.
+void Coherence::pass_on(const Request& r, cycle t) {
+    const Topology& topology = ways_.network().topology();
+    const std::size_t own = topology.bus_of(r.tile);
+    said_ = t;
+    for (std::size_t bus = 0; bus < heard_.size(); ++bus) {
+        heard_[bus] = bus == own ? t : ways_.tell_bus(r.read, bus, t);
+        counters_.passed_on += bus == own ? 0 : 1;
+        said_ = std::max(said_, heard_[bus]);
+    }
+    said_ += snoop_;
+    counters_.snoops += tiles_.size() * exits_ - 1;
+}
+
+/// Caches that hear of a request say what they have then: what they dropped without a word is known now.
+void Coherence::forget_dropped(const Request& r, Directory::Line& l) {
+    const auto dropped = [&](std::uint32_t number) {
+        return number != number_of(r) && !cache(number).holds(r.read) && !under_way(number).asks(r.read);
+    };
+    if (l.owner != Directory::nobody && dropped(l.owner))
+        l.owner = Directory::nobody;
+    std::erase_if(l.sharers, dropped);
+}
+
+/// When a cache hears of the request that the directory has looked up, or the hub has, at `t`.
+cycle Coherence::hears(const Request& r, std::uint32_t cache, cycle t) {
+    const std::uint32_t tile = tile_of(cache);
+    return snoops_ ? heard_[ways_.network().topology().bus_of(tile)] + snoop_
+                   : ways_.tell_tile(r.read, tile, t);
+}
+
 /// Another cache may write the line.
 void Coherence::forward(const Request& r, Directory::Line& l, cycle t, Outcome& out) {
     const std::uint32_t owner = std::exchange(l.owner, Directory::nobody);
-    const cycle there = ways_.tell_tile(r.read, tile_of(owner), t);
+    const cycle there = hears(r, owner, t);
     Cache& from = cache(owner);
     ++counters_.forwards;
     if (!from.holds(r.read) || under_way(owner).asks_line(r.read)) {
         ++counters_.forwards_stale;
-        out.at = ways_.answer_directory(tile_of(owner), r.read, there + from.latency());
+        if (!snoops_)
+            out.at = ways_.answer_directory(tile_of(owner), r.read, there + from.latency());
         return;
     }
     const cycle start = std::max(there, l.since) + from.latency();
@@ -73,13 +112,13 @@ void Coherence::forward(const Request& r, Directory::Line& l, cycle t, Outcome& 
     ++(dirty ? counters_.forwards_dirty : counters_.forwards_clean);
 }
 
-/// All sharers but the writer drop the line; returns when they have told it so.
+/// All sharers but the writer drop the line; returns when the writer knows.
 cycle Coherence::invalidate(const Request& r, const Directory::Line& l, cycle t) {
-    cycle told = 0;
+    cycle told = snoops_ ? said_ : 0;
     for (const std::uint32_t sharer : l.sharers) {
         if (sharer == number_of(r))
             continue;
-        const cycle there = ways_.tell_tile(r.read, tile_of(sharer), t);
+        const cycle there = hears(r, sharer, t);
         Cache& at = cache(sharer);
         ++counters_.invalidations;
         if (at.holds(r.read) && !under_way(sharer).asks(r.read)) {
@@ -88,6 +127,8 @@ cycle Coherence::invalidate(const Request& r, const Directory::Line& l, cycle t)
         } else {
             ++counters_.invalidations_stale;
         }
+        if (snoops_)
+            continue;
         ++counters_.acknowledgements;
         told = std::max(told, ways_.tell_writer(tile_of(sharer), r.tile, there + at.latency()));
     }
@@ -154,6 +195,8 @@ void Coherence::claim(const Request& r, cycle t) {
     ++counters_.claims;
     Request line = r;
     line.read = r.write / line_bytes_ * line_bytes_;
+    if (snoops_)
+        pass_on(line, t);
     const Directory::Line* known = directory_.find(line.read);
     if (known == nullptr || !known->shared_by(number_of(r)))
         return;

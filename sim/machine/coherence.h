@@ -1,21 +1,29 @@
-// Coherence between the last caches of tiles (coherence.plain): a directory of their lines, at the line's
-// bank of the cache that all tiles share, or at its memory channel. MESI: a line that nobody else has comes
-// exclusive; one that another may write is asked of that one, which brings it directly, and writes it back if
-// it had changed it and has it read from it; a write invalidates all sharers, which tell the writer. What
-// happens to a line is decided when the directory has looked it up, in the order in which requests are
-// served; messages take their ways over the network, and act on the tiles' caches at once, that is after the
-// window: whether one has a line is what its tags say then. Not modelled: ports of caches that bring lines;
-// that a line which is asked for again while it is taken away cannot be read meanwhile; places in the
-// directory for lines whose messages are on their way.
+// Coherence between the last caches of tiles (coherence.plain). MESI: a line that nobody else has comes
+// exclusive; one that another may write is brought by that one, which writes it back if it had changed it and
+// has it read from it; a write takes it from all sharers.
+// * directory: who has a line is known at its bank of the cache that all tiles share, or at its memory
+//   channel. There a request is looked up, sent on to the owner, or told to the sharers, which tell the
+//   writer.
+// * snoop: all caches see each other's requests. Those of the same bus as it passes; the hub passes it on to
+//   all other buses. coherence.snoop_cycles later all have said what they have, and the owner begins to bring
+//   the line, of which memory takes what it had changed as it passes; memory is asked at once, but its answer
+//   waits for what the caches say, as does a writer. What they say goes on lines of its own.
+// What happens to a line is decided when the directory has looked it up, or the hub has it, in the order in
+// which requests are served; messages take their ways over the network, and act on the tiles' caches at once,
+// that is after the window: whether one has a line is what its tags say then. Not modelled: ports of caches
+// that look lines up or bring them; that a line which is asked for again while it is taken away cannot be
+// read meanwhile; places in the directory for lines whose messages are on their way; that a bus lets only so
+// many requests be under way, or memory read in vain what an owner brings.
 #pragma once
 
 #include "sim/machine/tile.h"
+#include "sim/memory/coherence_counters.h"
 #include "sim/memory/directory.h"
-#include "sim/memory/directory_counters.h"
 #include "sim/network/ways.h"
 
 #include <deque>
 #include <functional>
+#include <vector>
 
 namespace sim {
 
@@ -26,11 +34,12 @@ public:
 
     Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, WriteBack write_back);
 
-    /// What becomes of a request that the directory has looked up.
+    /// What becomes of a request.
     struct Outcome {
         enum From : std::uint8_t { below, owner, nobody } from = below; // that brings the line
         cycle at = 0;       // when it is asked for below; of others, when all is there
         cycle finished = 0; // when all others have said that they dropped it
+        cycle known = 0;    // no answer from below leaves earlier
     };
     /// A line is asked for, or the right to write it, at `t`.
     Outcome ask(const Request& r, cycle t);
@@ -43,8 +52,9 @@ public:
     /// A shared word in it is written.
     void claim(const Request& r, cycle t);
 
+    /// Cycles of the directory, if there is one.
     std::uint64_t look_up() const { return look_up_; }
-    const DirectoryCounters& counters() const { return counters_; }
+    const CoherenceCounters& counters() const { return counters_; }
     /// Lines that a cache may write or read but the directory does not know so: 0 when nothing is under way.
     std::uint64_t incoherent() const;
 
@@ -59,6 +69,9 @@ private:
     UnderWay& under_way(std::uint32_t number) const {
         return tiles_[tile_of(number)].exits[number % exits_].under_way;
     }
+    void pass_on(const Request& r, cycle t);
+    void forget_dropped(const Request& r, Directory::Line& l);
+    cycle hears(const Request& r, std::uint32_t cache, cycle t);
     void forward(const Request& r, Directory::Line& l, cycle t, Outcome& out);
     cycle invalidate(const Request& r, const Directory::Line& l, cycle t);
     void give(const Request& r, Directory::Line& l);
@@ -67,12 +80,16 @@ private:
     std::size_t exits_;
     unsigned level_; // of the tiles' last caches
     std::uint32_t line_bytes_;
-    std::uint64_t look_up_;
+    bool snoops_;
+    std::uint64_t look_up_, snoop_;
     Ways& ways_;
     std::deque<Tile>& tiles_;
     WriteBack write_back_;
     Directory directory_;
-    DirectoryCounters counters_;
+    CoherenceCounters counters_;
+    // Of the request at hand, where caches snoop:
+    std::vector<cycle> heard_; // on each bus
+    cycle said_ = 0;           // all have said what they have
 };
 
 } // namespace sim

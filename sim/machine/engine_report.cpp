@@ -93,7 +93,7 @@ Report Engine::report() const {
     r.misplaced_lines = misplaced_lines_;
     r.incoherent_lines = incoherent_lines_;
     if (const Coherence* coherence = beyond_->coherence())
-        r.directory = coherence->counters();
+        r.coherence = coherence->counters();
     for (const SharedCache& shared : beyond_->caches()) {
         r.caches(tile_levels_).push_back(shared.cache.counters());
         r.drained = std::max(r.drained, shared.cache.quiet());

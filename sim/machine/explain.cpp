@@ -91,7 +91,7 @@ Explanations make() {
     for (unsigned level = 2; level < most_levels; ++level)
         add_level(out, fmt::format("l{}", level + 1), fmt::format("l{}_by_cache", level + 1), cache_counters);
     add_level(out, "tlb", "tlb_by_core", tlb_counters); // absent where there is none
-    add_counters(out, "directory", directory_counters); // absent where there is none
+    add_counters(out, "coherence", coherence_counters); // absent where plain data are not kept coherent
     add_counters(out, "network", network_counters);     // all of it absent where the network is ideal
     add("network.busiest_link", "",
         "the link that moved most: of a unit, from it or to it, or between routers");

@@ -120,7 +120,7 @@ Answer ImmediateBeyond::read_coherently(const Request& r) {
     if (out.from == Coherence::Outcome::below) {
         ++attribution_of(r).cell(r.read, r.column).memory_reads;
         ready = memory_.read(r.read, ways_.in_order(out.at));
-        ready = ways_.answer(asker(r), r.read, line_bytes_, ready);
+        ready = ways_.answer(asker(r), r.read, line_bytes_, std::max(ready, out.known));
         coherence_->arrives(r, std::max(ready, out.finished));
         if (out.finished <= ready)
             return {ready, Cause::memory};

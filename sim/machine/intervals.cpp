@@ -114,7 +114,7 @@ std::string print_intervals(const Report& r) {
         out += fmt::format(",{}", c.name);
     out += ",ipc,memory_bytes";
     const auto shown = [&r](std::size_t cause) { // levels of caches that are not there are columns too
-        return has_cause(cause, most_levels, r.config.tlb.any(), r.config.coherence.directory());
+        return has_cause(cause, most_levels, r.config.tlb.any(), r.config.coherence.kept());
     };
     for (std::size_t i = 0; i < cause_count; ++i)
         if (shown(i))

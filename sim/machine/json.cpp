@@ -33,7 +33,7 @@ json configuration(const Config& config) {
 json stack(const Report& r, const Stack& s) {
     json out = json::object();
     for (std::size_t i = 0; i < cause_count; ++i)
-        if (has_cause(i, r.config.cache_levels(), r.config.tlb.any(), r.config.coherence.directory()))
+        if (has_cause(i, r.config.cache_levels(), r.config.tlb.any(), r.config.coherence.kept()))
             out[causes[i].name] = s[i];
     return out;
 }
@@ -187,7 +187,7 @@ std::string print_json(const Report& r, bool with_host) {
     out["jitter"] = {{"seed", r.config.sim.jitter}, {"lines", r.jitter.lines}, {"cycles", r.jitter.cycles}};
     if (r.interval != 0)
         out["intervals"] = {{"cycles", r.interval}, {"rows", r.intervals.size()}};
-    out["coherence_of_plain_data"] = r.config.coherence.directory() ? "directory" : "not modelled";
+    out["coherence_of_plain_data"] = r.config.coherence.kept() ? r.config.coherence.plain : "not modelled";
     out["core"] = counters(r.core, core_counters);
     out["instructions_by_class"] = instructions_by_class(r);
     out["stack"] = stack(r, r.stack());
@@ -210,8 +210,8 @@ std::string print_json(const Report& r, bool with_host) {
         out["tlb"] = counters(r.tlb_total(), tlb_counters);
     for (const TlbCounters& c : r.tlb)
         out["tlb_by_core"].push_back(counters(c, tlb_counters));
-    if (r.config.coherence.directory())
-        out["directory"] = counters(r.directory, directory_counters);
+    if (r.config.coherence.kept())
+        out["coherence"] = counters(r.coherence, coherence_counters);
     if (!r.network.ideal())
         out["network"] = network(r);
     out["memory"] = counters(r.memory, memory_counters);

@@ -165,8 +165,8 @@ void check_memory(const Report& r) {
 void check_below(const Report& r, const CacheCounters& above, const CacheCounters& c, bool l2, bool beyond) {
     equal("reads of a level + lines that owners brought = fills of the one above + upgrades without their "
           "line (L2: + read-modify-writes)",
-          c.reads + (beyond ? r.directory.supplied() : 0),
-          above.fills + (beyond ? r.directory.lost_upgrades : 0) + (l2 ? r.core.modifications : 0));
+          c.reads + (beyond ? r.coherence.supplied() : 0),
+          above.fills + (beyond ? r.coherence.lost_upgrades : 0) + (l2 ? r.core.modifications : 0));
     equal(
         "writes of a level = write-backs + clean victims + writes through of the one above (L2: + releases)",
         c.writes,
@@ -196,8 +196,8 @@ void check_levels(const Report& r) {
           l1.misses + l1.prefetches + l1.hardware_prefetches);
     const bool to_memory = r.config.tile_levels() == levels; // else this is true of tiles' last levels
     equal("memory reads + lines that owners brought = fills of the last level + upgrades without their line",
-          r.memory.reads + (to_memory ? r.directory.supplied() : 0),
-          last.fills + (to_memory ? r.directory.lost_upgrades : 0));
+          r.memory.reads + (to_memory ? r.coherence.supplied() : 0),
+          last.fills + (to_memory ? r.coherence.lost_upgrades : 0));
     equal("memory writes = write-backs + writes through of the last level", r.memory.writes,
           last.write_backs + last.written_through);
     equal("inclusive levels have all lines above them, exclusive ones none", r.misplaced_lines, 0);
@@ -217,18 +217,20 @@ void check_network(const Report& r) {
     const CacheCounters sent = r.cache_total(last);
     const bool beyond = last + 1 != levels;
     const std::uint64_t from_memory = beyond ? r.memory.reads : 0, to_memory = beyond ? r.memory.writes : 0;
-    const DirectoryCounters& d = r.directory;
+    const CoherenceCounters& d = r.coherence;
     equal("requests = lines that tiles and caches beyond them read + upgrades", n.requests,
           sent.fills + from_memory + d.upgrades);
     equal("replies = requests, but for upgrades that had their line", n.replies + d.upgrades,
           n.requests + d.lost_upgrades);
-    const std::uint64_t words = d.forwards + d.forwards_stale + d.invalidations + d.acknowledgements +
-                                d.upgrades - d.lost_upgrades + d.claims;
-    at_most("words of directories and to them <= words", words, n.words);
+    const bool snoops = r.config.coherence.snoops();
+    const std::uint64_t words = d.claims + (snoops ? d.passed_on
+                                                   : d.forwards + d.forwards_stale + d.invalidations +
+                                                         d.acknowledgements + d.upgrades - d.lost_upgrades);
+    at_most("words for coherence <= words", words, n.words);
     if (!beyond)
         equal("other words are for caches beyond the tiles", n.words, words);
     equal("messages that write = write-backs + writes through of tiles and caches beyond them", n.writes,
-          sent.write_backs + sent.written_through + to_memory);
+          sent.write_backs + sent.written_through + to_memory - (snoops ? d.written_back : 0));
     equal("bytes = data + headers", n.bytes,
           n.data_bytes + (n.requests + n.words) * wide(c.request_bytes) + n.replies * wide(c.reply_bytes) +
               n.writes * wide(c.write_bytes));
@@ -260,31 +262,37 @@ void check_network(const Report& r) {
             n.byte_hops + n.hops * wide(c.link_bytes - 1));
 }
 
-/// What tiles ask for, the directory looks up; every message of it is answered.
-void check_directory(const Report& r) {
-    const DirectoryCounters& d = r.directory;
+/// What tiles ask for, the directory looks up, or all other caches; every message of it is answered.
+void check_coherence(const Report& r) {
+    const CoherenceCounters& d = r.coherence;
     const CacheCounters last = r.cache_total(r.config.tile_levels() - 1);
-    if (!r.config.coherence.directory()) {
-        for (const auto& row : directory_counters)
-            equal("without a directory nothing happens there", d.*row.count, 0);
+    if (!r.config.coherence.kept()) {
+        for (const auto& row : coherence_counters)
+            equal("without coherence nobody asks others", d.*row.count, 0);
         for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
             const CacheCounters c = r.cache_total(level);
             equal("without coherence nobody asks to write or share", c.upgrades + c.downgrades, 0);
         }
         return;
     }
-    equal("lines that the directory looks up = lines that tiles read", d.reads + d.writes, last.fills);
-    equal("upgrades of the directory and silent ones = those of tiles", d.upgrades + d.silent_upgrades,
+    equal("lines that others are asked for = lines that tiles read", d.reads + d.writes, last.fills);
+    equal("upgrades that others know of and silent ones = those of tiles", d.upgrades + d.silent_upgrades,
           last.upgrades);
     at_most("upgrades without their line <= upgrades", d.lost_upgrades, d.upgrades);
     equal("reads are exclusive or shared", d.exclusive + d.shared, d.reads);
     equal("forwards = lines that owners brought + stale", d.forwards, d.supplied() + d.forwards_stale);
     equal("invalidations sent = received + stale", d.invalidations,
           d.invalidations_received + d.invalidations_stale);
-    equal("invalidations sent = acknowledgements", d.invalidations, d.acknowledgements);
+    const bool snoops = r.config.coherence.snoops();
+    equal("invalidations sent = acknowledgements", snoops ? 0 : d.invalidations, d.acknowledgements);
+    const std::uint64_t seen = snoops ? d.reads + d.writes + d.upgrades + d.claims : 0;
+    const auto others = [](std::size_t all) { return static_cast<std::uint64_t>(all) - 1; };
+    equal("every other cache looks up what one asks for", d.snoops,
+          seen * others(r.caches(r.config.tile_levels() - 1).size()));
+    equal("every other bus is told", d.passed_on, seen * others(snoops ? Topology(r.config).buses() : 1));
     at_most("invalidations received <= lines that tiles lost", d.invalidations_received, last.invalidations);
     equal("lines written back for others = those that tiles sent down", d.written_back, last.downgrades);
-    equal("who has a line is known to the directory, and one alone may write it", r.incoherent_lines, 0);
+    equal("who has a line is known, and one alone may write it", r.incoherent_lines, 0);
 }
 
 /// Every miss is answered by the second TLB, another's walk or its own; walks read what the walk cache lacks.
@@ -444,7 +452,7 @@ void check_laws(const Report& r) {
     check_stacks(r);
     check_buffers(r, l1);
     check_tlb(r);
-    check_directory(r);
+    check_coherence(r);
     check_assembly(r);
     check_network(r);
     check_jitter(r, l1);

@@ -4,8 +4,8 @@
 #include "sim/config/config.h"
 #include "sim/core/pairing.h"
 #include "sim/core/stalls.h"
+#include "sim/memory/coherence_counters.h"
 #include "sim/memory/counters.h"
-#include "sim/memory/directory_counters.h"
 #include "sim/memory/traffic.h"
 #include "sim/network/counters.h"
 
@@ -134,7 +134,7 @@ struct Report {
     std::vector<TlbCounters> tlb;                              // by core; none without TLBs
     std::uint64_t misplaced_lines = 0;  // against inclusive and exclusive levels, before the frame's end
     std::uint64_t incoherent_lines = 0; // that a cache has and the directory, or a cache, does not know of
-    DirectoryCounters directory;        // without one: none
+    CoherenceCounters coherence;        // of plain data, between tiles
     JitterReport jitter;
     NetworkReport network;
     MemoryCounters memory;

@@ -124,7 +124,7 @@ void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool 
 /// On a coherent machine others that have the word's line lose it by the directory's hand too. That takes no
 /// time of the writer's: coherence.remote_cycles does.
 void Engine::claim(Hart& h, std::uint64_t address, cycle t) {
-    if (!config_.coherence.directory())
+    if (!config_.coherence.kept())
         return;
     const Cache& last = cache_of(h, tile_levels_ - 1);
     if (last.holds(address) && !last.owns(address))

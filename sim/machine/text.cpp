@@ -41,7 +41,9 @@ void overview(std::string& out, const Report& r) {
     for (const auto& row : core_counters)
         if (r.core.*row.count != 0 && row.count != &CoreCounters::instructions)
             out += fmt::format("{:<21} {:>14}\n", row.name, r.core.*row.count);
-    out += r.config.coherence.directory()
+    out += r.config.coherence.snoops() ? "plain data are kept coherent as caches see requests on buses, "
+                                         "shared words by invalidation as well\n"
+           : r.config.coherence.kept()
                ? "plain data are kept coherent by a directory, shared words by invalidation as well\n"
                : "coherence of plain data is not modelled; shared words are kept coherent by invalidation\n";
 }
@@ -149,12 +151,12 @@ void tlb(std::string& out, const Report& r) {
 }
 
 /// Nothing where there is none.
-void directory(std::string& out, const Report& r) {
-    if (!r.config.coherence.directory())
+void coherence(std::string& out, const Report& r) {
+    if (!r.config.coherence.kept())
         return;
-    const DirectoryCounters& d = r.directory;
+    const CoherenceCounters& d = r.coherence;
     out += fmt::format(
-        "directory {} reads ({} exclusive, {} shared), {} writes, {} upgrades ({} had lost the line; {} "
+        "coherence {} reads ({} exclusive, {} shared), {} writes, {} upgrades ({} had lost the line; {} "
         "more got the right with it)\n",
         d.reads, d.exclusive, d.shared, d.writes, d.upgrades, d.lost_upgrades, d.silent_upgrades);
     out += fmt::format("         forwards: {} lines brought changed, {} unchanged, {} not there any more; {} "
@@ -162,6 +164,9 @@ void directory(std::string& out, const Report& r) {
                        d.forwards_dirty, d.forwards_clean, d.forwards_stale, d.written_back);
     out += fmt::format("         invalidations: {} sent, {} to caches that had the line, {} to others\n",
                        d.invalidations, d.invalidations_received, d.invalidations_stale);
+    if (r.config.coherence.snoops())
+        out += fmt::format("         {} look-ups of others' tags; {} requests passed on to other buses\n",
+                           d.snoops, d.passed_on);
 }
 
 /// Nothing where it is ideal.
@@ -187,7 +192,7 @@ void levels(std::string& out, const Report& r) {
     for (unsigned i = 1; i < r.config.cache_levels(); ++i)
         level(out, fmt::format("L{}", i + 1).c_str(), r.cache_total(i));
     tlb(out, r);
-    directory(out, r);
+    coherence(out, r);
     network(out, r);
     memory(out, r);
     out += "\nbandwidth      GB/s achieved   GB/s peak   utilisation\n";

@@ -13,7 +13,7 @@ void Tile::make_caches(const Config& config) {
         for (std::size_t core = 0; core < cores; core += sharing[level]) {
             if (last)
                 exits.emplace_back(number, static_cast<std::uint32_t>(exits.size()), to_memory,
-                                   config.coherence.directory(), leaving, tickets, attribution);
+                                   config.coherence.kept(), leaving, tickets, attribution);
             Below& below = last ? static_cast<Below&>(exits.back()) : way_to(level + 1, core);
             Cache& cache =
                 caches[level].emplace_back(config, level, last, earliest, site, below, tickets, attribution);

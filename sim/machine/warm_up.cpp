@@ -59,7 +59,7 @@ void take_away(Report& r, const Report& warm) {
     for (unsigned level = 0; level < r.config.cache_levels(); ++level)
         reduce(r.caches(level), warm.caches(level), cache_counters);
     reduce(r.tlb, warm.tlb, tlb_counters);
-    reduce(r.directory, warm.directory, directory_counters);
+    reduce(r.coherence, warm.coherence, coherence_counters);
     r.jitter.lines -= warm.jitter.lines;
     r.jitter.cycles -= warm.jitter.cycles;
     reduce(r.network.counters, warm.network.counters, network_counters);

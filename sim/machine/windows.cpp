@@ -37,9 +37,11 @@ std::uint64_t shortest_line(const Config& c) {
 }
 
 /// Until a directory has looked up what a tile asks for; where a bank takes its turn only what follows
-/// counts.
+/// counts. Or until caches of its bus have heard of it.
 std::uint64_t shortest_known(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
+    if (c.coherence.snoops())
+        return Ways::shortest(c).there + wide(c.coherence.snoop_cycles);
     return wide(c.coherence.directory_cycles) +
            (c.beyond_tiles(last) ? wide(c.cache(last).latency) : Ways::shortest(c).there);
 }
@@ -47,8 +49,10 @@ std::uint64_t shortest_known(const Config& c) {
 } // namespace
 
 std::uint64_t shortest_answer(const Config& c) {
-    return c.coherence.directory() ? std::min(shortest_line(c), shortest_known(c) + Ways::shortest(c).there)
-                                   : shortest_line(c);
+    if (!c.coherence.kept())
+        return shortest_line(c);
+    const std::uint64_t right = shortest_known(c) + (c.coherence.snoops() ? 0 : Ways::shortest(c).there);
+    return std::min(shortest_line(c), right);
 }
 
 namespace {
@@ -56,11 +60,11 @@ namespace {
 /// Of a line, from below or from another tile: for the right to write alone hardly anybody waits, and windows
 /// as short as that would take many times as long.
 std::uint64_t shortest_data(const Config& c) {
-    if (!c.coherence.directory())
+    if (!c.coherence.kept())
         return shortest_line(c);
     const Ways::Shortest way = Ways::shortest(c);
-    return std::min(shortest_line(c),
-                    shortest_known(c) + way.there + wide(c.cache(c.tile_levels() - 1).latency) + way.back);
+    const std::uint64_t told = shortest_known(c) + (c.coherence.snoops() ? 0 : way.there);
+    return std::min(shortest_line(c), told + wide(c.cache(c.tile_levels() - 1).latency) + way.back);
 }
 
 } // namespace

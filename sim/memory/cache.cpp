@@ -39,7 +39,7 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
       bank_mask_(level == 0 ? 0 : wide(config.banks) - 1), last_(last),
       through_(config.write_policy == "through"), around_(config.write_miss == "around"),
       inclusive_(is(machine, level, "inclusive")), exclusive_(is(machine, level, "exclusive")),
-      coherent_(machine.coherence.directory() && level < machine.tile_levels()),
+      coherent_(machine.coherence.kept() && level < machine.tile_levels()),
       sends_clean_(is(machine, level + 1, "exclusive")),
       cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), traffic_(traffic_of_level[level]),
       array_(sets(config), wide(config.ways), replacement_of(config.replacement), coherent_),

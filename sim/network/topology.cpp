@@ -25,6 +25,7 @@ Topology::Topology(const Config& c)
     : kind_(c.network.topology == "ideal"      ? Kind::ideal
             : c.network.topology == "crossbar" ? Kind::crossbar
             : c.network.topology == "ring"     ? Kind::ring
+            : c.network.topology == "bus"      ? Kind::bus
                                                : Kind::mesh),
       nodes_(wide(c.chip.tiles)), channels_(wide(c.memory.channels)) {
     const unsigned last = c.cache_levels() - 1;
@@ -65,6 +66,11 @@ Topology::Topology(const Config& c)
         along_rows(1, 0);
         along_columns(0, columns_);
         along_columns(columns_, 0);
+    }
+    if (kind_ == Kind::bus) {
+        buses_ = wide(c.network.buses);
+        for (std::size_t b = 0; b < buses_; ++b)
+            name_.push_back(fmt::format("bus {}", b));
     }
     between_ = name_.size();
 }
@@ -116,6 +122,8 @@ std::string Topology::link_name(std::size_t link) const {
 }
 
 std::size_t Topology::bisection() const {
+    if (kind_ == Kind::bus)
+        return std::max<std::size_t>(1, buses_ / 2);
     if (kind_ != Kind::ring && kind_ != Kind::mesh)
         return units() / 2;
     if (nodes_ == 1)

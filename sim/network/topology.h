@@ -5,6 +5,11 @@
 //   nodes with even numbers send upwards, others downwards.
 // * mesh: a node for each tile, row by row, a link each way between neighbours. Along the row first, then
 //   along the column (dimension-order routing, so that no cycle of links can wait for itself).
+// * bus: tiles have a port to one of network.buses, which all of its tiles take in turn. These buses meet in
+// a
+//   hub, where banks and channels are: from a tile to another of its bus, or to the hub, is one hop, to a
+//   tile of another bus two. Addresses and data take turns on the same lines; who is told something by a
+//   message that others see pass as well is coherence.plain.
 // On rings and meshes banks and channels stand at the tiles' nodes, spread evenly and in order: channel c of
 // C at node floor(c N / C) of N, bank b of B at tile floor(b S / B) of the S tiles that share its cache.
 #pragma once
@@ -35,6 +40,11 @@ public:
     /// Of a ring or mesh.
     std::size_t node(std::size_t unit) const { return node_[unit]; }
     std::size_t columns() const { return columns_; }
+    /// Of a tile; what is at the hub has none: buses().
+    std::size_t bus_of(std::size_t unit) const { return unit < nodes_ ? unit * buses_ / nodes_ : buses_; }
+    std::size_t buses() const { return buses_; }
+    /// A tile of that bus.
+    std::size_t tile_of_bus(std::size_t bus) const { return bus * nodes_ / buses_; }
     std::size_t rows() const { return nodes_ / columns_; }
 
     /// Routers that a message passes on to another; the crossbar, once.
@@ -48,6 +58,14 @@ public:
     template <class Visit> void walk(std::size_t from, std::size_t to, Visit visit) const {
         if (kind_ == Kind::crossbar)
             return;
+        if (kind_ == Kind::bus) {
+            const std::size_t first = bus_of(from), second = bus_of(to);
+            if (first < buses_)
+                visit(2 * units() + first);
+            if (second < buses_ && second != first)
+                visit(2 * units() + second);
+            return;
+        }
         for (std::size_t at = node_[from], end = node_[to]; at != end;) {
             const Step s = kind_ == Kind::ring ? ring_step(at, end) : mesh_step(at, end);
             visit(s.link);
@@ -55,11 +73,12 @@ public:
         }
     }
     /// Links, one way, across the cut of a ring or mesh into halves, the smallest there is (where rows and
-    /// columns are odd: the nearest to halves); half of a crossbar's ports.
+    /// columns are odd: the nearest to halves); half of a crossbar's ports; half of several buses, or the
+    /// one.
     std::size_t bisection() const;
 
 private:
-    enum class Kind { ideal, crossbar, ring, mesh };
+    enum class Kind { ideal, crossbar, ring, mesh, bus };
     struct Step {
         std::size_t link, to;
     };
@@ -68,7 +87,8 @@ private:
     std::string unit_name(std::size_t unit) const;
 
     Kind kind_;
-    std::size_t nodes_, columns_ = 1, caches_ = 0, banks_ = 0, sharing_ = 1, channels_, between_ = 0;
+    std::size_t nodes_, columns_ = 1, buses_ = 0, caches_ = 0, banks_ = 0, sharing_ = 1, channels_,
+                        between_ = 0;
     unsigned level_ = 0;            // of the caches beyond, for their names
     std::vector<std::size_t> node_; // by unit
     std::vector<std::string> name_; // by link between routers

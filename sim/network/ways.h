@@ -56,6 +56,11 @@ public:
                    ? t
                    : network_.send(Network::Message::word, target({Asker::tile, tile}, address), tile, 0, t);
     }
+    /// Of a hub where buses meet: to all tiles of a bus, in one message.
+    cycle tell_bus(std::uint64_t address, std::size_t bus, cycle t) {
+        const auto tile = static_cast<std::uint32_t>(network_.topology().tile_of_bus(bus));
+        return tell_tile(address, tile, t);
+    }
     /// From a tile to it.
     cycle answer_directory(std::uint32_t tile, std::uint64_t address, cycle t) {
         return ideal_

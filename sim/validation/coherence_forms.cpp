@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace sim {
 namespace {
 
@@ -39,6 +41,82 @@ cycle forwarded(const Config& c, integer from, integer to) {
 cycle fetched(const Config& c, integer tile) {
     return static_cast<cycle>(known(c, tile) + c.memory.controller_cycles + c.memory.tCL +
                               c.memory.burst_clocks() + way(c, 0, tile) + lines(c));
+}
+
+/// On `buses` buses of a machine whose tiles see each other's requests: until all of a request is on the bus
+/// of tile `to`, and until `who`, of another bus perhaps, has said what it has of the line.
+integer on_bus(const Config& c) {
+    return c.l1.latency + c.l2.latency + c.network.hop_cycles + words(c);
+}
+integer bus_of(const Config& c, integer tile) {
+    return tile * c.network.buses / c.chip.tiles;
+}
+/// The hub tells one bus after the other, each in a message of as many cycles as a word has.
+integer said(const Config& c, integer to, integer who) {
+    const integer own = bus_of(c, to), other = bus_of(c, who);
+    const integer earlier = other - (own < other ? 1 : 0);
+    return on_bus(c) + (own == other ? 0 : c.network.hop_cycles + words(c) * (earlier + 1)) +
+           c.coherence.snoop_cycles;
+}
+/// Until all have.
+integer all_said(const Config& c, integer to) {
+    integer last = 0;
+    for (integer bus = 0; bus < c.network.buses; ++bus)
+        last = std::max(last, said(c, to, bus * c.chip.tiles / c.network.buses));
+    return last;
+}
+cycle brought(const Config& c, integer from, integer to) {
+    return static_cast<cycle>(said(c, to, from) + c.l2.latency + way(c, from, to) + lines(c));
+}
+cycle fetched_over_bus(const Config& c, integer tile) {
+    const integer memory = on_bus(c) + c.memory.controller_cycles + c.memory.tCL + c.memory.burst_clocks();
+    return static_cast<cycle>(std::max(memory, all_said(c, tile)) + c.network.hop_cycles + lines(c));
+}
+
+void add_snoops(std::vector<CoherenceForm>& out) {
+    for (const integer buses : {1, 2, 3})
+        for (const integer snoop_cycles : {4, 90}) { // sooner and later than memory
+            Config c = coherent_machine("bus", 12);
+            c.coherence.plain = "snoop";
+            c.network.buses = buses;
+            c.coherence.snoop_cycles = snoop_cycles;
+            const std::string where = fmt::format("{} of 12 tiles, snooped in {}",
+                                                  buses == 1   ? "a bus"
+                                                  : buses == 2 ? "two buses"
+                                                               : "three buses",
+                                                  snoop_cycles);
+            const auto add = [&](const char* name, const char* by, const std::vector<TimedAccess>& accesses,
+                                 const std::vector<cycle>& expected) {
+                out.push_back({fmt::format("{}, {}", name, where), by, expected, {}});
+                act_in_turn(c, accesses, &out.back().measured);
+            };
+            std::vector<TimedAccess> accesses = {{1, 0, true}};
+            std::vector<cycle> expected;
+            for (int turn = 0; turn < 10; ++turn)
+                for (const auto& [from, to] : {std::pair(1, 10), std::pair(10, 1)}) {
+                    accesses.insert(accesses.end(), {{to, 0, false}, {to, 0, true}});
+                    expected.push_back(brought(c, from, to));
+                }
+            add("ping-pong", "request, what the owner says, line", accesses, expected);
+            accesses.clear();
+            expected.clear();
+            for (int turn = 0; turn < 5; ++turn) {
+                accesses.insert(accesses.end(), {{4, 0, true}, {9, 0, false}, {2, 0, false}, {11, 0, false}});
+                expected.insert(expected.end(),
+                                {brought(c, 4, 9), fetched_over_bus(c, 2), fetched_over_bus(c, 11)});
+            }
+            add("a producer and three consumers", "a line brought, the others from memory's open row",
+                accesses, expected);
+            out.push_back({fmt::format("upgrade, {}", where),
+                           "request, what all say",
+                           {static_cast<cycle>(2 * access_gap + 1 + all_said(c, 5))},
+                           {}});
+            out.back().measured.push_back(0);
+            const Report r = act_in_turn(c, {{7, 0, false}, {5, 0, false}, {5, 0, true}});
+            for (const ThreadReport& t : r.threads)
+                if (t.tile == 5)
+                    out.back().measured.front() = t.finish;
+        }
 }
 
 } // namespace
@@ -175,6 +253,7 @@ std::vector<CoherenceForm> coherence_forms() {
             if (t.tile == 5)
                 out.back().measured.front() = t.finish;
     }
+    add_snoops(out);
     return out;
 }
 

@@ -69,6 +69,8 @@ integer hops_between(const Config& c, integer from, integer to) {
     const integer tiles = c.chip.tiles, apart = std::abs(from - to);
     if (c.network.topology == "crossbar")
         return 1;
+    if (c.network.bus())
+        return from * c.network.buses / tiles == to * c.network.buses / tiles ? 1 : 2;
     if (c.network.topology == "ring")
         return std::min(apart, tiles - apart);
     integer columns = 1;
@@ -79,7 +81,7 @@ integer hops_between(const Config& c, integer from, integer to) {
 
 std::vector<NetworkPing> network_pings() {
     std::vector<NetworkPing> out;
-    for (const char* topology : {"crossbar", "ring", "mesh"}) {
+    for (const char* topology : {"crossbar", "ring", "mesh", "bus"}) {
         const Config c = network_machine(topology, 12);
         out.push_back({fmt::format("{} of {} tiles", topology, c.chip.tiles), {}, {}});
         for (integer tile = 0; tile < c.chip.tiles; ++tile) {
@@ -103,7 +105,7 @@ std::vector<NetworkPing> network_pings() {
 
 std::vector<NetworkLoad> network_loads() {
     Loads loads;
-    for (const char* topology : {"crossbar", "ring", "mesh"}) // 15 lines for each of tile 5
+    for (const char* topology : {"crossbar", "ring", "mesh", "bus"}) // 15 lines for each of tile 5
         loads.add(topology, 16, "all to one", "the link to it", 15,
                   [](integer, integer to) { return to == 5; });
     const auto all = [](integer, integer) { return true; };
@@ -115,6 +117,7 @@ std::vector<NetworkLoad> network_loads() {
     loads.add("mesh", 16, "all to all", "the middle links, 2 x 8", 16, all);
     loads.add("mesh", 64, "all to all", "the middle links, 4 x 32", 128, all);
     loads.add("mesh", 32, "all to all", "the middle links of 4 rows of 8, 4 x 16", 64, all);
+    loads.add("bus", 16, "all to all", "the bus, n (n - 1)", 240, all);
     // Everybody sends across the middle.
     loads.add("ring", 16, "bisection", "each link, n / 4", 4,
               [](integer from, integer to) { return to == (from + 8) % 16; });

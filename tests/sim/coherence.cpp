@@ -63,7 +63,7 @@ std::vector<Step> random_steps(std::uint32_t seed, int count, const Config& c, i
 
 OracleCounts counts_of(const Report& r) {
     const CacheCounters l1 = r.cache_total(0), l2 = r.cache_total(1);
-    const DirectoryCounters& d = r.directory;
+    const CoherenceCounters& d = r.coherence;
     OracleCounts out;
     out.l1_misses = l1.misses;
     out.l1_upgrades = l1.upgrades;
@@ -124,6 +124,65 @@ TEST(Coherence, CountsEqualATableOfStates) {
     }
 }
 
+/// Tiles that see each other's requests.
+Config snooping(Config c, integer buses) {
+    c = coherent(c);
+    c.coherence.plain = "snoop";
+    c.network.topology = "bus";
+    c.network.buses = buses;
+    return c;
+}
+
+TEST(Coherence, CountsOfCachesThatSnoopEqualTheTableToo) {
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+        Config c = simple();
+        c.chip.tiles = 2 + seed % 4;
+        c.chip.cores = 1 + seed / 4;
+        c = snooping(c, c.chip.tiles % 2 == 0 ? 1 + static_cast<integer>(seed / 4) % 2 : 1);
+        const std::vector<Step> steps = random_steps(seed, 500, c, 5);
+        CoherenceOracle oracle(static_cast<int>(c.chip.tiles), static_cast<int>(c.chip.cores));
+        for (const Step& s : steps)
+            oracle.access(s.tile, s.core, s.line, s.write);
+        const Report r = act(c, steps);
+        expect_equal(counts_of(r), oracle.counts(), fmt::format("seed {}", seed));
+        EXPECT_EQ(r.coherence.forwards_stale + r.coherence.invalidations_stale, 0U);
+    }
+}
+
+// Who drops a line without a word says so when asked: the next one to read it has it alone.
+TEST(Coherence, CachesThatSnoopSayWhatTheyDropped) {
+    for (const bool snoops : {false, true}) {
+        Config c = simple();
+        c.chip.tiles = 2;
+        c.l2.ways = 1;
+        c = snoops ? snooping(c, 1) : coherent(c);
+        const int sets = static_cast<int>(c.l2.size_bytes / c.l2.line_bytes);
+        // Both read the line, the first drops it, and so does the second, which then reads it again.
+        const Report r = act(c, {{0, 0, 0, false},
+                                 {1, 0, 0, false},
+                                 {0, 0, sets, false},
+                                 {1, 0, 2 * sets, false},
+                                 {1, 0, 0, false}});
+        EXPECT_EQ(r.coherence.exclusive, snoops ? 4U : 3U);
+        EXPECT_EQ(r.coherence.snoops, snoops ? 5U : 0U);
+    }
+}
+
+// What one tile reads of what another has changed, memory has as well, without a message.
+TEST(Coherence, MemoryTakesWhatPasses) {
+    Config c = simple();
+    c.chip.tiles = 4;
+    c = snooping(c, 2);
+    const Report r = act(c, {{0, 0, 0, true}, {3, 0, 0, false}});
+    EXPECT_EQ(r.coherence.forwards_dirty, 1U);
+    EXPECT_EQ(r.coherence.written_back, 1U);
+    EXPECT_EQ(r.memory.reads, 1U);
+    EXPECT_EQ(r.memory.writes, 1U);
+    EXPECT_EQ(r.network.counters.writes, 0U);
+    EXPECT_EQ(r.coherence.passed_on, 2U);
+    EXPECT_EQ(r.coherence.snoops, 2 * 3U);
+}
+
 TEST(Coherence, NothingIsAskedWhereItIsOff) {
     Config c = simple();
     c.chip.tiles = 3;
@@ -154,10 +213,10 @@ TEST(Coherence, WritesThroughTakeOthersCopies) {
         EXPECT_EQ(r.l2[0].upgrades, 1U);
         EXPECT_EQ(r.l2[1].invalidations, 1U);
         EXPECT_EQ(r.l1[2].invalidations + r.l1[3].invalidations, 2U);
-        EXPECT_EQ(r.directory.forwards_dirty, 1U);
+        EXPECT_EQ(r.coherence.forwards_dirty, 1U);
         r = counts({{0, 0, 0, false}, {1, 0, 0, true}});
         EXPECT_EQ(r.l1[0].invalidations, 1U);
-        EXPECT_EQ(r.directory.writes, 1U);
+        EXPECT_EQ(r.coherence.writes, 1U);
     }
 }
 
@@ -180,8 +239,8 @@ TEST(Coherence, InnerLevelsGiveLinesUpToo) {
     EXPECT_EQ(r.l1[2].invalidations, 1U);
     EXPECT_EQ(r.l2[0].invalidations, 1U);
     EXPECT_EQ(r.l2[1].invalidations, 0U);
-    EXPECT_EQ(r.directory.writes, 1U);
-    EXPECT_EQ(r.directory.reads + r.directory.upgrades, 0U) << "the tile has it";
+    EXPECT_EQ(r.coherence.writes, 1U);
+    EXPECT_EQ(r.coherence.reads + r.coherence.upgrades, 0U) << "the tile has it";
     // From the other tile: two lines of the L2s are one of the L3.
     r = act(c, {{0, 0, 0, true}, {0, 2, 1, true}, {1, 1, 1, true}});
     EXPECT_EQ(r.l1[0].invalidations, 1U);
@@ -189,7 +248,7 @@ TEST(Coherence, InnerLevelsGiveLinesUpToo) {
     EXPECT_EQ(r.l2[0].invalidations, 1U);
     EXPECT_EQ(r.l2[1].invalidations, 1U);
     EXPECT_EQ(r.l3[0].invalidations, 1U);
-    EXPECT_EQ(r.directory.forwards_dirty, 1U);
+    EXPECT_EQ(r.coherence.forwards_dirty, 1U);
 }
 
 // A line that left without a word is asked of who had it in vain, one that was written back is not.
@@ -202,8 +261,8 @@ TEST(Coherence, WhatLeavesDirtyIsKnown) {
         const int sets = static_cast<int>(c.l2.size_bytes / c.l2.line_bytes);
         const Report r = act(c, {{0, 0, 0, write}, {0, 0, sets, false}, {1, 0, 0, false}});
         EXPECT_EQ(r.l2[0].write_backs, write ? 1U : 0U);
-        EXPECT_EQ(r.directory.forwards_stale, write ? 0U : 1U);
-        EXPECT_EQ(r.directory.forwards, r.directory.forwards_stale);
+        EXPECT_EQ(r.coherence.forwards_stale, write ? 0U : 1U);
+        EXPECT_EQ(r.coherence.forwards, r.coherence.forwards_stale);
         EXPECT_EQ(r.memory.reads, 3U);
     }
 }
@@ -301,11 +360,11 @@ TEST(Coherence, TilesThatFightKeepTheLaws) {
         ASSERT_NO_THROW(check_consistency(c, "fighting"));
         Report r;
         ASSERT_NO_THROW(r = contend(c, seed)) << seed;
-        lost += r.directory.lost_upgrades;
-        silent += r.directory.silent_upgrades;
-        stale += r.directory.invalidations_stale;
-        dirty += r.directory.forwards_dirty;
-        waited += r.directory.wait_cycles;
+        lost += r.coherence.lost_upgrades;
+        silent += r.coherence.silent_upgrades;
+        stale += r.coherence.invalidations_stale;
+        dirty += r.coherence.forwards_dirty;
+        waited += r.coherence.wait_cycles;
     }
     EXPECT_GT(lost, 100U);
     EXPECT_GT(silent, 100U);
@@ -314,9 +373,39 @@ TEST(Coherence, TilesThatFightKeepTheLaws) {
     EXPECT_GT(waited, 1000U);
 }
 
+/// The same on buses.
+Config fighting_on_buses(std::uint32_t seed) {
+    Config c = fighting(seed);
+    if (c.l3.share == "chip")
+        c.l3.size_bytes = 0;
+    c.coherence.snoop_cycles = std::array{1, 6, 200}[seed % 3];
+    return snooping(c, c.chip.tiles == 8   ? integer{1} << (seed / 3 % 4)
+                       : c.chip.tiles == 2 ? 1 + seed % 2
+                                           : 1);
+}
+
+TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
+    std::uint64_t lost = 0, silent = 0, dirty = 0, passed_on = 0;
+    for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+        const Config c = fighting_on_buses(seed);
+        SCOPED_TRACE(seed);
+        ASSERT_NO_THROW(check_consistency(c, "fighting"));
+        Report r;
+        ASSERT_NO_THROW(r = contend(c, seed)) << seed;
+        lost += r.coherence.lost_upgrades;
+        silent += r.coherence.silent_upgrades;
+        dirty += r.coherence.forwards_dirty;
+        passed_on += r.coherence.passed_on;
+    }
+    EXPECT_GT(lost, 50U);
+    EXPECT_GT(silent, 50U);
+    EXPECT_GT(dirty, 1000U);
+    EXPECT_GT(passed_on, 1000U);
+}
+
 TEST(Coherence, ReportsDoNotDependOnTheHost) {
-    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
-        const Config c = fighting(seed);
+    for (std::uint32_t seed = 1; seed <= 16; ++seed) {
+        const Config c = seed <= 12 ? fighting(seed) : fighting_on_buses(seed);
         expect_equal_on_host_threads([&](int threads) { return contend(c, seed, threads); },
                                      fmt::format("seed {}", seed));
         expect_equal_in_any_order(
@@ -337,15 +426,15 @@ TEST(Coherence, SharedWordsAreInTheDirectory) {
         if (w == 0)
             release_after(s.at(0), 20000);
     });
-    EXPECT_EQ(r.directory.claims, 1U);
-    EXPECT_EQ(r.directory.invalidations_received, 1U);
+    EXPECT_EQ(r.coherence.claims, 1U);
+    EXPECT_EQ(r.coherence.invalidations_received, 1U);
     EXPECT_EQ(r.l2[1].invalidations, 1U);
     expect_equal_on_host_threads(
         [&](int host_threads) {
             Config busy = coherent(busy_tiles());
             busy.network.topology = "ring";
             const Report words = run_busy_tiles(busy, host_threads);
-            EXPECT_GT(words.directory.writes, 100U);
+            EXPECT_GT(words.coherence.writes, 100U);
             return words;
         },
         "words");
@@ -372,10 +461,10 @@ TEST(Coherence, WhatIsAskedForAgainStays) {
                 load(here, base, 4, s);
         },
         2);
-    EXPECT_EQ(r.directory.upgrades, 2U);
-    EXPECT_EQ(r.directory.lost_upgrades, 1U);
-    EXPECT_EQ(r.directory.invalidations_stale, 1U);
-    EXPECT_EQ(r.directory.forwards_dirty, 1U);
+    EXPECT_EQ(r.coherence.upgrades, 2U);
+    EXPECT_EQ(r.coherence.lost_upgrades, 1U);
+    EXPECT_EQ(r.coherence.invalidations_stale, 1U);
+    EXPECT_EQ(r.coherence.forwards_dirty, 1U);
     EXPECT_EQ(r.l2[1].misses, 1U);
     EXPECT_EQ(r.l2[0].invalidations, 1U);
 }
@@ -396,12 +485,12 @@ TEST(Coherence, LinesOutliveAFrame) {
                                        1, {.frames = 2}));
     EXPECT_EQ(r.memory.writes, 16U);
     EXPECT_EQ(r.cache_total(1).misses, 0U);
-    EXPECT_EQ(r.directory.upgrades + r.directory.silent_upgrades + r.directory.writes, 0U);
+    EXPECT_EQ(r.coherence.upgrades + r.coherence.silent_upgrades + r.coherence.writes, 0U);
 }
 
 // One access at a time: the windows' length does not matter.
 TEST(Coherence, WindowsChangeNothingForWhoTakesTurns) {
-    for (const char* topology : {"ideal", "mesh"})
+    for (const std::string topology : {"ideal", "mesh", "bus"})
         expect_equal_in_windows(
             [&](integer window) {
                 Config c = simple();
@@ -410,7 +499,7 @@ TEST(Coherence, WindowsChangeNothingForWhoTakesTurns) {
                 c.chip.cores = 2;
                 c.network.topology = topology;
                 c.sim.window = window;
-                c = coherent(c);
+                c = topology == "bus" ? snooping(c, 3) : coherent(c);
                 return act(c, random_steps(7, 100, c, 4));
             },
             topology);
@@ -431,19 +520,36 @@ TEST(Coherence, WhatItNeedsIsSaid) {
                       "l3.share = 8\n")
                   .find("l3.share"),
               std::string::npos);
+    const std::string snoops = "coherence.plain = \"snoop\"\nl2.inclusion = \"inclusive\"\n",
+                      bus = "network.topology = \"bus\"\n";
+    EXPECT_EQ(mistake(snoops + bus), "");
+    EXPECT_NE(mistake(snoops).find("network.topology must be bus, not ideal"), std::string::npos);
+    EXPECT_NE(mistake(snoops + bus + "chip.tiles = 4\nl3.size_bytes = 65536\nl3.ways = 8\n").find("l3.share"),
+              std::string::npos);
+    EXPECT_NE(mistake(bus + "chip.tiles = 4\nnetwork.buses = 3\n").find("make it a divisor"),
+              std::string::npos);
 }
 
 TEST(Coherence, BrokenNumbersAreNoticed) {
     Config c = simple();
     c.chip.tiles = 2;
+    const std::vector<Step> steps = {{0, 0, 0, true}, {1, 0, 0, false}, {0, 0, 0, true}};
+    const Report snooped = act(snooping(c, 2), steps);
+    EXPECT_NO_THROW(check_laws(snooped));
+    for (const auto count : {&CoherenceCounters::snoops, &CoherenceCounters::passed_on,
+                             &CoherenceCounters::acknowledgements, &CoherenceCounters::claims}) {
+        Report r = snooped;
+        ++(r.coherence.*count);
+        EXPECT_THROW(check_laws(r), std::logic_error);
+    }
     c = coherent(c);
-    const Report good = act(c, {{0, 0, 0, true}, {1, 0, 0, false}, {0, 0, 0, true}});
+    const Report good = act(c, steps);
     EXPECT_NO_THROW(check_laws(good));
-    for (const auto& row : directory_counters)
-        if (row.count != &DirectoryCounters::wait_cycles && row.count != &DirectoryCounters::claims &&
-            row.count != &DirectoryCounters::lost_upgrades) {
+    for (const auto& row : coherence_counters)
+        if (row.count != &CoherenceCounters::wait_cycles && row.count != &CoherenceCounters::claims &&
+            row.count != &CoherenceCounters::lost_upgrades) {
             Report r = good;
-            ++(r.directory.*row.count);
+            ++(r.coherence.*row.count);
             EXPECT_THROW(check_laws(r), std::logic_error) << row.name;
         }
     Report r = good;

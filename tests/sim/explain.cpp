@@ -23,19 +23,21 @@ void collect(const nlohmann::json& node, const std::string& path, std::set<std::
         out.insert(path);
 }
 
-/// The figures of a machine that has everything there is to report, with an L2 a tile or a core.
-void add_figures(std::set<std::string>& out, const char* share) {
+/// The figures of a machine that has everything there is to report, with an L2 a tile or a core; or whose
+/// caches see each other's requests on buses.
+void add_figures(std::set<std::string>& out, const char* share, bool snoops = false) {
     Config c;
     c.l2.share = share;
     for (CacheConfig* level : {&c.l3, &c.l4, &c.l5}) {
         level->size_bytes = 65536;
-        level->share = level == &c.l5 ? "chip" : "tile";
+        level->share = level == &c.l5 && !snoops ? "chip" : "tile";
     }
-    c.coherence.plain = "directory";
+    c.coherence.plain = snoops ? "snoop" : "directory";
+    c.l5.inclusion = snoops ? "inclusive" : "none";
     for (CacheConfig* level : {&c.l2, &c.l3, &c.l4})
         level->inclusion = "inclusive";
     c.chip.tiles = 2;
-    c.network.topology = "mesh";
+    c.network.topology = snoops ? "bus" : "mesh";
     c.tlb.entries = 8;
     c.core.issue_width = 2;
     c.core.pairing = "any | any";
@@ -61,6 +63,7 @@ TEST(Explain, EveryFigureOnceAndNothingElse) {
     std::set<std::string> all;
     add_figures(all, "tile");
     add_figures(all, "core");
+    add_figures(all, "tile", true);
     EXPECT_GT(all.size(), 300U);
     std::set<const Explanation*> used;
     for (const std::string& path : all) {

@@ -105,6 +105,28 @@ TEST(Network, MessagesShareLinksByHand) {
     EXPECT_EQ(n.quiet(), 17U);
 }
 
+// Four tiles on two buses that meet where the channel is, 3 cycles a hop, lines of 5 flits.
+TEST(Network, BusesTakeTurnsByHand) {
+    Config c = network_machine("bus", 4);
+    c.network.buses = 2;
+    Network n(c, none);
+    const std::size_t hub = n.topology().channel(0);
+    EXPECT_EQ(n.topology().hops(0, 1), 1U);
+    EXPECT_EQ(n.topology().hops(0, 2), 2U);
+    EXPECT_EQ(n.topology().hops(3, hub), 1U);
+    EXPECT_EQ(n.topology().hops(hub, hub), 0U);
+    EXPECT_EQ(n.send(Message::write, 0, hub, 64, 0), 3 + 5U);  // bus 0 in 0..4
+    EXPECT_EQ(n.send(Message::request, 1, hub, 0, 0), 5 + 4U); // bus 0 in 5
+    EXPECT_EQ(n.send(Message::request, 2, hub, 0, 0), 9 + 1U); // bus 1 in 0, the hub's port in 3..8
+    // Bus 0 in 6..10, bus 1 in 9..13.
+    EXPECT_EQ(n.send(Message::write, 1, 3, 64, 1), 12 + 5U);
+    EXPECT_EQ(n.send(Message::write, 0, 1, 64, 5), 11 + 3 + 5U); // bus 0 in 11..15
+    const NetworkReport r = n.report();
+    EXPECT_EQ(r.links[r.links.size() - 2].link, "bus 0");
+    EXPECT_EQ(r.links[r.links.size() - 2].flits, 5 + 1 + 5 + 5U);
+    EXPECT_EQ(r.links.back().flits, 1 + 5U);
+}
+
 // A tile's own link takes a flit a cycle, in order.
 TEST(Network, ASenderWaitsForItsOwnMessages) {
     for (const char* topology : topologies) {

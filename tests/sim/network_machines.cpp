@@ -51,7 +51,8 @@ TEST(Network, MissesBeyondTheTilePayBothWays) {
                                          },
                                          6)
                                          .cycles;
-                const integer hops = hops_between(c, reader, 3 * bank) + hops_between(c, 3 * bank, 0);
+                const integer hops = hops_between(c, reader, 3 * bank) +
+                                     (c.network.bus() ? 0 : hops_between(c, 3 * bank, 0)); // both at the hub
                 EXPECT_EQ(cycles,
                           u(c.l1.latency + c.l2.latency + c.l3.latency + 2 * hops * c.network.hop_cycles +
                             c.memory.controller_cycles + c.memory.tRCD + c.memory.tCL +
@@ -119,14 +120,17 @@ TEST(Network, TheChannelsLinkBindsWhereAllReadFromIt) {
                     }
                 },
                 8);
-            const std::uint64_t line = flits(c, 64 + c.network.reply_bytes);
+            std::uint64_t line = flits(c, 64 + c.network.reply_bytes);
+            if (c.network.bus() && !writes) // which the requests take as well
+                line += flits(c, c.network.request_bytes);
             const std::uint64_t most = writes ? r.network.counters.data_bytes / 64 * line : 8 * lines * line;
             EXPECT_EQ(r.network.counters.writes != 0, writes);
             EXPECT_GE(r.drained, most);
             EXPECT_LE(r.drained, most * 102 / 100) << topology << (writes ? " writes" : " reads");
             EXPECT_STREQ(binding(limits(r)).resource, "network");
             EXPECT_EQ(limiter(r).find("network"), 0U);
-            EXPECT_EQ(r.network.busiest().link, writes ? "to channel 0" : "from channel 0");
+            const std::string link = writes ? "to channel 0" : c.network.bus() ? "bus 0" : "from channel 0";
+            EXPECT_EQ(r.network.busiest().link, link);
         }
 }
 

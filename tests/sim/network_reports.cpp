@@ -111,6 +111,7 @@ TEST(Network, FiguresOfAChip) {
     EXPECT_EQ(bisection("crossbar", 15), 8); // with the channel
     EXPECT_EQ(bisection("ring", 16), 2);
     EXPECT_EQ(bisection("ring", 1), 0);
+    EXPECT_EQ(bisection("bus", 16), 1);
     EXPECT_EQ(bisection("mesh", 16), 4);
     EXPECT_EQ(bisection("mesh", 8), 2);
     EXPECT_EQ(bisection("mesh", 6), 3); // three columns, two rows

@@ -8,7 +8,7 @@
 
 namespace sim::test {
 
-inline constexpr std::array topologies = {"crossbar", "ring", "mesh"};
+inline constexpr std::array topologies = {"crossbar", "ring", "mesh", "bus"};
 inline constexpr integer kib = 1024;
 
 /// An L3 of all tiles.

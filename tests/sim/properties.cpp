@@ -57,9 +57,10 @@ void add_tlbs(Config& c, std::mt19937& random) {
 }
 
 /// Coherence of plain data, with what it needs.
-void add_directory(Config& c, std::mt19937& random) {
-    c.coherence.plain = "directory";
-    c.coherence.directory_cycles = 1 + static_cast<integer>(random() % 40);
+void add_coherence(Config& c, std::mt19937& random) {
+    const bool snoops = c.network.bus() && !c.beyond_tiles(c.cache_levels() - 1) && random() % 4 != 0;
+    c.coherence.plain = snoops ? "snoop" : "directory";
+    c.coherence.directory_cycles = c.coherence.snoop_cycles = 1 + static_cast<integer>(random() % 40);
     const std::array<CacheConfig*, 5> all = {&c.l1, &c.l2, &c.l3, &c.l4, &c.l5};
     const unsigned levels = c.tile_levels();
     for (unsigned level = 1; level < levels; ++level) {
@@ -190,7 +191,8 @@ Config random_machine(std::mt19937& random) {
             for (; upper <= level; ++upper)
                 std::array<CacheConfig*, 5>{&c.l1, &c.l2, &c.l3, &c.l4, &c.l5}[upper]->prefetcher = "none";
     const integer line_bytes = c.last_cache().line_bytes;
-    c.network.topology = std::array{"ideal", "crossbar", "ring", "mesh"}[random() % 4];
+    c.network.topology = std::array{"ideal", "crossbar", "ring", "mesh", "bus"}[random() % 5];
+    c.network.buses = c.network.bus() && c.chip.tiles % 2 == 0 ? pick(1, 2) : 1;
     c.network.link_bytes = pick(1, 100);
     c.network.hop_cycles = pick(0, 20);
     c.network.request_bytes = pick(1, 40);
@@ -225,7 +227,7 @@ Config random_machine(std::mt19937& random) {
     c.coherence.atomic_cycles = pick(0, 1000);
     c.coherence.remote_cycles = pick(0, 5000);
     if (pick(0, 1) == 0)
-        add_directory(c, random);
+        add_coherence(c, random);
     else if (pick(0, 1) == 0)
         add_queues(c, random);
     if (pick(0, 1) == 0)
