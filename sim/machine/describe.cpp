@@ -140,10 +140,8 @@ std::string chip_text(const Config& c) {
              fmt::format(
                  "{}{} of {} bytes a cycle, {} cycles a hop; {} a link, {} across the middle, one way; a "
                  "tile is {:.3g} hops from what answers it: {:.3g} ns there and back with a line",
-                 c.network.topology,
-                 c.network.topology == "mesh" ? fmt::format(", {} x {},", t.columns(), t.rows())
-                 : c.network.bus()            ? fmt::format(", {},", t.buses())
-                                              : "",
+                 c.network.bus() && t.buses() > 1 ? fmt::format("{} buses", t.buses()) : c.network.topology,
+                 c.network.topology == "mesh" ? fmt::format(", {} x {},", t.columns(), t.rows()) : "",
                  c.network.link_bytes, c.network.hop_cycles, rate(f.network.link_bytes_per_second, "GB/s"),
                  rate(f.network.bisection_bytes_per_second, "GB/s"), f.network.hops,
                  f.network.cycles * real(c.chip.clock_ps) * 1e-3));
