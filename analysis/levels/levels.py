@@ -9,8 +9,8 @@ shorter by --reference. Times are processor seconds of one thread for a frame, e
 topology's pages, which an animation makes once: medians of --frames frames after a first, and of --repeat runs.
 These take turns, and ratios of times are medians, with the least and the largest, of ratios within a turn: whatever
 slows the machine for longer than one cancels. "first": the first frame's, pages and all. Shadow rays: the time with them
-less that without. made/needed: triangles made over twice the pixels covered, over the square of the target edge in
-pixels.
+less that without. made/needed: triangles made over twice the squares of the target edge that the visible surface is
+large (as seen through the centres of pixels, with shading normals; 32 a pixel at most, where it is seen edge-on).
 
 Fixed levels are powers of two apart, so none has just the error of another scheme. Where at least two are among the
 schemes ("fixed:-1" has edges half as long as "fixed"), "/fixed" is a time over that of a fixed level of equal error,
@@ -84,7 +84,7 @@ def measure(options):
                                     *level_of_detail(scheme, edge))[0] for seed in (1, 2)]
             error, noise = errors(options, folder, pictures, references)
             counters = whole["counters"]
-            needed = 2 * counters["camera_hits"] / options.spp / edge**2  # pixels covered / half a square edge
+            needed = 2 * whole["visible"]["squares"] / edge**2  # visible area / half a square edge
             rows.append({"scheme": scheme, "rmse": error, "noise": noise,
                          **{f"{rays}_seconds": statistics.median(turns[rays]) for rays in RAYS},
                          **{f"{rays}_turns": turns[rays] for rays in RAYS},

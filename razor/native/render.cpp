@@ -112,6 +112,7 @@ RenderResult render_native(const Scene& scene, const RenderOptions& options) {
     }
     r.statistics.frame = frame.statistics();
     r.film = frame.film();
+    r.statistics.visible = visible_surface(r.film, scene.camera, scene.settings);
     return r;
 }
 

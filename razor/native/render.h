@@ -3,6 +3,7 @@
 
 #include "razor/frame/frame.h"
 #include "razor/image/image.h"
+#include "razor/native/visible.h"
 #include "razor/scene/scene.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -44,6 +45,7 @@ struct RenderStatistics {
     int width_lanes = 0, threads = 0;
     double load_seconds = 0; // topology and frame memory
     std::vector<FrameTime> times;
+    VisibleSurface visible;
 };
 
 /// Counters by name; those of a kind of ray under its name.

@@ -61,6 +61,7 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                         {"nodes_never_split", f.unsplit_nodes},
                         {"blocks_without_normals", c.blocks_made - c.normal_blocks},
                         {"undrawn_faces", f.undrawn_faces}};
+    json["visible"] = {{"pixels", s.visible.pixels}, {"squares", s.visible.squares}};
     json["host"] = {{"load_seconds", s.load_seconds},
                     {"refit_seconds", f.refit_seconds},
                     {"first_packet_seconds", f.first_packet_seconds}};

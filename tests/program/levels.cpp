@@ -43,7 +43,8 @@ except FileNotFoundError:
 seconds = 8 / 2**level + (0 if "--light-samples" in words else 16 / 3**level)
 frames = [2 * seconds * host] + [seconds * host * part for part in (1.1, 1, 0.9)][:int(option("--frames", 1)) - 1]
 json.dump({"statistics": {"host": {"frames": [{"render_processor_seconds": s} for s in frames]},
-                          "counters": {"camera_hits": 1200, "triangles_made": 900, "blended_tests": 1, "block_tests": 4},
+                          "visible": {"squares": 400.0},
+                          "counters": {"triangles_made": 900, "blended_tests": 1, "block_tests": 4},
                           "built": {"grid_bytes": 5e6}}}, open(option("--stats"), "w"))
 )";
 
@@ -76,7 +77,7 @@ TEST_F(Levels, TimesAtEqualError) {
     // On the line through the logarithms of levels 1 and 2 it takes as long as a fixed level of its error.
     for (const char* rays : {"camera", "shadow", "first_camera", "first_shadow"})
         EXPECT_NEAR(recursive.at(std::string(rays) + "_over_fixed").at(1).get<double>(), 1, 1e-9) << rays;
-    EXPECT_NEAR(recursive.at("made_over_needed").get<double>(), 900 / (2 * 1200 / 3.0 / 4), 1e-9);
+    EXPECT_NEAR(recursive.at("made_over_needed").get<double>(), 900 / (2 * 400.0 / 4), 1e-9);
     EXPECT_NEAR(recursive.at("blended").get<double>(), 0.25, 1e-9);
     // Finer than every fixed level, in twice the time of the finest: at most that.
     const auto& discrete = rows.at(1);
