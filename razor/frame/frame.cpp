@@ -48,10 +48,11 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     size_arenas();
     const std::uint64_t arenas =
         static_cast<std::uint64_t>(options.workers) * (grid_bytes + node_bytes + list_bytes);
-    // OpenPatch entries, a table a tree, take memory only where a patch is opened.
+    // OpenPatch entries and curve lengths, tables a tree, take memory only where a patch is opened.
     const std::uint64_t scene_bytes =
         static_cast<std::uint64_t>(clusters) *
             (refit_patches * sizeof(OpenPatch) * static_cast<std::size_t>(trees) + 4) +
+        total.curves * 4 * static_cast<std::size_t>(trees) +
         total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
         (total.faces + total.points + total.curves + total.face_curves) * 64 +
         geometry.instances.size() * sizeof(InstanceRecord) + geometry.graph.size() * sizeof(GraphNodeRecord);
@@ -78,6 +79,7 @@ void Frame::Impl::reset() {
         tree.root_state.word = absent;
         // Reads as zero again, which is an absent patch, wherever something was written.
         memory->clear(*memory->find(memory->offset(tree.patches.get())));
+        memory->clear(*memory->find(memory->offset(tree.curve_lengths.get())));
         opened[static_cast<std::size_t>(t)]->clear();
     }
     watch.restart();

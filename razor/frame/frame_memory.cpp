@@ -241,9 +241,13 @@ void Frame::Impl::place_workers() {
     header->queues.set(region<QueueRecord>("queues", -1, 1, true));
     header->trees.set(region<TreeRecord>("kd nodes", -1, static_cast<std::size_t>(trees), true));
     header->workers.set(region<WorkerRecord>("stack", -1, n, true));
-    for (int t = 0; t < trees; ++t)
-        header->trees.get()[t].patches.set(
+    for (int t = 0; t < trees; ++t) {
+        TreeRecord& tree = header->trees.get()[t];
+        tree.patches.set(
             coloured<OpenPatch>("grids", t, static_cast<std::size_t>(header->patch_count), colour_patches));
+        tree.curve_lengths.set(
+            coloured<isa::shared<std::int32_t>>("grids", t, total.curves, colour_curve_lengths));
+    }
     // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
     for (int w = 0; w < options.workers; ++w) {
         auto* p =

@@ -31,7 +31,8 @@ enum Coloured : int {
     colour_grids,
     colour_nodes,
     colour_lists,
-    colour_patches
+    colour_patches,
+    colour_curve_lengths
 };
 inline int colour(int owner, Coloured kind) {
     return (owner * 97 + kind * 411) % coloured_lines;

@@ -260,9 +260,10 @@ inline constexpr float gradation_cap = 0.125F;
 /// Levels are powers of two: fields are held times this, so that the level used is the nearest in the
 /// logarithm.
 inline constexpr float level_rounding = 1.41421356F;
-inline constexpr float least_target_edge = 1.0e-30F; // edge lengths asked for are positive
-inline constexpr int straight_curve = -2;            // of a bilinear patch: its vertices never leave it
-inline constexpr int inner_side = -1;                // the side is no side of the patch
+inline constexpr float least_curve_length = 1.0e-30F; // to be told from 0
+inline constexpr float least_target_edge = 1.0e-30F;  // edge lengths asked for are positive
+inline constexpr int straight_curve = -2;             // of a bilinear patch: its vertices never leave it
+inline constexpr int inner_side = -1;                 // the side is no side of the patch
 
 /// Sub-faces of n-gons end in the middle of edges, at corners 1 and 3. What is known of the two edges beyond:
 /// [edge][xyz], edge 0 of side 0, edge 1 of side 3.
@@ -327,6 +328,7 @@ struct alignas(line_bytes) TreeRecord {
     std::int32_t root;
     float low[3], high[3]; // of everything, scene coordinates
     isa::ref<OpenPatch> patches;
+    isa::ref<isa::shared<std::int32_t>> curve_lengths; // floats, mesh units; 0: nobody asked for it yet
 };
 
 /// What one worker allocates from: lines or nodes, counted from the base of the family.

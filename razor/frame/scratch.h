@@ -11,9 +11,9 @@ namespace razor {
 
 inline constexpr int stack_entry = 2 * ISA_WIDTH + 16; // node; entry and exit distance of each lane
 inline constexpr int scratch_curve =
-    (kd_depth_limit + 4) * stack_entry; // real points of a curve chunk: x[16], y, z; twice
+    (kd_depth_limit + 4) * stack_entry; // real points of a curve chunk: x[16], y, z; three times
 inline constexpr int scratch_curve_size = 3 * curve_row;
-inline constexpr int scratch_mailbox = scratch_curve + 2 * scratch_curve_size;
+inline constexpr int scratch_mailbox = scratch_curve + 3 * scratch_curve_size;
 /// A block as one field sees it, laid out as a block, each part at its largest. On the stack, one from which
 /// another hangs.
 inline constexpr int blend_cells = block_header_words + 3 * row_vertices;

@@ -26,6 +26,7 @@ struct Context {
     pointer<WorkerRecord> self;
     pointer<TreeRecord> tree;
     pointer<OpenPatch> open;
+    pointer<shared_int> curve_lengths;
     pointer<KdNode> nodes;
     pointer<Line> lists, grids;
     pointer<PatchRecord> patches;
@@ -50,6 +51,7 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     sint tree = load(field(c.self, &WorkerRecord::tree));
     c.tree = trees + tree;
     c.open = load(field(c.tree, &TreeRecord::patches));
+    c.curve_lengths = load(field(c.tree, &TreeRecord::curve_lengths));
     c.nodes = load(field(frame, &FrameHeader::nodes));
     c.lists = load(field(frame, &FrameHeader::lists));
     c.grids = load(field(frame, &FrameHeader::grids));

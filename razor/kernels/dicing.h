@@ -50,12 +50,14 @@ inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint p
     d.sub = load(field(d.record, &PatchRecord::sub));
     if (branch(d.kind >= static_cast<int>(PatchKind::flat_quad)))
         return d;
+    // Edges of bilinear patches are straight at every level: one flat ancestor, the whole edge.
+    sbool straight = d.kind == static_cast<int>(PatchKind::bilinear);
     sint e[4];
     for (int s = 0; s < 4; ++s) {
         Side& side = d.side[s];
         side.curve = load(field(d.record, &PatchRecord::side_curve) + s);
         side.flags = load(field(d.record, &PatchRecord::side_flags) + s);
-        side.whole = curve_exponent(g, g.curves + side.curve);
+        side.whole = curve_exponent(c, g, side.curve, straight);
         e[s] = side.whole - half(side);
     }
     sint across = max(max(e[1], e[3]), 0);
@@ -66,8 +68,6 @@ inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint p
     d.level = select(level < 0, d.coarsest, level);
     d.nu = d.nu - d.level;
     d.nv = d.nv - d.level;
-    // Edges of bilinear patches are straight at every level: one flat ancestor, the whole edge.
-    sbool straight = d.kind == static_cast<int>(PatchKind::bilinear);
     for (int s = 0; s < 4; ++s) {
         Side& side = d.side[s];
         sint flat = (s % 2 == 0 ? d.nu : d.nv) + half(side);
@@ -242,7 +242,7 @@ inline svec straight_corner(const Context& c, const Cage& g, const Dicing& d, in
     sint half_side = half(d.side[0]);
     if (branch(half_side != 0)) {
         if (k == 1 || k == 3)
-            return edge_middle<true>(c, g, g.curves + corner);
+            return edge_middle<true>(c, g, corner);
         if (k == 2)
             return face_centre<true>(c, g, g.faces + corner);
     }

@@ -111,42 +111,6 @@ inline svec placed_point(const Cage& g, sint point) {
     return moved(g.place, cage_point(g, point));
 }
 
-/// Exponent N of a cage edge at level 0: 2^N segments of about the target length, N = round(log2(length /
-/// target)), by the mesh's cage points alone, so that all its instances at one level are diced alike; in [0,
-/// max_exponent].
-inline sint edge_exponent(const Cage& g, pointer<CurveRecord> curve) {
-    sint end0 = load(field(curve, &CurveRecord::end0));
-    sint end1 = load(field(curve, &CurveRecord::end1));
-    svec a = cage_point(g, end0);
-    svec b = cage_point(g, end1);
-    svec d = (b - a) * g.per_edge_length;
-    sfloat square = fma(d.x, d.x, fma(d.y, d.y, d.z * d.z));
-    sfloat doubled = square + square; // floor(log2(2 r^2)) / 2 rounds log2(r) to nearest
-    sint exponent = ((as_int(doubled) >> 23) - 127) >> 1;
-    return min(max(exponent, 0), g.max_exponent);
-}
-
-/// All spokes of an n-gon share one exponent: the largest half edge's.
-inline sint spoke_exponent(const Cage& g, pointer<FaceRecord> face) {
-    sint corners = load(field(face, &FaceRecord::corner_count));
-    sint first = load(field(face, &FaceRecord::curve_first));
-    sint largest = 1;
-    for (sint i = 0; branch(i < corners); ++i) {
-        sint curve = load(g.face_curves + (first + i));
-        largest = max(largest, edge_exponent(g, g.curves + curve));
-    }
-    return largest - 1;
-}
-
-inline sint curve_exponent(const Cage& g, pointer<CurveRecord> curve) {
-    sint flags = load(field(curve, &CurveRecord::flags));
-    if (branch((flags & curve_spoke) != 0)) {
-        sint face = load(field(curve, &CurveRecord::owner_face));
-        return spoke_exponent(g, g.faces + face);
-    }
-    return edge_exponent(g, curve);
-}
-
 /// The weights of a page, made by the host if nobody asked for it before.
 inline pointer<float> page_weights(const Context& c, const Cage& g, sint face_class, PageKind kind,
                                    sint index) {
@@ -279,7 +243,83 @@ inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord>
     }
 }
 
-/// The same for a cage edge with its ends, which belong to the cage points.
+inline sfloat length(const svec& d) {
+    return sqrt(fma(d.x, d.x, fma(d.y, d.y, d.z * d.z)));
+}
+
+/// How long the curve of a cage edge is, in the mesh's units: the two chords to its middle. By the mesh's
+/// cage points alone, so that all its instances at one level are diced alike.
+inline sfloat measure_curve(const Context& c, Cage g, pointer<CurveRecord> curve) {
+    g.place.moved = false;
+    pointer<float> points = c.stack + (scratch_curve + 2 * scratch_curve_size);
+    evaluate_chunk(c, g, curve, 1, 0, points);
+    svec middle = get_point(points, 1);
+    sint end0 = load(field(curve, &CurveRecord::end0));
+    svec to0 = vertex_position<false>(c, g, end0) - middle;
+    sint end1 = load(field(curve, &CurveRecord::end1));
+    svec to1 = vertex_position<false>(c, g, end1) - middle;
+    sfloat first = length(to0);
+    return first + length(to1);
+}
+
+/// The same, measured once for a tree: whoever comes first. All find the same bits, as points of a curve are
+/// its owner's; so nobody waits.
+inline sfloat curve_length(const Context& c, const Cage& g, sint number) {
+    pointer<shared_int> known = c.curve_lengths + number;
+    sint bits = load_acquire(known);
+    if (branch(bits == 0)) {
+        sfloat length = measure_curve(c, g, g.curves + number);
+        bits = as_int(max(length, least_curve_length));
+        store_release(known, bits);
+    }
+    return as_float(bits);
+}
+
+/// Exponent N of a cage edge at level 0: 2^N segments of about the target length, N = round(log2(length /
+/// target)), in [0, max_exponent]. A limit curve is shorter than its cage edge, often by a third, which
+/// counts along both sides. Straight: the edge is the curve.
+inline sint edge_exponent(const Context& c, const Cage& g, sint number, sbool straight) {
+    sfloat square = 0.0F;
+    if (branch(straight)) {
+        pointer<CurveRecord> curve = g.curves + number;
+        sint end0 = load(field(curve, &CurveRecord::end0));
+        sint end1 = load(field(curve, &CurveRecord::end1));
+        svec a = cage_point(g, end0);
+        svec b = cage_point(g, end1);
+        svec d = (b - a) * g.per_edge_length;
+        square = fma(d.x, d.x, fma(d.y, d.y, d.z * d.z));
+    } else {
+        sfloat segments = curve_length(c, g, number) * g.per_edge_length;
+        square = segments * segments;
+    }
+    sfloat doubled = square + square; // floor(log2(2 r^2)) / 2 rounds log2(r) to nearest
+    sint exponent = ((as_int(doubled) >> 23) - 127) >> 1;
+    return min(max(exponent, 0), g.max_exponent);
+}
+
+/// All spokes of an n-gon share one exponent: the largest half edge's.
+inline sint spoke_exponent(const Context& c, const Cage& g, pointer<FaceRecord> face, sbool straight) {
+    sint corners = load(field(face, &FaceRecord::corner_count));
+    sint first = load(field(face, &FaceRecord::curve_first));
+    sint largest = 1;
+    for (sint i = 0; branch(i < corners); ++i) {
+        sint curve = load(g.face_curves + (first + i));
+        largest = max(largest, edge_exponent(c, g, curve, straight));
+    }
+    return largest - 1;
+}
+
+inline sint curve_exponent(const Context& c, const Cage& g, sint number, sbool straight) {
+    pointer<CurveRecord> curve = g.curves + number;
+    sint flags = load(field(curve, &CurveRecord::flags));
+    if (branch((flags & curve_spoke) != 0)) {
+        sint face = load(field(curve, &CurveRecord::owner_face));
+        return spoke_exponent(c, g, g.faces + face, straight);
+    }
+    return edge_exponent(c, g, number, straight);
+}
+
+/// The points of one chunk of a cage edge, with its ends, which belong to the cage points.
 template <bool Straight>
 inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> curve, sint exponent,
                         sint chunk, pointer<float> points) {
@@ -298,12 +338,12 @@ inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> cu
 }
 
 /// The middle of a cage edge at the cage's level: one of its points, or (exponent 0) the mean of its ends.
-template <bool Straight>
-inline svec edge_middle(const Context& c, const Cage& g, pointer<CurveRecord> curve) {
+template <bool Straight> inline svec edge_middle(const Context& c, const Cage& g, sint number) {
+    pointer<CurveRecord> curve = g.curves + number;
     pointer<float> points = c.stack + (scratch_curve + scratch_curve_size);
     sint exponent = 0;
     if constexpr (!Straight) {
-        sint whole = edge_exponent(g, curve);
+        sint whole = edge_exponent(c, g, number, false);
         exponent = max(whole - g.level, 0);
     }
     sint at = (sint(1) << exponent) >> 1;
@@ -331,7 +371,7 @@ inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<Curv
         evaluate_chunk(c, g, curve, exponent, chunk, points);
     if (branch(chunk == 0)) {
         sint edge = load(field(curve, &CurveRecord::end0));
-        put_point(points, 0, edge_middle<Straight>(c, g, g.curves + edge));
+        put_point(points, 0, edge_middle<Straight>(c, g, edge));
     }
     sint last = sint(1) << exponent;
     last = last - chunk * block_quads;

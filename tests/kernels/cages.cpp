@@ -109,6 +109,9 @@ Mesh tapered_cage() {
     for (glm::dvec3& p : m.points)
         if (p.y > 0)
             p = {p.x / 32, p.y, p.z / 32};
+    // Or the surface would round the small end off, and its sides would be no shorter than a quarter.
+    for (const auto& [a, b] : {std::pair{2, 6}, {6, 7}, {7, 3}, {3, 2}})
+        m.creases.push_back({a, b, 10});
     return m;
 }
 
@@ -275,6 +278,8 @@ std::optional<NamedScene> named_scene(const std::string& name) {
         return of(bilinear(stretched(torus_cage(9, 6))), 60);
     if (name == "bevelled_slab")
         return of(bevelled_slab(), 40);
+    if (name == "tapered")
+        return of(tapered_cage(), 200);
     if (name == "cube_bilinear_stretched")
         return of(bilinear(stretched(cube_cage())), 40);
     if (name == "urchin_bilinear")

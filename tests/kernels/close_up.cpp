@@ -68,7 +68,7 @@ protected:
             if ((c.flags & curve_spoke) == 0)
                 longest_ = std::max(longest_, glm::length(mesh_.points[static_cast<std::size_t>(c.end1)] -
                                                           mesh_.points[static_cast<std::size_t>(c.end0)]));
-        scene_.meshes[0].edge_length = longest_ / 10000;
+        scene_.meshes[0].edge_length = longest_ / 16000;
     }
     /// Before anything else is made of the frame.
     void look_at(Frame& frame) {

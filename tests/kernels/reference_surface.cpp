@@ -32,9 +32,17 @@ glm::dvec3 ReferenceSurface::point(int i) const {
 
 int ReferenceSurface::edge_exponent(int curve) const {
     const CurveRecord& c = topology_.curves[at(curve)];
-    double length = glm::length(point(c.end1) - point(c.end0)) / edge_length_;
-    return static_cast<int>(
-        std::clamp(std::floor(std::log2(length) + 0.5), 0.0, static_cast<double>(topology_.max_exponent)));
+    double length = 0;
+    if (straight_) {
+        length = glm::length(point(c.end1) - point(c.end0));
+    } else {
+        const VertexRecord &a = topology_.points[at(c.end0)], &z = topology_.points[at(c.end1)];
+        const glm::dvec3 middle = owner_point(c, 1, 1);
+        length = glm::length(limit_point(a.owner_face, a.owner_corner) - middle) +
+                 glm::length(limit_point(z.owner_face, z.owner_corner) - middle);
+    }
+    return static_cast<int>(std::clamp(std::floor(std::log2(length / edge_length_) + 0.5), 0.0,
+                                       static_cast<double>(topology_.max_exponent)));
 }
 
 int ReferenceSurface::exponent(int curve) const {
@@ -111,6 +119,10 @@ glm::dvec3 ReferenceSurface::curve_point(int curve, int k) const {
         const VertexRecord& v = topology_.points[at(end)];
         return straight_ ? point(end) : limit_point(v.owner_face, v.owner_corner);
     }
+    return owner_point(c, n, k);
+}
+
+glm::dvec3 ReferenceSurface::owner_point(const CurveRecord& c, int n, int k) const {
     const FaceRecord& face = topology_.faces[at(c.owner_face)];
     PageKey key{.face_class = face.face_class,
                 .kind = PageKind::curve,

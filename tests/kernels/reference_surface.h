@@ -45,6 +45,8 @@ private:
     glm::dvec3 centre(int face) const;
     glm::dvec3 corner(const PatchRecord& patch, std::size_t k) const;
     int edge_exponent(int curve) const;
+    /// Point k / 2^n of a cage edge's curve, not one of its ends, from its owner.
+    glm::dvec3 owner_point(const CurveRecord& curve, int n, int k) const;
 
     Frame& frame_;
     Topology topology_;

@@ -15,8 +15,8 @@ namespace {
 
 RenderStatistics statistics(Scene scene, int light_samples, int sky_samples) {
     scene.settings.lod = Lod::fixed; // rays of one kind then ask for nothing that another kind's change
-    scene.settings.width = 40;
-    scene.settings.height = 24;
+    scene.settings.width = 20;
+    scene.settings.height = 12;
     scene.settings.samples = 2;
     scene.settings.light_samples = light_samples;
     scene.settings.sky_samples = sky_samples;
@@ -52,7 +52,7 @@ TEST(Statistics, KindsOfRaysAreToldApart) {
                          [](const char* name, std::int64_t n) { EXPECT_EQ(n, 0) << name; });
 
     const std::int64_t hits = all.counters.camera_hits;
-    EXPECT_EQ(all.by_kind.kind[kind_camera].rays, 40 * 24 * 2);
+    EXPECT_EQ(all.by_kind.kind[kind_camera].rays, 20 * 12 * 2);
     EXPECT_GT(all.by_kind.kind[kind_light].rays, 0);
     EXPECT_LE(all.by_kind.kind[kind_light].rays, 3 * hits);
     EXPECT_GT(all.by_kind.kind[kind_sky].rays, 5 * hits / 2);

@@ -46,7 +46,7 @@ protected:
         folder_.file("open.obj", open_box);
         folder_.file("fan.obj", fan);
         folder_.file("torus.obj", bumpy_torus());
-        folder_.file("coarse.toml", "[settings]\nedge_pixels = 20\n[[mesh]]\nfile = \"torus.obj\"\n");
+        folder_.file("coarse.toml", "[settings]\nedge_pixels = 10\n[[mesh]]\nfile = \"torus.obj\"\n");
         folder_.file("both.toml", "[[mesh]]\nfile = \"open.obj\"\n[[mesh]]\nfile = \"cube.obj\"\n");
     }
     Outcome check(const std::string& arguments) const {

@@ -82,7 +82,7 @@ TEST_F(Simulator, HostThreadsChangeNoDigit) {
 TEST_F(Simulator, AttributesTrafficToRaysAndLevels) {
     folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
     const std::string start =
-        "run --quiet --no-native --scene s.toml --size 33x33 --spp 1 --edge-pixels 2 --json "
+        "run --quiet --no-native --scene s.toml --size 16x16 --spp 1 --edge-pixels 0.5 --json "
         "a.json --machine " +
         tiny + " ";
     const auto traffic = [&](const std::string& options) {
@@ -101,7 +101,7 @@ TEST_F(Simulator, AttributesTrafficToRaysAndLevels) {
         return sum;
     };
     const nlohmann::json all = traffic("--lod fixed --light-samples 1 --sky-samples 1");
-    const nlohmann::json sky = traffic("--lod fixed --light-samples 0 --sky-samples 1");
+    const nlohmann::json sky = traffic("--lod fixed --light-samples 0 --sky-samples 2");
     const nlohmann::json coarser = traffic("--lod fixed:1 --light-samples 0 --sky-samples 1");
     const nlohmann::json own = traffic("--lod recursive --light-samples 0 --sky-samples 1");
     const auto kinds = [&](const nlohmann::json& rows, const char* phase) {
