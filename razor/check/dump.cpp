@@ -53,7 +53,7 @@ BlockView block_at(Frame& frame, int line) {
     return {reinterpret_cast<const BlockHeader*>(at), reinterpret_cast<const float*>(at)};
 }
 
-std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree, int level) {
+std::vector<BlockView> known_blocks_of(Frame& frame, int patch, int tree, int level) {
     const FrameHeader& h = frame.header();
     const OpenPatch& open = h.trees.get()[tree].patches.get()[patch];
     std::vector<BlockView> blocks;
@@ -67,12 +67,18 @@ std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree, int level) {
             blocks.push_back(b);
         if (b.header->level <= level || b.header->children.word != ready)
             continue;
-        int children = b.header->child_columns * b.header->child_rows;
+        int children = b.header->child_count;
         for (int i = 0; i < children; ++i)
             left.push_back(block_at(frame, b.header->child_line + i * b.header->child_lines));
     }
     std::sort(blocks.begin(), blocks.end(),
               [](const BlockView& a, const BlockView& b) { return a.header->number < b.header->number; });
+    return blocks;
+}
+
+std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree, int level) {
+    std::vector<BlockView> blocks = known_blocks_of(frame, patch, tree, level);
+    std::erase_if(blocks, [](const BlockView& b) { return b.header->made.word != ready; });
     return blocks;
 }
 

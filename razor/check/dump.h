@@ -44,7 +44,10 @@ const InstanceRecord& instance_of(Frame& frame, int patch);
 /// The block at a line of the grids.
 BlockView block_at(Frame& frame, int line);
 
-/// The blocks of a patch at a level, row by row, as far as they are made.
+/// The blocks of a patch at a level, row by row, as far as they are there; they may have no vertices yet.
+std::vector<BlockView> known_blocks_of(Frame& frame, int patch, int tree = 0, int level = 0);
+
+/// Those of them that are made.
 std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0, int level = 0);
 
 /// Appends a block's triangles.

@@ -123,7 +123,7 @@ private:
             finest.push_back(b);
             return;
         }
-        for (int k = 0; k < b.header->child_columns * b.header->child_rows; ++k)
+        for (int k = 0; k < b.header->child_count; ++k)
             collect(b.header->child_line + k * b.header->child_lines, all, finest);
     }
 

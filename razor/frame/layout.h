@@ -125,8 +125,10 @@ enum class PageKind : std::int32_t {
                // weight a vertex j*(nu+1)+i, padded to the width; positions
     derivative = 3, // as block; two rows a control point: d/du then d/dv (only their cross product's
                     // direction matters)
-    deviation = 4,  // as block; one row of control_count bounds, zero-padded to the width: how far the weight
-                    // of any finer vertex is from the mean of its parents' weights, summed over the levels
+    deviation = 4,  // as block; three rows of control_count numbers, zero-padded to a multiple of 64. First
+                    // bounds: how far the weight of any finer vertex is from the mean of its parents'
+                    // weights, summed over the levels. Then, for u and v, a row of length 1 and sum 0 for
+                    // which these differences of weights sum up to nothing, or zeros
 };
 inline constexpr int page_kinds = 5;
 inline constexpr int block_kinds = 3; // pages of one block: their entries lie side by side
@@ -208,8 +210,8 @@ static_assert(sizeof(GraphNodeRecord) == 40);
 // one has one, twice as fine.
 
 /// Followed by words: anchors x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i);
-/// then, where the header gives an offset, cell boxes, ancestors, corner data, normals. A cell is 2 x 2
-/// quads.
+/// then, where the header gives an offset, corners, cell boxes, ancestors, middles, normals. A cell is 2 x 2
+/// quads. Before the normals, where a side hangs and there are finer blocks, boxes of parts.
 struct alignas(line_bytes) BlockHeader {
     float box_low[3], box_high[3]; // of its vertices and all finer ones, the instance's coordinates
     std::int32_t patch;
@@ -228,16 +230,17 @@ struct alignas(line_bytes) BlockHeader {
     std::int32_t
         cells_at; // words from the block's begin: low x[16], y, z, high x[16], y, z; 0: one cell only
     std::int32_t ancestors_at; // [side][end][xyz], for sides whose ancestor is longer than the block; 0:
-                               // none. Then [corner][xyz]: see corner_anchor; then a box, low and high: the
-                               // block's own made to hold these ends
+                               // none. Then a box, low and high: the block's own made to hold these ends
     std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
     isa::shared<std::int32_t> normals;    // a BuildState
     isa::shared<std::int32_t> children;   // a BuildState
     std::int32_t child_line, child_lines; // of the first child; from one child to the next
-    std::int32_t child_columns, child_rows;
-    std::int32_t parent;  // line of the block that this is a child of; -1: the root
-    std::int32_t movable; // whether any of its vertices can leave its anchor
-    std::int32_t middles; // root, n-gons: words from the block's begin: see PatchEnds; 0: none
+    std::int32_t child_count;
+    isa::shared<std::int32_t> made; // a BuildState: of all that needs vertices (razor/kernels/tessellate.h)
+    std::int32_t parent;            // line of the block that this is a child of; -1: the root
+    std::int32_t corners_at;        // [corner][xyz]: see corner_anchor; corners_lie_in_vertices; or
+                                    // no_vertex_moves: each is at its anchor for all rays
+    std::int32_t middles;           // root, n-gons: words from the block's begin: see PatchEnds; 0: none
     /// How far vertices leave their anchors along any axis, if those born 0, 1 or 2 levels above the block's
     /// and below move, and its corners do not.
     float sway[blend_passes];
@@ -245,14 +248,18 @@ struct alignas(line_bytes) BlockHeader {
     /// How far corners on sides that hang from longer edges are born from where the block has them, and from
     /// the means of the parent's; 0: there are none in either.
     float corner_sway;
-    float deviation; // by which the box is wider than its vertices, along any axis, for finer ones
+    /// By which the box is wider than its vertices, along any axis, for finer ones; less than 0: it was made
+    /// from the parent's, before there were vertices.
+    float deviation;
     isa::shared<std::int32_t> seen; // a BuildState ...
     std::int32_t seen_line;         // ... of the block as the camera's field sees it: the line of its slot
 };
 static_assert(sizeof(BlockHeader) == 192);
 inline constexpr int block_header_words = 48;
 inline constexpr int ancestor_words = 24;
-inline constexpr int ancestor_box = ancestor_words + 12;
+inline constexpr int ancestor_box = ancestor_words;
+inline constexpr int corner_words = 12;
+inline constexpr int no_vertex_moves = 0, corners_lie_in_vertices = 1; // BlockHeader::corners_at
 inline constexpr int cell_boxes = 16;
 /// Target edge lengths grow by no more than this per unit of distance: steeper rays see a finer surface than
 /// they ask for, which stays within three levels of itself over a block.
@@ -264,6 +271,10 @@ inline constexpr float least_curve_length = 1.0e-30F; // to be told from 0
 inline constexpr float least_target_edge = 1.0e-30F;  // edge lengths asked for are positive
 inline constexpr int straight_curve = -2;             // of a bilinear patch: its vertices never leave it
 inline constexpr int inner_side = -1;                 // the side is no side of the patch
+
+/// Of the four parts that a block's children are, (0, 0), (1, 0), (0, 1), (1, 1): the boxes of its vertices
+/// as they lie before sides that hang are put on their edges. [part][low, high].
+inline constexpr int parts_words = 24;
 
 /// Sub-faces of n-gons end in the middle of edges, at corners 1 and 3. What is known of the two edges beyond:
 /// [edge][xyz], edge 0 of side 0, edge 1 of side 3.

@@ -1,150 +1,11 @@
-// What a block says of where its vertices and all finer ones can be: corners, boxes of cells, how far finer
-// levels leave its triangles, and how far its vertices can leave their anchors.
+// What a block says of where its vertices and all finer ones can be: boxes of cells, how far finer levels
+// leave its triangles, and how far its vertices can leave their anchors.
 #pragma once
 
-#include "razor/kernels/dicing.h"
+#include "razor/kernels/block_corners.h"
 
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
-
-inline svec load_vertex(pointer<float> vertices, sint stride, sint i) {
-    svec p;
-    p.x = load(vertices + i);
-    p.y = load(vertices + stride + i);
-    p.z = load(vertices + stride * 2 + i);
-    return p;
-}
-
-/// Number of the vertex at corner k.
-inline sint corner_vertex(int k, sint quads_u, sint quads_v) {
-    sint last_row = (quads_u + 1) * quads_v;
-    if (k == 0)
-        return 0;
-    if (k == 1)
-        return quads_u;
-    return k == 2 ? last_row + quads_u : last_row;
-}
-
-/// Where corner k of a block is if it has not moved. On a side that hangs from an edge longer than the block
-/// that is not where the block has it, but where its curve has it at the level that it is born at.
-inline svec corner_anchor(pointer<BlockHeader> block, int k) {
-    sint ancestors_at = load(field(block, &BlockHeader::ancestors_at));
-    if (branch(ancestors_at != 0))
-        return load_svec(as<float>(block) + ancestors_at + (ancestor_words + 3 * k));
-    sint quads_u = load(field(block, &BlockHeader::quads_u));
-    sint quads_v = load(field(block, &BlockHeader::quads_v));
-    sint stride = load(field(block, &BlockHeader::stride));
-    pointer<float> vertices = as<float>(block) + block_header_words;
-    return load_vertex(vertices, stride, corner_vertex(k, quads_u, quads_v));
-}
-
-/// The corner at (i, j), each 0 or 1.
-inline svec corner_anchor_at(pointer<BlockHeader> block, sint i, sint j) {
-    svec low = corner_anchor(block, 0);
-    if (branch(i > j))
-        low = corner_anchor(block, 1);
-    if (branch(j > i))
-        low = corner_anchor(block, 3);
-    if (branch((i & j) != 0))
-        low = corner_anchor(block, 2);
-    return low;
-}
-
-inline sfloat largest_component_of(const svec& p) {
-    sfloat y = abs(p.y);
-    sfloat z = abs(p.z);
-    z = max(y, z);
-    return max(abs(p.x), z);
-}
-
-/// One end of side s of a block, from the curve as it is at level 0, if it is born at all.
-inline void place_corner(const Context& c, const Cage& finest, const Dicing& d, int s, sint along,
-                         pointer<float> out) {
-    const Side& side = d.side[s];
-    sint flat = (s % 2 == 0 ? d.nu : d.nv) + half(side);
-    sint finer = side.whole - flat;
-    sint up = max(finer, 0);
-    sint down = max(-finer, 0);
-    sint index = (along << up) >> down;
-    sint rest = along & ((sint(1) << down) - 1);
-    if (branch(rest != 0))
-        return; // hangs at every level
-    sint chunks = sint(1) << max(side.whole - block_log2, 0);
-    sint last = chunks - 1;
-    sint chunk = min(index >> block_log2, last);
-    pointer<float> points = curve_points<false>(c, finest, finest.curves + side.curve, side.whole, chunk);
-    svec p = get_point(points, index - chunk * block_quads);
-    store_svec(out, p);
-}
-
-/// The corners of a block that has ancestors: see corner_anchor.
-template <bool Straight>
-inline void place_corners(const Context& c, Cage g, const Dicing& d, const Block& b) {
-    pointer<float> out = b.words + b.ancestors_at + ancestor_words;
-    for (int k = 0; k < 4; ++k) {
-        svec p = load_vertex(b.x, b.stride, corner_vertex(k, b.quads_u, b.quads_v));
-        store_svec(out + 3 * k, p);
-    }
-    if constexpr (!Straight) {
-        g.level = 0;
-        constexpr int ends[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
-        sint last_column = (sint(1) << max(d.nu - block_log2, 0)) - 1;
-        sint last_row = (sint(1) << max(d.nv - block_log2, 0)) - 1;
-        sbool border[4] = {b.row == 0, b.column == last_column, b.row == last_row, b.column == 0};
-        for (int s = 0; s < 4; ++s) {
-            const Side& side = d.side[s];
-            sint quads = s % 2 == 0 ? b.quads_u : b.quads_v;
-            if (branch(border[s] & ((sint(1) << side.hang) > quads))) {
-                sint total = sint(1) << ((s % 2 == 0 ? d.nu : d.nv) + half(side));
-                sint begin = (s % 2 == 0 ? b.column : b.row) * block_quads;
-                for (int e = 0; e < 2; ++e) {
-                    sint along = begin + (e == 0 ? sint(0) : quads);
-                    sbool reversed = (side.flags & side_reversed) != 0;
-                    along = select(reversed, total - along, along);
-                    place_corner(c, g, d, s, along, out + 3 * ends[s][e]);
-                }
-            }
-        }
-    }
-}
-
-/// Of a limit surface: what ancestors add to how far a block's corners are from where they lie in it, and
-/// from the means of corners of its parent: see BlockHeader::corner_sway.
-inline sfloat measure_corners(const Context& c, const Dicing& d, const Block& b, sint parent) {
-    sfloat lie = 0.0F;
-    sfloat off = 0.0F;
-    pointer<BlockHeader> above = b.header;
-    if (branch(parent >= 0))
-        above = as<BlockHeader>(c.grids + parent);
-    sint ancestors = load(field(b.header, &BlockHeader::ancestors_at));
-    sint ancestors_above = load(field(above, &BlockHeader::ancestors_at));
-    if (branch((ancestors | ancestors_above) == 0))
-        return 0.0F;
-    sbool split_u = d.nu > block_log2;
-    sbool split_v = d.nv > block_log2;
-    for (int k = 0; k < 4; ++k) {
-        int right = k == 1 || k == 2 ? 1 : 0;
-        int up = k >= 2 ? 1 : 0;
-        svec own = corner_anchor(b.header, k);
-        svec there = load_vertex(b.x, b.stride, corner_vertex(k, b.quads_u, b.quads_v));
-        lie = max(lie, largest_component_of(own - there));
-        if (branch(parent >= 0)) {
-            // In halves of the parent.
-            sint i = select(split_u, (b.column & 1) + right, sint(2 * right));
-            sint j = select(split_v, (b.row & 1) + up, sint(2 * up));
-            sint odd_i = i & 1;
-            sint odd_j = j & 1;
-            sint low_i = (i - odd_i) >> 1;
-            sint low_j = (j - odd_j) >> 1;
-            svec one = corner_anchor_at(above, low_i, low_j);
-            sint high_i = low_i + odd_i;
-            sint high_j = low_j + odd_j;
-            svec other = corner_anchor_at(above, high_i, high_j);
-            off = max(off, largest_component_of(own - middle(one, other)));
-        }
-    }
-    return lie + off;
-}
 
 /// The box of each of some vertices' cells, one lane a cell from number `from` on; shift: log2 of the cells a
 /// row.
@@ -190,9 +51,8 @@ inline sint cells_shift(sint quads_u) {
     return select(wide, sint(2), cells_u - 1);
 }
 
-/// Boxes of the block's cells (stored if there are several); the block's own is made to hold them. One lane a
-/// cell.
-inline void bound_block(const Block& b, sint cells_at) {
+/// Boxes of the block's cells, stored if there are several; returns that of all. One lane a cell.
+inline Box bound_block(const Block& b, sint cells_at) {
     sint shift = cells_shift(b.quads_u);
     sint cells = ((b.quads_v + 1) >> 1) << shift;
     svec low{sfloat(3.0e38F), sfloat(3.0e38F), sfloat(3.0e38F)};
@@ -214,22 +74,108 @@ inline void bound_block(const Block& b, sint cells_at) {
         high.y = max(high.y, reduce_max(hi.y));
         high.z = max(high.z, reduce_max(hi.z));
     }
-    sfloat lows[3] = {low.x, low.y, low.z};
-    sfloat highs[3] = {high.x, high.y, high.z};
-    for (int k = 0; k < 3; ++k) {
-        pointer<float> box_low = field(b.header, &BlockHeader::box_low) + k;
-        pointer<float> box_high = field(b.header, &BlockHeader::box_high) + k;
-        sfloat least = load(box_low);
-        store(box_low, min(lows[k], least));
-        sfloat most = load(box_high);
-        store(box_high, max(highs[k], most));
+    return {low, high};
+}
+
+/// Cells before the middle, or from it on.
+inline vmask half_of(const vint& cell, sint middle, sint which) {
+    vmask beyond = cell >= vint(middle);
+    return beyond ^ vmask(which == 0);
+}
+
+/// The box of a block's vertices, or of those of a part, as they lie. A block of several cells can be halved.
+inline Box vertices_of(pointer<BlockHeader> block, const Part& part = {}) {
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint several = load(field(block, &BlockHeader::cells_at));
+    sint stride = load(field(block, &BlockHeader::stride));
+    sint shift = cells_shift(quads_u);
+    sint rows = (quads_v + 1) >> 1;
+    sint cells = rows << shift;
+    // Of cells, or of the vertices of a block that is one.
+    sint n = select(several != 0, cells, stride);
+    sint step = select(several != 0, sint(cell_boxes), stride);
+    sint lows_at = select(several != 0, several, sint(block_header_words));
+    pointer<float> lows = as<float>(block) + lows_at;
+    sint highs_at = step * 3;
+    highs_at = select(several != 0, highs_at, sint(0));
+    pointer<float> highs = lows + highs_at;
+    sint middle_u = (sint(1) << shift) >> 1;
+    sint middle_v = rows >> 1;
+    vfloat big(3.0e38F);
+    vfloat least[3] = {big, big, big};
+    vfloat most[3] = {-big, -big, -big};
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vmask m = first_lanes(n - from);
+        vint cell = lane_index() + vint(from);
+        vint row = cell >> vint(shift);
+        vint column = cell - (row << vint(shift));
+        if (branch(part.u >= 0))
+            m = m & half_of(column, middle_u, part.u);
+        if (branch(part.v >= 0))
+            m = m & half_of(row, middle_v, part.v);
+        pointer<float> low_at = lows + from;
+        pointer<float> high_at = highs + from;
+        for (int k = 0; k < 3; ++k) {
+            vfloat low = load_vector(low_at, m);
+            least[k] = min(select(m, low, big), least[k]);
+            vfloat high = load_vector(high_at, m);
+            most[k] = max(select(m, high, -big), most[k]);
+            low_at = low_at + step;
+            high_at = high_at + step;
+        }
     }
+    Box box;
+    box.low = {reduce_min(least[0]), reduce_min(least[1]), reduce_min(least[2])};
+    box.high = {reduce_max(most[0]), reduce_max(most[1]), reduce_max(most[2])};
+    return box;
+}
+
+/// Number of a part among the four.
+inline sint part_number(const Part& part) {
+    sint u = max(part.u, 0);
+    sint v = max(part.v, 0);
+    return v * 2 + u;
+}
+
+/// Boxes of the parts of a block as it lies now, its sides on the surface.
+inline void bound_parts(const Block& b, const Shape& s) {
+    bound_block(b, s.cells_at);
+    pointer<float> out = b.words + (s.normals_at - parts_words);
+    sint columns = select(s.quads_u == block_quads, sint(2), sint(1));
+    sint rows = select(s.quads_v == block_quads, sint(2), sint(1));
+    for (sint j = 0; branch(j < rows); ++j) {
+        for (sint i = 0; branch(i < columns); ++i) {
+            Part part;
+            part.u = select(columns > 1, i, sint(-1));
+            part.v = select(rows > 1, j, sint(-1));
+            Box box = vertices_of(b.header, part);
+            pointer<float> to = out + part_number(part) * 6;
+            store_svec(to, box.low);
+            store_svec(to + 3, box.high);
+        }
+    }
+}
+
+/// The box of a part of a block's surface, but for how far finer vertices lie from its triangles.
+inline Box surface_of(pointer<BlockHeader> block, const Part& part) {
+    sint hangs = load(field(block, &BlockHeader::hangs));
+    if (branch(hangs == 0))
+        return vertices_of(block, part);
+    sint normals_at = load(field(block, &BlockHeader::normals_at));
+    sint before = part_number(part) * 6 - parts_words;
+    pointer<float> at = as<float>(block) + (normals_at + before);
+    Box box;
+    box.low = load_svec(at);
+    box.high = load_svec(at + 3);
+    return box;
 }
 
 /// The block's box, made to hold the ends of ancestors: where these move, so do the vertices between them.
 inline void bound_ancestors(const Block& b) {
-    svec low = load_svec(field(b.header, &BlockHeader::box_low));
-    svec high = load_svec(field(b.header, &BlockHeader::box_high));
+    Box box = box_of(b.header);
+    svec low = box.low;
+    svec high = box.high;
     pointer<float> ancestors = b.words + b.ancestors_at;
     for (int s = 0; s < 4; ++s) {
         sint quads = s % 2 == 0 ? b.quads_u : b.quads_v;
@@ -244,47 +190,6 @@ inline void bound_ancestors(const Block& b) {
     }
     store_svec(ancestors + ancestor_box, low);
     store_svec(ancestors + (ancestor_box + 3), high);
-}
-
-/// How the blocks of a patch at one level look.
-struct Shape {
-    sint quads_u, quads_v;
-    sint columns, rows; // of blocks
-    sint stride;        // vertices
-    sint cells_at, ancestors_at, middles_at, normals_at, lines;
-    sint triangles;
-};
-
-inline Shape block_shape(const Dicing& d) {
-    Shape s;
-    s.quads_u = sint(1) << min(d.nu, block_log2);
-    s.quads_v = sint(1) << min(d.nv, block_log2);
-    s.columns = sint(1) << max(d.nu - block_log2, 0);
-    s.rows = sint(1) << max(d.nv - block_log2, 0);
-    s.stride = vertex_count(s.quads_u, s.quads_v);
-    sbool several_cells = s.quads_u > 2;
-    several_cells = several_cells | (s.quads_v > 2);
-    sbool long_ancestor = false;
-    for (int k = 0; k < 4; ++k) {
-        sint segments = k % 2 == 0 ? s.quads_u : s.quads_v;
-        long_ancestor = long_ancestor | ((sint(1) << d.side[k].hang) > segments);
-    }
-    sbool flat = d.kind >= static_cast<int>(PatchKind::flat_quad);
-    sbool middles = d.level == d.coarsest;
-    middles = middles & (half(d.side[0]) != 0);
-    sint vertex_words = s.stride * 3;
-    sint words = vertex_words + block_header_words;
-    s.cells_at = select(several_cells, words, sint(0));
-    words = words + select(several_cells, sint(6 * cell_boxes), sint(0));
-    s.ancestors_at = select(long_ancestor, words, sint(0));
-    words = words + select(long_ancestor, sint(ancestor_box + 6), sint(0));
-    s.middles_at = select(middles, words, sint(0));
-    words = words + select(middles, sint(ends_words), sint(0));
-    s.normals_at = select(flat, sint(0), words);
-    words = words + select(flat, sint(0), vertex_words);
-    s.lines = (words + 15) >> 4;
-    s.triangles = select(d.kind == static_cast<int>(PatchKind::flat_triangle), sint(1), sint(2));
-    return s;
 }
 
 /// How far the vertices of one pass are from the means of their parents along any axis, at most.
@@ -357,32 +262,59 @@ inline void bound_by_next_level(const Context& c, const Cage& g, const Dicing& d
 }
 
 /// A bound on how far finer vertices lie from the triangles of a block of 8 quads along a side: sum over the
-/// controls of the page's bound x the control's distance from the first one. One lane a control point.
-inline svec summed_deviation(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+/// controls of the page's bound x how far the control is from the affine map of the parameters that fits
+/// all of them best, to which nothing deviates; of an irregular face, from their mean. One lane a control.
+inline svec summed_deviation(const Context& c, const Cage& g, const Dicing& d, sint column, sint row) {
     sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
     sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
     sint n = load(field(g.faces + d.face, &FaceRecord::control_count));
-    sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, b.column, b.row);
-    pointer<float> row = page_weights(c, g, face_class, PageKind::deviation, index);
+    sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, column, row);
+    pointer<float> bounds = page_weights(c, g, face_class, PageKind::deviation, index);
+    sint rows = (n + 63) & -64;
+    pointer<float> along_u = bounds + rows;
+    pointer<float> along_v = along_u + rows;
     sint origin = load(g.controls + first);
-    vvec middle = load_broadcast_vec(g.points + origin * 3);
+    vvec begin = load_broadcast_vec(g.points + origin * 3);
     vfloat zero(0.0F);
-    vvec sum{zero, zero, zero};
-    for (sint from = 0; branch(from < n); from += isa::width) {
-        vmask m = first_lanes(n - from);
-        vfloat bound = load_vector(row + from, m);
+    svec mean{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
+    svec du = mean;
+    svec dv = mean;
+    auto away_from_first = [&](sint from, const vmask& m) {
         vint point = load_vector(g.controls + (first + from), m);
         vint at = point * vint(3);
         vfloat x = gather(g.points, at, m);
         vfloat y = gather(g.points + 1, at, m);
         vfloat z = gather(g.points + 2, at, m);
-        vvec away = vvec{x, y, z} - middle;
+        vvec away = vvec{x, y, z} - begin;
         if (branch(g.place.moved))
             away = moved_directions(g.place, away);
+        return select(m, away, vvec{zero, zero, zero});
+    };
+    auto added = [](const vvec& v) { return svec{reduce_add(v.x), reduce_add(v.y), reduce_add(v.z)}; };
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vmask m = first_lanes(n - from);
+        vvec away = away_from_first(from, m);
+        vfloat u = load_vector(along_u + from, m);
+        vfloat v = load_vector(along_v + from, m);
+        mean = mean + added(away);
+        du = du + added(away * u);
+        dv = dv + added(away * v);
+    }
+    mean = mean * (sfloat(1.0F) / to_float(n));
+    vvec sum{zero, zero, zero};
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vmask m = first_lanes(n - from);
+        vfloat bound = load_vector(bounds + from, m);
+        vfloat u = load_vector(along_u + from, m);
+        vfloat v = load_vector(along_v + from, m);
+        vvec away = away_from_first(from, m);
+        away = away - broadcast(mean);
+        away = away - broadcast(du) * u;
+        away = away - broadcast(dv) * v;
         away = select(m, abs(away), vvec{zero, zero, zero});
         sum = madd(bound, away, sum);
     }
-    return {reduce_add(sum.x), reduce_add(sum.y), reduce_add(sum.z)};
+    return added(sum);
 }
 
 /// The box of the limit surface under a block, whatever its sides make of it, as wide as all finer vertices
@@ -391,12 +323,12 @@ inline void bound_limit(const Context& c, const Cage& g, const Dicing& d, const 
     if (branch(max(d.nu, d.nv) < block_log2))
         bound_by_next_level(c, g, d, b);
     else
-        bound_surface(b, summed_deviation(c, g, d, b));
+        bound_surface(b, summed_deviation(c, g, d, b.column, b.row));
 }
 
-/// The same of a bilinear patch: a quad of sides h and k deviates by twist x h k / 4 at its centre, and a
-/// quarter of that at each finer level.
-inline void bound_bilinear(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+/// How far finer vertices lie from the triangles of a bilinear patch, along each axis: a quad of sides h and
+/// k deviates by twist x h k / 4 at its centre, and a quarter of that at each finer level.
+inline svec bilinear_deviation(const Context& c, const Cage& g, const Dicing& d) {
     svec corner[4];
     for (int k = 0; k < 4; ++k)
         corner[k] = straight_corner(c, g, d, k);
@@ -405,45 +337,38 @@ inline void bound_bilinear(const Context& c, const Cage& g, const Dicing& d, con
     svec twist = one - other;
     sint quads_log2 = d.nu + d.nv;
     sfloat share = as_float((sint(127) - quads_log2) << 23) * 0.34F;
-    bound_surface(b, {abs(twist.x) * share, abs(twist.y) * share, abs(twist.z) * share});
+    return {abs(twist.x) * share, abs(twist.y) * share, abs(twist.z) * share};
 }
 
-/// A box that holds nothing yet.
-inline void clear_box(const Block& b) {
-    store(field(b.header, &BlockHeader::deviation), 0.0F);
-    for (int k = 0; k < 3; ++k) {
-        store(field(b.header, &BlockHeader::box_low) + k, 3.0e38F);
-        store(field(b.header, &BlockHeader::box_high) + k, -3.0e38F);
-    }
+/// The box of a block before its sides are placed, as wide as all finer vertices need.
+inline void bound_finer(const Context& c, const Cage& g, const Dicing& d, const Block& b) {
+    if (branch(d.kind == static_cast<int>(PatchKind::bilinear)))
+        bound_surface(b, bilinear_deviation(c, g, d));
+    else
+        bound_limit(c, g, d, b);
 }
 
-/// Where the ends of a sub-face's two half edges are beyond it.
-template <bool Straight>
-inline void place_middles(const Context& c, const Cage& g, const Dicing& d, pointer<float> out) {
-    for (int k = 0; k < 2; ++k) {
-        const Side& side = d.side[k == 0 ? 0 : 3];
-        pointer<CurveRecord> curve = g.curves + side.curve;
-        sint end0 = load(field(curve, &CurveRecord::end0));
-        sint end1 = load(field(curve, &CurveRecord::end1));
-        svec a = vertex_position<Straight>(c, g, end0);
-        svec z = vertex_position<Straight>(c, g, end1);
-        svec mean = middle(a, z);
-        // The half next to the side's start is ours; a reversed side starts at the curve's end.
-        sint own_end = load(field(d.record, &PatchRecord::corner));
-        sbool far_is_first = own_end != end0;
-        svec far;
-        far.x = select(far_is_first, a.x, z.x);
-        far.y = select(far_is_first, a.y, z.y);
-        far.z = select(far_is_first, a.z, z.z);
-        pointer<float> to = out + (ends_mean + 3 * k);
-        store(to, mean.x);
-        store(to + 1, mean.y);
-        store(to + 2, mean.z);
-        to = out + (ends_far + 3 * k);
-        store(to, far.x);
-        store(to + 1, far.y);
-        store(to + 2, far.z);
+/// How far finer vertices lie from a block's triangles, along each axis, and by rounding; `finer`: how its
+/// patch is diced one level down.
+inline svec deviation_of(const Context& c, const Cage& g, const Dicing& finer, pointer<BlockHeader> block) {
+    Box box = box_of(block);
+    sfloat size = largest_component_of(box.low);
+    size = max(largest_component_of(box.high), size);
+    sfloat rounding = size * 1.0e-6F;
+    Dicing d = finer;
+    d.nu = d.nu - 1;
+    d.nv = d.nv - 1;
+    sfloat known = load(field(block, &BlockHeader::deviation));
+    known = max(known, 0.0F);
+    svec deviation{known, known, known};
+    if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {
+        deviation = bilinear_deviation(c, g, d);
+    } else if (branch(max(d.nu, d.nv) >= block_log2)) {
+        sint column = load(field(block, &BlockHeader::column));
+        sint row = load(field(block, &BlockHeader::row));
+        deviation = summed_deviation(c, g, d, column, row);
     }
+    return {deviation.x + rounding, deviation.y + rounding, deviation.z + rounding};
 }
 
 /// How far the vertices of each pass are from the means of their parents, added up from the last pass on.
@@ -459,32 +384,6 @@ inline void measure_sway(const Context& c, const Block& b) {
         sum = sum + off[p];
         store(field(b.header, &BlockHeader::sway) + (blend_passes - 1 - p), sum);
     }
-}
-
-/// How far corners that are middles of edges are from the means of the edges' ends.
-inline sfloat middle_sway(const Context& c, const Dicing& d, const Shape& s, const Block& b, sint parent) {
-    sfloat most = 0.0F;
-    pointer<BlockHeader> root = b.header;
-    if (branch(parent >= 0)) {
-        sint line = load(field(c.open + d.patch, &OpenPatch::root));
-        root = as<BlockHeader>(c.grids + line);
-    }
-    sint at = load(field(root, &BlockHeader::middles));
-    sbool there[2] = {b.column == s.columns - 1, b.column == 0};
-    there[0] = there[0] & (b.row == 0);
-    there[1] = there[1] & (b.row == s.rows - 1);
-    for (int k = 0; k < 2; ++k) {
-        if (branch(there[k])) {
-            sint vertex = k == 0 ? b.quads_u : (b.quads_u + 1) * b.quads_v;
-            pointer<float> mean = as<float>(root) + at + (ends_mean + 3 * k);
-            for (int i = 0; i < 3; ++i) {
-                sfloat own = load(b.x + b.stride * i + vertex);
-                sfloat towards = load(mean + i);
-                most = max(abs(own - towards), most);
-            }
-        }
-    }
-    return most;
 }
 
 } // namespace tessellate_kernel

@@ -38,6 +38,10 @@ inline pointer<PatchRecord> patch_record(const Context& c, sint instance, sint p
     return c.patches + (begin + (patch - first));
 }
 
+inline sbool is_flat(const Dicing& d) {
+    return d.kind >= static_cast<int>(PatchKind::flat_quad);
+}
+
 /// Grid exponents at level 0: the larger of opposite sides, so that a side is never finer than the grid. They
 /// differ by block_log2 at most, so that the coarsest level is one block. `level` -1: the coarsest.
 inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint patch, sint level) {
@@ -48,7 +52,7 @@ inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint p
     d.kind = load(field(d.record, &PatchRecord::kind));
     d.face = load(field(d.record, &PatchRecord::face));
     d.sub = load(field(d.record, &PatchRecord::sub));
-    if (branch(d.kind >= static_cast<int>(PatchKind::flat_quad)))
+    if (branch(is_flat(d)))
         return d;
     // Edges of bilinear patches are straight at every level: one flat ancestor, the whole edge.
     sbool straight = d.kind == static_cast<int>(PatchKind::bilinear);
@@ -91,7 +95,7 @@ struct Block {
     sint column, row;     // of the block in the patch
     sint quads_u, quads_v;
     sint stride;
-    sint ancestors_at;
+    sint corners_at, ancestors_at;
 };
 
 inline void scatter_vec(pointer<float> x, sint stride, vint at, const vvec& v, vmask m) {

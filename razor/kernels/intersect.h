@@ -325,8 +325,11 @@ template <Features F, bool Mixed>
         return false;
     enter = max(inside.enter, g.t_min);
     vmask met = g.alive & (enter <= min(inside.leave, hits.t));
+    if (branch(none(met)))
+        return true;
     tally(c.counters->block_tests, 1);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
+    ensure_made(c, header);
     sint instance = load(field(header, &BlockHeader::instance));
     pointer<float> origin_at = field(c.instances + instance, &InstanceRecord::origin);
     View v;
@@ -350,8 +353,8 @@ template <Features F, bool Mixed>
     vmask moved = vmask(false);
     sfloat most = 0.0F;
     if constexpr (F.hanging) {
-        sint movable = load(field(header, &BlockHeader::movable));
-        if (branch(g.morphs & (movable != 0))) {
+        sint corners_at = load(field(header, &BlockHeader::corners_at));
+        if (branch(g.morphs & (corners_at != no_vertex_moves))) {
             svec origin = load_svec(origin_at);
             pointer<float> box = field(header, &BlockHeader::box_low);
             if (branch(v.ancestors_at != 0))

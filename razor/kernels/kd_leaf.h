@@ -14,17 +14,16 @@ struct Leaf {
 inline constexpr int least_level = -200;
 
 /// The box of everything at or below a block, scene coordinates.
-inline Reach box_in_scene(const Context& c, pointer<BlockHeader> block) {
+inline Box box_in_scene(const Context& c, pointer<BlockHeader> block) {
     sint instance = load(field(block, &BlockHeader::instance));
     svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
-    svec low = load_svec(field(block, &BlockHeader::box_low));
-    svec high = load_svec(field(block, &BlockHeader::box_high));
-    return {low + origin, high + origin};
+    Box box = box_of(block);
+    return {box.low + origin, box.high + origin};
 }
 
 /// Widens the leaf's box by that.
 inline void widen(const Context& c, pointer<BlockHeader> block, Leaf& leaf) {
-    Reach all = hold({leaf.low, leaf.high}, box_in_scene(c, block));
+    Box all = hold({leaf.low, leaf.high}, box_in_scene(c, block));
     leaf.low = all.low;
     leaf.high = all.high;
 }
@@ -65,11 +64,12 @@ inline Leaf survey(const Context& c, const List& l) {
         sint item = load(l.items + i);
         pointer<BlockHeader> block = as<BlockHeader>(c.grids + (sint(-1) - item));
         sint level = load(field(block, &BlockHeader::level));
-        sint movable = load(field(block, &BlockHeader::movable));
+        sint corners_at = load(field(block, &BlockHeader::corners_at));
         sint absolute = load(field(block, &BlockHeader::absolute));
         absolute = max(absolute, leaf.level);
         leaf.level = select(level > 0, absolute, leaf.level);
-        if (branch((level | movable) != 0)) {
+        sbool moves = corners_at != no_vertex_moves;
+        if (branch(moves | (level > 0))) {
             widen(c, block, leaf);
             sint hangs = load(field(block, &BlockHeader::hangs));
             if (branch(hangs != 0))
@@ -77,45 +77,6 @@ inline Leaf survey(const Context& c, const List& l) {
         }
     }
     return leaf;
-}
-
-/// The box of a block's vertices as they lie.
-inline Reach vertices_of(pointer<BlockHeader> block) {
-    sint quads_u = load(field(block, &BlockHeader::quads_u));
-    sint quads_v = load(field(block, &BlockHeader::quads_v));
-    sint several = load(field(block, &BlockHeader::cells_at));
-    sint stride = load(field(block, &BlockHeader::stride));
-    sint shift = cells_shift(quads_u);
-    sint cells = ((quads_v + 1) >> 1) << shift;
-    // Of cells, or of the vertices of a block that is one.
-    sint n = select(several != 0, cells, stride);
-    sint step = select(several != 0, sint(cell_boxes), stride);
-    sint lows_at = select(several != 0, several, sint(block_header_words));
-    pointer<float> lows = as<float>(block) + lows_at;
-    sint highs_at = step * 3;
-    highs_at = select(several != 0, highs_at, sint(0));
-    pointer<float> highs = lows + highs_at;
-    sfloat low[3], high[3];
-    vfloat big(3.0e38F);
-    for (int k = 0; k < 3; ++k) {
-        vfloat least = big;
-        vfloat most = -big;
-        for (sint from = 0; branch(from < n); from += isa::width) {
-            vmask m = first_lanes(n - from);
-            vfloat a = load_vector(lows + from, m);
-            least = min(select(m, a, big), least);
-            vfloat b = load_vector(highs + from, m);
-            most = max(select(m, b, -big), most);
-        }
-        low[k] = reduce_min(least);
-        high[k] = reduce_max(most);
-        lows = lows + step;
-        highs = highs + step;
-    }
-    Reach box;
-    box.low = {low[0], low[1], low[2]};
-    box.high = {high[0], high[1], high[2]};
-    return box;
 }
 
 /// Boxes that finer vertices make wider by less of their largest side are left as they are.
@@ -131,14 +92,14 @@ inline void tighten(const Context& c, const List& l) {
         sint line = sint(-1) - item;
         pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
         sfloat deviation = load(field(block, &BlockHeader::deviation));
-        Reach box = load_box(l, i);
+        Box box = load_box(l, i);
         if (branch(deviation > largest(box.high - box.low) * worth_tightening))
             box = reach_from(c, line, vertices_of(block), siblings);
         sint at = i;
         if (branch(meets_cell(l, box))) {
             if (branch(in_cell != i)) {
                 sint other = load(l.items + in_cell);
-                Reach others = load_box(l, in_cell);
+                Box others = load_box(l, in_cell);
                 store_item(l, i, other, others);
             }
             at = in_cell;
@@ -163,9 +124,7 @@ inline List refine_items(const Context& c, const List& old) {
         refine = refine & (finer > 0);
         if (branch(refine)) {
             ensure_children(c, line, block);
-            sint columns = load(field(block, &BlockHeader::child_columns));
-            sint rows = load(field(block, &BlockHeader::child_rows));
-            total = total + columns * rows;
+            total = total + load(field(block, &BlockHeader::child_count));
         } else {
             ++total;
         }
@@ -187,18 +146,16 @@ inline List refine_items(const Context& c, const List& old) {
         if (branch(refine)) {
             sint child = load(field(block, &BlockHeader::child_line));
             sint step = load(field(block, &BlockHeader::child_lines));
-            sint columns = load(field(block, &BlockHeader::child_columns));
-            sint rows = load(field(block, &BlockHeader::child_rows));
-            sint children = columns * rows;
+            sint children = load(field(block, &BlockHeader::child_count));
             for (sint k = 0; branch(k < children); ++k) {
-                Reach box = reach_of(c, child, siblings);
+                Box box = reach_of(c, child, siblings);
                 at = append_block(l, at, child, box);
                 child = child + step;
             }
         } else {
             // Where the leaf's rays meet it, and where it is finer.
-            Reach box = load_box(old, i);
-            Reach all = box_in_scene(c, block);
+            Box box = load_box(old, i);
+            Box all = box_in_scene(c, block);
             box = hold(box, all);
             at = append_block(l, at, line, box);
         }

@@ -163,9 +163,9 @@ inline vmask is_above(const vfloat& high, const vfloat& plane) {
 }
 
 /// Item i's box.
-inline Reach load_box(const List& l, sint i) {
+inline Box load_box(const List& l, sint i) {
     pointer<float> at = l.boxes + i;
-    Reach box;
+    Box box;
     box.low.x = load(at);
     box.low.y = load(at + l.stride);
     box.low.z = load(at + l.stride * 2);
@@ -174,7 +174,7 @@ inline Reach load_box(const List& l, sint i) {
     box.high.z = load(at + l.stride * 5);
     return box;
 }
-inline void store_item(const List& l, sint i, sint item, const Reach& box) {
+inline void store_item(const List& l, sint i, sint item, const Box& box) {
     store(l.items + i, item);
     pointer<float> at = l.boxes + i;
     store(at, box.low.x);
@@ -185,7 +185,7 @@ inline void store_item(const List& l, sint i, sint item, const Reach& box) {
     store(at + l.stride * 5, box.high.z);
 }
 
-inline sbool meets_cell(const List& l, const Reach& box) {
+inline sbool meets_cell(const List& l, const Box& box) {
     sbool meets = box.low.x <= l.high.x;
     meets = meets & (box.high.x >= l.low.x);
     meets = meets & (box.low.y <= l.high.y);
@@ -196,7 +196,7 @@ inline sbool meets_cell(const List& l, const Reach& box) {
 
 /// Appends block `line`, with its box in scene coordinates, if that meets the list's cell; returns the
 /// position after it.
-inline sint append_block(const List& l, sint at, sint line, const Reach& box) {
+inline sint append_block(const List& l, sint at, sint line, const Box& box) {
     if (branch(!meets_cell(l, box)))
         return at;
     store_item(l, at, sint(-1) - line, box);

@@ -181,7 +181,7 @@ inline sint open_item(const Context& c, const List& l, sint at, sint item) {
         pointer<OpenPatch> entry = open_patch(c, item);
         sint line = load(field(entry, &OpenPatch::root));
         Siblings siblings(l.most);
-        Reach box = reach_of(c, line, siblings);
+        Box box = reach_of(c, line, siblings);
         return append_block(l, at, line, box);
     }
     if (branch(item < graph_items)) {

@@ -62,6 +62,16 @@ template <Features F> void trace_all(const WorkerArguments& w, const TraceArgume
     }
 }
 
+/// The blocks that a leaf lists.
+void make_listed(const Context& c, pointer<KdNode> leaf) {
+    sint line = load(field(leaf, &KdNode::link));
+    List l = read_list(c, line);
+    for (sint i = 0; branch(i < l.count); ++i) {
+        sint block = sint(-1) - load(l.items + i);
+        ensure_made(c, as<BlockHeader>(c.grids + block));
+    }
+}
+
 /// Nodes lie one after the other in the arena, children behind their parents.
 void build_all(const WorkerArguments& w) {
     Context c = begin(w);
@@ -72,7 +82,9 @@ void build_all(const WorkerArguments& w) {
     while (branch(number < end)) {
         pointer<KdNode> node = c.nodes + number;
         sint state = load_acquire(field(node, &KdNode::state));
-        split_node(c, node, state);
+        state = split_node(c, node, state);
+        if (branch(state == node_leaf))
+            make_listed(c, node);
         ++number;
         end = load(field(c.self, &WorkerRecord::node_next));
     }
@@ -114,14 +126,14 @@ void dice_all(const WorkerArguments& w) {
                 ensure_children(c, line, block);
                 sint child = load(field(block, &BlockHeader::child_line));
                 sint lines = load(field(block, &BlockHeader::child_lines));
-                sint columns = load(field(block, &BlockHeader::child_columns));
-                sint rows = load(field(block, &BlockHeader::child_rows));
-                for (sint i = columns * rows; branch(i > 0); --i) {
+                sint children = load(field(block, &BlockHeader::child_count));
+                for (sint i = children; branch(i > 0); --i) {
                     store(left + depth, child);
                     child = child + lines;
                     ++depth;
                 }
             } else {
+                ensure_made(c, block);
                 ensure_normals(c, line);
             }
         }

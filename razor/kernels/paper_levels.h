@@ -93,8 +93,8 @@ inline void intersect_pair(const Context& c, Group& g, PairView& v, const Listed
     pointer<float> origin_at = field(c.instances + instance, &InstanceRecord::origin);
     sint stride = load(field(header, &BlockHeader::stride));
     sint absolute = load(field(header, &BlockHeader::absolute));
-    sint movable = load(field(header, &BlockHeader::movable));
-    sbool moves = movable != 0;
+    sint corners_at = load(field(header, &BlockHeader::corners_at));
+    sbool moves = corners_at != no_vertex_moves;
     moves = moves & (v.pair >= absolute);
     pointer<float> block = as<float>(header);
     pointer<float> fine = block;
@@ -157,6 +157,7 @@ template <Features F, bool Mixed>
         return;
     tally(c.counters->block_tests, 1);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
+    ensure_made(c, header);
     PairView v;
     v.line = listed.line;
     v.patch = load(field(header, &BlockHeader::patch));
@@ -170,7 +171,7 @@ template <Features F, bool Mixed>
     sint level = load(field(header, &BlockHeader::level));
     sint absolute = load(field(header, &BlockHeader::absolute));
     sint parent = load(field(header, &BlockHeader::parent));
-    sint movable = load(field(header, &BlockHeader::movable));
+    sint corners_at = load(field(header, &BlockHeader::corners_at));
     // A block is of one pair, but where there is no finer or no coarser one. Below the finest level nothing
     // moves, nor above the one at which every curve is one segment.
     sint lowest = absolute;
@@ -178,12 +179,12 @@ template <Features F, bool Mixed>
     v.below = -no_pair;
     v.above = no_pair;
     if (branch(level == 0)) {
-        if (branch(movable != 0))
+        if (branch(corners_at != no_vertex_moves))
             lowest = absolute - 1;
         v.below = lowest;
     }
     if (branch(parent < 0)) {
-        if (branch(movable != 0))
+        if (branch(corners_at != no_vertex_moves))
             highest = max(absolute - level + (max_exponent_limit + 1), absolute);
         v.above = highest;
     }

@@ -6,19 +6,6 @@
 namespace razor::ISA_TARGET {
 inline namespace build_kernel {
 
-/// A box.
-struct Reach {
-    svec low, high;
-};
-
-/// That of two boxes.
-inline Reach hold(const Reach& a, const Reach& b) {
-    Reach r;
-    r.low = {min(a.low.x, b.low.x), min(a.low.y, b.low.y), min(a.low.z, b.low.z)};
-    r.high = {max(a.high.x, b.high.x), max(a.high.y, b.high.y), max(a.high.z, b.high.z)};
-    return r;
-}
-
 /// How far a corner of the block that is the middle of an edge moves where target edge lengths are `target`.
 inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sfloat most = load(field(block, &BlockHeader::middle_sway));
@@ -37,7 +24,6 @@ inline sfloat middle_moves(const Context& c, pointer<BlockHeader> block, sfloat 
 inline sfloat corners_move(const Context& c, pointer<BlockHeader> block, sfloat target) {
     sfloat sum = middle_moves(c, block, target);
     for (;;) {
-
         sint parent = load(field(block, &BlockHeader::parent));
         if (branch(parent < 0))
             break;
@@ -66,19 +52,19 @@ struct CornerReach {
         svec high = load_svec(field(block, &BlockHeader::box_high));
         target = min(coarsest_target(target, high - low), unbounded_target);
     }
-    Reach place(const svec& anchor) const { return {anchor, anchor}; }
-    static Reach load_place(pointer<float> at) {
-        Reach box;
+    Box place(const svec& anchor) const { return {anchor, anchor}; }
+    static Box load_place(pointer<float> at) {
+        Box box;
         box.low = load_svec(at);
         box.high = load_svec(at + 3);
         return box;
     }
-    static void store_place(pointer<float> at, const Reach& box) {
+    static void store_place(pointer<float> at, const Box& box) {
         store_svec(at, box.low);
         store_svec(at + 3, box.high);
     }
-    Reach moved(sint birth, const svec& anchor, const Reach& one, const Reach& other) const {
-        Reach box = place(anchor);
+    Box moved(sint birth, const svec& anchor, const Box& one, const Box& other) const {
+        Box box = place(anchor);
         if (branch(target < moving_from(birth)))
             return box;
         svec low = middle(one.low, other.low);
@@ -109,7 +95,7 @@ public:
             seen_.climb(parent);
             pointer<float> corners = find_corners(c, seen_, parent_line);
             for (int k = 0; k < 4; ++k) {
-                Reach box = seen_.load_place(corners + CornerReach::words * k);
+                Box box = seen_.load_place(corners + CornerReach::words * k);
                 seen_.store_place(shared + CornerReach::words * k, box);
             }
         }
@@ -131,12 +117,12 @@ private:
 /// A box of block `line`, in its instance's coordinates, made to hold everything that its vertices can be
 /// moved to where target edge lengths are at most that of `siblings`; in scene coordinates. Inside a block
 /// vertices move towards others of it; so all depends on its corners.
-inline Reach reach_from(const Context& c, sint line, Reach box, Siblings& siblings) {
+inline Box reach_from(const Context& c, sint line, Box box, Siblings& siblings) {
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
     sint instance = load(field(block, &BlockHeader::instance));
-    sint movable = load(field(block, &BlockHeader::movable));
+    sint corners_at = load(field(block, &BlockHeader::corners_at));
     sbool morphs = load(field(c.frame, &FrameHeader::morphs)) != 0;
-    if (branch(morphs & (movable != 0))) {
+    if (branch(morphs & (corners_at != no_vertex_moves))) {
         pointer<float> corners = siblings.corners_of(c, line);
         for (int k = 0; k < 4; ++k)
             box = hold(box, CornerReach::load_place(corners + CornerReach::words * k));
@@ -148,12 +134,9 @@ inline Reach reach_from(const Context& c, sint line, Reach box, Siblings& siblin
 }
 
 /// That of its box, which holds everything finer, too.
-inline Reach reach_of(const Context& c, sint line, Siblings& siblings) {
+inline Box reach_of(const Context& c, sint line, Siblings& siblings) {
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-    Reach box;
-    box.low = load_svec(field(block, &BlockHeader::box_low));
-    box.high = load_svec(field(block, &BlockHeader::box_high));
-    return reach_from(c, line, box, siblings);
+    return reach_from(c, line, box_of(block), siblings);
 }
 
 } // namespace build_kernel

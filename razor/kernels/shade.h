@@ -190,8 +190,8 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
         here = here & (h.field == vint(lane));
         left = left & !here;
         pointer<float> words = as<float>(c.grids + block);
-        sint movable = load(field(as<BlockHeader>(words), &BlockHeader::movable));
-        if (branch(movable != 0)) {
+        sint corners_at = load(field(as<BlockHeader>(words), &BlockHeader::corners_at));
+        if (branch(corners_at != no_vertex_moves)) {
             vfloat sway = load_broadcast(field(as<BlockHeader>(words), &BlockHeader::sway));
             k.sway = select(here, sway, k.sway);
         }

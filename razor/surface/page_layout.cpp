@@ -33,7 +33,7 @@ std::size_t section_floats(PageKind kind, std::size_t controls, std::size_t vert
     case PageKind::derivative:
         return 2 * controls * block_row(vertices);
     case PageKind::deviation:
-        return rounded_up(controls, largest_width);
+        return 3 * rounded_up(controls, largest_width);
     }
     throw std::logic_error("page kind out of range");
 }

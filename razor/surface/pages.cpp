@@ -193,6 +193,19 @@ void bound_deviation(StencilEvaluator& stencil, const PageKey& key, int controls
     }
 }
 
+/// Where the control points of a regular face lie in its parameters, about the middle, if the surface is flat
+/// and evenly spaced: a B-spline surface takes such control points to just that. Each row of length 1.
+void place_regular_controls(float* along_u, float* along_v) {
+    const double unit = 1 / std::sqrt(20.0); // sum of (i - 1.5)^2 over 4 x 4
+    for (std::size_t j = 0; j < 4; ++j) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto k = static_cast<std::size_t>(regular_order[j * 4 + i]);
+            along_u[k] = static_cast<float>((static_cast<double>(i) - 1.5) * unit);
+            along_v[k] = static_cast<float>((static_cast<double>(j) - 1.5) * unit);
+        }
+    }
+}
+
 } // namespace
 
 struct PageMaker::Impl {
@@ -289,6 +302,10 @@ void PageMaker::make(const PageKey& key, float* weights) const {
     }
     case PageKind::deviation:
         bound_deviation(stencil, key, c.control_count, weights);
+        if (c.regular) {
+            const std::size_t row = page_floats(key, c.control_count) / 3;
+            place_regular_controls(weights + row, weights + 2 * row);
+        }
         break;
     }
 }

@@ -29,7 +29,8 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count);
 ///   - block: control_count rows of (nu+1)(nv+1) weights, nu = min(8, 2^Nu), zero-padded to a multiple of
 ///     RAZOR_WIDTH
 ///   - derivative: as block, two rows a control point
-///   - deviation: one row of control_count bounds, zero-padded to a multiple of 64
+///   - deviation: three rows of control_count numbers, zero-padded to a multiple of 64: bounds; and, of a
+///     regular face, its control points' places along u and v (zero of others)
 std::size_t page_floats(const PageKey& key, int control_count);
 
 /// How a class's pages are numbered: vertices, then curves, then blocks. `entries` and `lines` are left to

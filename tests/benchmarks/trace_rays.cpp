@@ -113,7 +113,7 @@ void add_finest(const FrameHeader& h, int line, std::vector<glm::vec3>& corners)
     const Line* at = h.grids.get() + line;
     const auto* block = reinterpret_cast<const BlockHeader*>(at);
     if (block->level > 0 && block->children.word == ready) {
-        const int children = block->child_columns * block->child_rows;
+        const int children = block->child_count;
         for (int k = 0; k < children; ++k)
             add_finest(h, block->child_line + k * block->child_lines, corners);
         return;

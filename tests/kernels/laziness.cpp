@@ -1,4 +1,5 @@
 // What no ray asks for is not built, and the statistics say so.
+#include "razor/check/dump.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/rays.h"
 #include "tests/kernels/targets.h"
@@ -55,6 +56,48 @@ TEST(Laziness, WhatNoRayMeetsStaysUnbuilt) {
     FrameStatistics empty = frame.statistics();
     EXPECT_EQ(empty.counters.patches_opened, 0);
     EXPECT_EQ(empty.inner_nodes + empty.leaves + empty.unsplit_nodes, 0);
+    EXPECT_EQ(tracer.closest(kernels, rays), lazy);
+}
+
+/// Blocks known to the tree, and those of them that have no vertices.
+std::array<int, 2> blocks_without_vertices(Frame& frame) {
+    std::array<int, 2> blocks{};
+    const OpenPatch* patches = frame.header().trees.get()[0].patches.get();
+    for (int p = 0; p < frame.header().patch_count; ++p) {
+        if (patches[p].state.word != ready)
+            continue;
+        for (int level = check::block_at(frame, patches[p].root).header->level; level >= 0; --level) {
+            const auto known = check::known_blocks_of(frame, p, 0, level).size();
+            const auto made = check::blocks_of(frame, p, 0, level).size();
+            blocks[0] += static_cast<int>(known);
+            blocks[1] += static_cast<int>(known - made);
+        }
+    }
+    return blocks;
+}
+
+/// Neighbours of what is seen are known by their boxes, and rays that pass these by make no vertices.
+TEST(Laziness, BlocksThatNoRayMeetsHaveNoVertices) {
+    Frame frame(scene_of(torus_cage(8, 6), 600), {});
+    Tracer tracer(frame, 64);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 64; ++i) {
+        const float x = 0.9F + 0.01F * static_cast<float>(i % 8);
+        rays.push_back({{x, 5, 0.01F * static_cast<float>(i / 8)}, {0, -1, 0}});
+    }
+    const KernelTable& kernels = *native_targets().back();
+    const std::vector<Hit> lazy = tracer.closest(kernels, rays);
+    EXPECT_GE(lazy.front().patch, 0);
+    const std::array<int, 2> after_rays = blocks_without_vertices(frame);
+    const Counters counted = frame.statistics().counters;
+    EXPECT_GT(after_rays[1], after_rays[0] / 4);
+    EXPECT_EQ(counted.blocks_made, after_rays[0] - after_rays[1]);
+
+    frame.build_all(kernels);
+    const std::array<int, 2> eager = blocks_without_vertices(frame);
+    EXPECT_GT(eager[0], 4 * after_rays[0]);
+    EXPECT_EQ(eager[1], 0);
+    EXPECT_EQ(frame.statistics().counters.blocks_made, eager[0]);
     EXPECT_EQ(tracer.closest(kernels, rays), lazy);
 }
 
