@@ -1,13 +1,27 @@
 #include "razor/frame/counters.h"
 
+#include <functional>
+
 namespace razor {
+namespace {
+
+template <class Combine> void combine(Counters& a, const Counters& b, Combine combine) {
+    static_assert(sizeof(Counters) % sizeof(std::int64_t) == 0);
+    auto* to = reinterpret_cast<std::int64_t*>(&a);
+    const auto* from = reinterpret_cast<const std::int64_t*>(&b);
+    for (std::size_t i = 0; i < sizeof(Counters) / sizeof(std::int64_t); ++i)
+        to[i] = combine(to[i], from[i]);
+}
+
+} // namespace
 
 Counters& Counters::operator+=(const Counters& o) {
-    static_assert(sizeof(Counters) % sizeof(std::int64_t) == 0);
-    auto* to = reinterpret_cast<std::int64_t*>(this);
-    const auto* from = reinterpret_cast<const std::int64_t*>(&o);
-    for (std::size_t i = 0; i < sizeof(Counters) / sizeof(std::int64_t); ++i)
-        to[i] += from[i];
+    combine(*this, o, std::plus<>());
+    return *this;
+}
+
+Counters& Counters::operator-=(const Counters& o) {
+    combine(*this, o, std::minus<>());
     return *this;
 }
 
@@ -21,6 +35,12 @@ Counters CountersByKind::sum() const {
 CountersByKind& CountersByKind::operator+=(const CountersByKind& o) {
     for (int k = 0; k < kind_count; ++k)
         kind[k] += o.kind[k];
+    return *this;
+}
+
+CountersByKind& CountersByKind::operator-=(const CountersByKind& o) {
+    for (int k = 0; k < kind_count; ++k)
+        kind[k] -= o.kind[k];
     return *this;
 }
 

@@ -23,6 +23,7 @@ struct Counters {
     std::int64_t pages_requested = 0;
 
     Counters& operator+=(const Counters& o);
+    Counters& operator-=(const Counters& o);
 };
 
 /// Of each kind of ray what tracing its packets took and built, and of kind_none all else.
@@ -31,6 +32,7 @@ struct CountersByKind {
 
     Counters sum() const;
     CountersByKind& operator+=(const CountersByKind& o);
+    CountersByKind& operator-=(const CountersByKind& o);
 };
 
 /// Name and value of each counter, in order.

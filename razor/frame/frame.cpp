@@ -74,6 +74,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
 
 void Frame::Impl::reset() {
     *header->queues.get() = QueueRecord{};
+    header->tiles_end = header->tiles;
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
         tree.root_state.word = absent;
@@ -95,6 +96,11 @@ void Frame::Impl::reset() {
         r.next_field = 1; // 0: the camera's
         counters[static_cast<std::size_t>(w)] = {};
     }
+}
+
+int screen_tiles(const Settings& settings) {
+    const auto along = [](int pixels) { return (pixels + tile_side - 1) / tile_side; };
+    return along(settings.width) * along(settings.height);
 }
 
 Frame::Frame(const Scene& scene, const FrameOptions& options) {
@@ -170,6 +176,11 @@ void Frame::set_reach(double distance) {
     impl_->header->reach = static_cast<float>(impl_->geometry.reach + distance);
 }
 
+void Frame::take_tiles(int first, int end) {
+    impl_->header->tiles_end = end;
+    impl_->header->queues.get()->next_tile.word = first;
+}
+
 void Frame::stop() {
     auto& word = impl_->header->queues.get()->next_tile.word;
     std::atomic_ref(word).fetch_or(1 << 30, std::memory_order_relaxed);
@@ -207,7 +218,7 @@ std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) 
 double Frame::progress() const {
     auto& word = impl_->header->queues.get()->next_tile.word;
     int taken = std::atomic_ref(word).load(std::memory_order_relaxed);
-    return std::min(1.0, static_cast<double>(taken) / impl_->header->tiles);
+    return std::min(1.0, static_cast<double>(taken) / impl_->header->tiles_end);
 }
 
 FrameStatistics Frame::statistics() const {

@@ -50,6 +50,9 @@ struct FrameStatistics {
     std::string plan;            // which kernels the scene needs
 };
 
+/// How many screen tiles a picture has.
+int screen_tiles(const Settings& settings);
+
 class Frame {
 public:
     /// Analyses the scene's topology and lays out frame memory. Throws UserError for cages that cannot be
@@ -61,6 +64,10 @@ public:
 
     /// Empties everything a frame builds, so that it can be rendered again. Topology pages stay.
     void reset();
+    /// Until the next reset() workers take the screen tiles from `first` up to, not including, `end` alone.
+    /// They are numbered row by row. After the workers have returned they may run again on other tiles, and
+    /// find what is built; the statistics go on.
+    void take_tiles(int first, int end);
     /// Runs one worker's share; every worker of options.workers must run, each in its own thread or fibre.
     /// Throws UserError if an arena is exhausted.
     void render(const KernelTable& kernels, int worker);

@@ -283,7 +283,7 @@ void Frame::Impl::place_view(const Scene& scene) {
     h.height = s.height;
     h.samples = s.samples;
     h.tiles_x = (s.width + tile_side - 1) / tile_side;
-    h.tiles = h.tiles_x * ((s.height + tile_side - 1) / tile_side);
+    h.tiles = screen_tiles(s);
     const View v = view_of(scene.camera);
     const FilmExtent film = film_extent(scene.camera, s);
     const double pixel = 2 * film.half_height / s.height;

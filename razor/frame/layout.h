@@ -400,6 +400,7 @@ enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t tiles_x, tiles;
+    std::int32_t tiles_end; // workers take tiles before this one
     std::int32_t light_samples, sky_samples;
     std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
     std::int32_t cluster_count; // of all meshes

@@ -173,9 +173,9 @@ template <Features F> inline void render_worker(const Context& c) {
     refit(c);
     clear_blends(c);
     pointer<QueueRecord> queues = load(field(c.frame, &FrameHeader::queues));
-    sint tiles = load(field(c.frame, &FrameHeader::tiles));
+    sint end = load(field(c.frame, &FrameHeader::tiles_end));
     sint tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
-    while (branch(tile < tiles)) {
+    while (branch(tile < end)) {
         render_tile<F>(c, tile);
         tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
     }

@@ -105,6 +105,8 @@ RenderResult render_native(const Scene& scene, const RenderOptions& options) {
     for (int n = 0; n < options.frames; ++n) {
         if (n > 0)
             frame.reset();
+        if (options.tiles > 0)
+            frame.take_tiles(0, options.tiles);
         std::function<void(double)> progress;
         if (options.progress)
             progress = [&](double fraction) { options.progress((n + fraction) / options.frames); };

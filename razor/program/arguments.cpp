@@ -99,6 +99,21 @@ std::pair<int, int> parse_size(std::string_view option, std::string_view text, R
             parse_whole(fmt::format("the height of {}", option), text.substr(cross + 1), range)};
 }
 
+std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range) {
+    const std::size_t dots = text.find("..");
+    if (dots == std::string_view::npos) {
+        throw UserError(fmt::format("{} '{}' is not possible; give FIRST..LAST, for example 0..9", option,
+                                    printable(text)));
+    }
+    const std::pair<int, int> span{
+        parse_whole(fmt::format("the first of {}", option), text.substr(0, dots), range),
+        parse_whole(fmt::format("the last of {}", option), text.substr(dots + 2), range)};
+    if (span.first > span.second)
+        throw UserError(
+            fmt::format("{} '{}' ends before it begins; give FIRST..LAST", option, printable(text)));
+    return span;
+}
+
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words) {
     const auto found = std::find(words.begin(), words.end(), text);

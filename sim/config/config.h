@@ -75,7 +75,7 @@ struct TlbConfig {
 
 struct CoherenceConfig {
     std::string plain;
-    integer directory_cycles = 0, snoop_cycles = 0;
+    integer directory_cycles = 0, directory_entries = 0, directory_ways = 0, snoop_cycles = 0;
     integer visibility_cycles = 0, atomic_cycles = 0, remote_cycles = 0;
     /// Whether plain data are kept coherent.
     bool kept() const { return plain != "none"; }

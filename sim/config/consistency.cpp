@@ -324,6 +324,11 @@ void check_coherence(const std::string& what, const Config& config) {
         refuse(level_name(last) + ".share", config.cache(last).share, "tile");
     if (config.beyond_tiles(last) && config.cores_sharing(last) != config.all_cores())
         refuse(level_name(last) + ".share", config.cache(last).share, "chip");
+    const CoherenceConfig& c = config.coherence;
+    if (!c.snoops() && c.directory_entries % c.directory_ways != 0)
+        fail(what, fmt::format("coherence.directory_entries is {}, which is no multiple of "
+                               "coherence.directory_ways, {}: all sets have as many; make it one",
+                               c.directory_entries, c.directory_ways));
     if (config.memory.controller != "immediate")
         refuse("memory.controller", config.memory.controller, "immediate");
 }

@@ -243,10 +243,16 @@ void add_caches(Table& t) {
     t.add("coherence.plain", c, &C::plain, {"none", "directory", "snoop"},
           "of data that are not shared words; none: caches keep what others write; directory: lines are "
           "modified, exclusive, shared or invalid (MESI), in a tile as its caches know of each other, beyond "
-          "the tiles by a full map at each line's bank or memory channel; snoop: beyond the tiles as their "
+          "the tiles by a directory at each line's bank or memory channel; snoop: beyond the tiles as their "
           "last caches see each other's requests on buses (network.topology)");
     t.add("coherence.directory_cycles", c, &C::directory_cycles, "cycles", 6, 1, 10000,
           "of a look-up of the directory, before anything else happens there");
+    t.add(
+        "coherence.directory_entries", c, &C::directory_entries, "", 0, 0, 1 << 30,
+        "of the directory at each bank of the cache that all tiles share, or at each memory channel, a line "
+        "each; a line that another's needs the room of is recalled from who has it; 0: room for all");
+    t.add("coherence.directory_ways", c, &C::directory_ways, "", 8, 1, 1 << 20,
+          "entries of a set; the one asked for least recently leaves");
     t.add("coherence.snoop_cycles", c, &C::snoop_cycles, "cycles", 6, 1, 10000,
           "from a request on a bus until all caches there have said what they have of its line");
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,

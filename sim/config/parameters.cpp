@@ -147,7 +147,9 @@ bool applies(const Parameter& p, const Config& config) {
         return config.network.bus();
     if (p.key.starts_with("network."))
         return p.key == "network.topology" || !config.network.ideal();
-    if (p.key == "coherence.directory_cycles")
+    if (p.key == "coherence.directory_ways" && config.coherence.directory_entries == 0)
+        return false;
+    if (p.key.starts_with("coherence.directory_"))
         return config.coherence.kept() && !config.coherence.snoops();
     if (p.key == "coherence.snoop_cycles")
         return config.coherence.snoops();

@@ -81,6 +81,10 @@ public:
     virtual cycle drain() = 0;
     /// What follows counts by itself from this cycle on.
     virtual void count_from(cycle t) = 0;
+    void judge_prefetches() {
+        for (SharedCache& shared : caches_)
+            shared.cache.judge_prefetches();
+    }
     /// The frame is over: dirty lines that `keep` says so of are written back.
     template <class Keep> void write_back(cycle t, std::size_t column, Keep keep) {
         for (SharedCache& shared : caches_)

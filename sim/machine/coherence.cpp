@@ -11,7 +11,16 @@ Coherence::Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, 
       snoops_(config.coherence.snoops()),
       look_up_(snoops_ ? 0 : static_cast<std::uint64_t>(config.coherence.directory_cycles)),
       snoop_(snoops_ ? static_cast<std::uint64_t>(config.coherence.snoop_cycles) : 0), ways_(ways),
-      tiles_(tiles), write_back_(std::move(write_back)), heard_(ways_.network().topology().buses()) {}
+      tiles_(tiles), write_back_(std::move(write_back)),
+      directory_(snoops_ || config.coherence.directory_entries == 0
+                     ? 0
+                     : static_cast<std::size_t>(config.coherence.directory_ways),
+                 [&ways, bytes = line_bytes_,
+                  sets = static_cast<std::uint64_t>(config.coherence.directory_entries /
+                                                    config.coherence.directory_ways)](std::uint64_t address) {
+                     return ways.home(address) * sets + address / bytes / ways.homes() % sets;
+                 }),
+      heard_(ways_.network().topology().buses()) {}
 
 bool Coherence::grants_silently(const Request& r) {
     const Directory::Line* l = directory_.find(r.read);
@@ -26,6 +35,7 @@ Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
     const bool upgrade = r.kind == Request::upgrade;
     const std::uint32_t who = number_of(r);
     under_way(who).asked(r.read, upgrade);
+    t = make_room(r, t);
     Directory::Line& l = directory_.line(r.read);
     ++(upgrade ? counters_.upgrades : r.exclusive ? counters_.writes : counters_.reads);
     Outcome out;
@@ -49,6 +59,54 @@ Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
     if (out.from != Outcome::below)
         arrives(r, std::max(out.at, out.finished));
     return out;
+}
+
+/// Of a directory with room for some lines: until it has room for this one.
+cycle Coherence::make_room(const Request& r, cycle t) {
+    if (!directory_.is_crowded_for(r.read))
+        return t;
+    const auto leaving = directory_.leaving(r.read, [&](std::uint64_t line) {
+        const Directory::Line& l = *directory_.find(line);
+        const auto asks = [&](std::uint32_t cache) { return under_way(cache).asks(line); };
+        return !(l.owner != Directory::nobody && asks(l.owner)) &&
+               std::none_of(l.sharers.begin(), l.sharers.end(), asks);
+    });
+    if (leaving)
+        return recall(r, *leaving, t);
+    ++counters_.crowded;
+    return t;
+}
+
+/// All that have the line drop it; returns when they have said so.
+cycle Coherence::recall(const Request& r, std::uint64_t line, cycle t) {
+    const Directory::Line l = *directory_.find(line);
+    directory_.forget(line);
+    ++counters_.recalled_lines;
+    cycle told = t;
+    const auto take = [&](std::uint32_t holder) {
+        const cycle there = ways_.tell_tile(line, tile_of(holder), t);
+        Cache& at = cache(holder);
+        ++counters_.recalls;
+        cycle done = there + at.latency();
+        if (at.holds(line)) {
+            ++counters_.recalls_received;
+            if (holder == l.owner) {
+                done = std::max(there, l.since) + at.latency();
+                if (at.share(line, line_bytes_, r.column)) {
+                    ++counters_.written_back;
+                    write_back(holder, r, line, done);
+                }
+            }
+            at.lose(line, line_bytes_);
+        } else {
+            ++counters_.recalls_stale;
+        }
+        told = std::max(told, ways_.answer_directory(tile_of(holder), line, done));
+    };
+    if (l.owner != Directory::nobody)
+        take(l.owner);
+    std::for_each(l.sharers.begin(), l.sharers.end(), take);
+    return told;
 }
 
 /// The request is on its own bus at `t`: to the others.
@@ -104,7 +162,7 @@ void Coherence::forward(const Request& r, Directory::Line& l, cycle t, Outcome& 
         l.sharers.push_back(owner);
         if (dirty) {
             ++counters_.written_back;
-            write_back(owner, r, start);
+            write_back(owner, r, r.read, start);
         }
     } else if (!under_way(owner).asks(r.read)) {
         dirty = from.lose(r.read, line_bytes_);
@@ -155,33 +213,34 @@ void Coherence::give(const Request& r, Directory::Line& l) {
         // A right that was given before, and taken while the line was asked for again.
         if (cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.column)) {
             ++counters_.written_back;
-            write_back(who, r, r.at);
+            write_back(who, r, r.read, r.at);
         }
         return;
     }
     cache(who).grant(r.read, line_bytes_);
 }
 
-void Coherence::write_back(std::uint32_t from, const Request& r, cycle t) {
+void Coherence::write_back(std::uint32_t from, const Request& r, std::uint64_t line, cycle t) {
     Request w{};
     w.at = t;
     w.tile = tile_of(from);
     w.exit = static_cast<std::uint32_t>(from % exits_);
     w.sequence = r.sequence;
-    w.write = r.read;
+    w.write = line;
     w.bytes = line_bytes_;
     w.whole = true;
     w.column = r.column;
     w.stage = Request::writes;
-    w.to = r.tile + 1; // one of a kind in the order of requests
+    // One of a kind in the order of requests.
+    w.to = r.tile + 1 + (line == r.read ? 0 : static_cast<std::uint32_t>(tiles_.size()));
     w.mshr = Request::no_entry;
     write_back_(w);
 }
 
 void Coherence::arrives(const Request& r, cycle ready) {
-    Directory::Line& l = directory_.line(r.read);
-    if (l.owner == number_of(r))
-        l.since = ready;
+    Directory::Line* l = directory_.find(r.read);
+    if (l != nullptr && l->owner == number_of(r)) // it may have been recalled
+        l->since = ready;
 }
 
 void Coherence::written(const Request& r) {

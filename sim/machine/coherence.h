@@ -3,7 +3,9 @@
 // has it read from it; a write takes it from all sharers.
 // * directory: who has a line is known at its bank of the cache that all tiles share, or at its memory
 //   channel. There a request is looked up, sent on to the owner, or told to the sharers, which tell the
-//   writer.
+//   writer. A directory with room for some lines alone (coherence.directory_entries) first recalls another
+//   one for a line that it does not know: who has that drops it, what was changed is written back, and when
+//   all have answered the request goes on. Lines that somebody is just asking for stay.
 // * snoop: all caches see each other's requests. Those of the same bus as it passes; the hub passes it on to
 //   all other buses. coherence.snoop_cycles later all have said what they have, and the owner begins to bring
 //   the line, of which memory takes what it had changed as it passes; memory is asked at once, but its answer
@@ -12,8 +14,8 @@
 // which requests are served; messages take their ways over the network, and act on the tiles' caches at once,
 // that is after the window: whether one has a line is what its tags say then. Not modelled: ports of caches
 // that look lines up or bring them; that a line which is asked for again while it is taken away cannot be
-// read meanwhile; places in the directory for lines whose messages are on their way; that a bus lets only so
-// many requests be under way, or memory read in vain what an owner brings.
+// read meanwhile; that a request waits where all lines of its set are being asked for; that a bus lets only
+// so many requests be under way, or memory read in vain what an owner brings.
 #pragma once
 
 #include "sim/machine/tile.h"
@@ -75,7 +77,9 @@ private:
     void forward(const Request& r, Directory::Line& l, cycle t, Outcome& out);
     cycle invalidate(const Request& r, const Directory::Line& l, cycle t);
     void give(const Request& r, Directory::Line& l);
-    void write_back(std::uint32_t from, const Request& r, cycle t);
+    cycle make_room(const Request& r, cycle t);
+    cycle recall(const Request& r, std::uint64_t line, cycle t);
+    void write_back(std::uint32_t from, const Request& r, std::uint64_t line, cycle t);
 
     std::size_t exits_;
     unsigned level_; // of the tiles' last caches

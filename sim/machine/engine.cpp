@@ -1,7 +1,6 @@
 #include "sim/machine/engine.h"
 
 #include "sim/config/placement.h"
-#include "sim/machine/warm_up.h"
 
 #include <fmt/core.h>
 
@@ -365,122 +364,6 @@ void Engine::run_workers() {
             host_threads_.one(host_thread(tile), [&](int) { tile.scheduler.cancel(); });
         std::rethrow_exception(failure_);
     }
-}
-
-/// All workers begin at cycle `t`, before which everything is at rest.
-void Engine::begin_frame(cycle t) {
-    for (Hart& h : harts_) {
-        h.account(h.accounted, t, Cause::idle);
-        h.accounted = h.now = t;
-        h.bound = Due(t, Cause::idle);
-        h.enter(0);
-        if (h.worker < 0)
-            continue;
-        h.finished = false;
-        h.tile->scheduler.add(h.number, t, [this, &h] {
-            running_hart = &h;
-            worker_(h.worker);
-            h.finished = true;
-        });
-    }
-    cycles_ = t;
-}
-
-/// Intervals, and lines that count as touched, begin here.
-void Engine::begin_counting() {
-    lines_.forget_touched();
-    intervals_.begin(cycles_, sums());
-    if (intervals_.wanted())
-        for (Hart& h : harts_)
-            h.begin_intervals(cycles_, intervals_.length());
-}
-
-Report Engine::run() {
-    Report warm;
-    begin_frame(0);
-    for (int frame = 0;; ++frame) {
-        const bool last = frame + 1 == options_.frames;
-        if (last)
-            begin_counting();
-        run_workers();
-        finish_frame();
-        if (last)
-            break;
-        cycle quiet = std::max({cycles_, window_end_, beyond_->drain()});
-        for (const Tile& tile : tiles_)
-            for (unsigned level = 1; level < tile_levels_; ++level)
-                for (const Cache& cache : tile.caches[level])
-                    quiet = std::max(quiet, cache.quiet());
-        for (const SharedCache& shared : beyond_->caches())
-            quiet = std::max(quiet, shared.cache.quiet());
-        begin_frame((quiet + window_cycles_ - 1) / window_cycles_ * window_cycles_);
-        if (frame + 2 == options_.frames) {
-            beyond_->count_from(cycles_);
-            warm = report();
-        }
-        if (options_.next_frame)
-            options_.next_frame(frame + 1);
-    }
-    beyond_->finish();
-    Report r = report();
-    r.all_vops = r.core.vops;
-    r.all_instructions = r.core.instructions;
-    if (options_.frames > 1)
-        take_away(r, warm);
-    add_intervals(r);
-    return r;
-}
-
-/// The workers have returned: what they began is completed, and dirty lines of data that outlives the frame
-/// are written back; those of transient data are dropped.
-void Engine::finish_frame() {
-    auto serve_all = [this] {
-        settle_tiles();
-        for (Tile& tile : tiles_)
-            beyond_->accept(tile.leaving.requests);
-        beyond_->serve(Beyond::everything);
-    };
-    serve_all();
-    for (unsigned level = 1; level < tile_levels_; ++level)
-        for (const Tile& tile : tiles_)
-            for (const Cache& cache : tile.caches[level])
-                misplaced_lines_ += cache.misplaced();
-    misplaced_lines_ += beyond_->misplaced();
-    if (const Coherence* coherence = beyond_->coherence())
-        incoherent_lines_ += coherence->incoherent();
-    for (Hart& h : harts_) {
-        settle_loads(h);
-        await_stores(h);
-        if (h.complete.at() > h.accounted) {
-            h.account(h.accounted, h.complete.at(), h.complete.why());
-            h.accounted = h.complete.at();
-        }
-        h.finish = h.accounted;
-        cycles_ = std::max(cycles_, h.accounted);
-    }
-    for (Hart& h : harts_) {
-        h.account(h.accounted, cycles_, Cause::idle);
-        h.accounted = cycles_;
-        if (h.interval != 0)
-            h.close_interval();
-    }
-    at_end_ = sums();
-    auto lasting = [this](std::uint64_t address) {
-        const isa::region* r = space_.find(address);
-        return r != nullptr && !r->transient;
-    };
-    std::size_t frame_end = labels_.phases.size() - 1; // of the first kind
-    for (Tile& tile : tiles_)
-        for (Core& core : tile.cores)
-            core.l1.finish(cycles_, frame_end, lasting);
-    serve_all();
-    for (unsigned level = 1; level < tile_levels_; ++level) {
-        for (Tile& tile : tiles_)
-            for (Cache& cache : tile.caches[level])
-                cache.finish(cycles_, frame_end, lasting);
-        serve_all();
-    }
-    beyond_->write_back(cycles_, frame_end, lasting);
 }
 
 std::string Engine::describe_deadlock() const {

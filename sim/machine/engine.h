@@ -293,9 +293,12 @@ private:
     void forget_tickets(Tile& tile);
     void fail(const std::exception_ptr& why);
     void run_workers();
-    void finish_frame();
-    void begin_frame(cycle t);
+    void begin_part(cycle t);
     void begin_counting();
+    void serve_all();
+    void finish_part();
+    void judge_prefetches();
+    void finish_frame();
     std::string describe_deadlock() const;
     Interval sums() const;
     Report report() const;

@@ -144,8 +144,8 @@ void check_memory(const Report& r) {
         }
         at_most("bus clocks of a channel <= clocks", all.busy_clocks, all.last_clock);
         at_most("turnarounds < bursts", all.turnarounds, all.read_bursts + all.write_bursts);
-        at_most("turnarounds <= 2 x the lesser of read and written bursts", all.turnarounds,
-                2 * std::min(all.read_bursts, all.write_bursts));
+        at_most("turnarounds <= 2 x the lesser of read and written bursts, and one from those before",
+                all.turnarounds, 2 * std::min(all.read_bursts, all.write_bursts) + (r.warm_up == 0 ? 0 : 1));
         at_most("rank switches < bursts", all.rank_switches, all.read_bursts + all.write_bursts);
         sum += all;
     }
@@ -223,9 +223,10 @@ void check_network(const Report& r) {
     equal("replies = requests, but for upgrades that had their line", n.replies + d.upgrades,
           n.requests + d.lost_upgrades);
     const bool snoops = r.config.coherence.snoops();
-    const std::uint64_t words = d.claims + (snoops ? d.passed_on
-                                                   : d.forwards + d.forwards_stale + d.invalidations +
-                                                         d.acknowledgements + d.upgrades - d.lost_upgrades);
+    const std::uint64_t words =
+        d.claims + (snoops ? d.passed_on
+                           : d.forwards + d.forwards_stale + d.invalidations + d.acknowledgements +
+                                 2 * d.recalls + d.upgrades - d.lost_upgrades);
     at_most("words for coherence <= words", words, n.words);
     if (!beyond)
         equal("other words are for caches beyond the tiles", n.words, words);
@@ -290,7 +291,12 @@ void check_coherence(const Report& r) {
     equal("every other cache looks up what one asks for", d.snoops,
           seen * others(r.caches(r.config.tile_levels() - 1).size()));
     equal("every other bus is told", d.passed_on, seen * others(snoops ? Topology(r.config).buses() : 1));
-    at_most("invalidations received <= lines that tiles lost", d.invalidations_received, last.invalidations);
+    at_most("invalidations and recalls received <= lines that tiles lost",
+            d.invalidations_received + d.recalls_received, last.invalidations);
+    equal("recalls = received + stale", d.recalls, d.recalls_received + d.recalls_stale);
+    at_most("recalled lines <= recalls", d.recalled_lines, d.recalls);
+    if (snoops || r.config.coherence.directory_entries == 0)
+        equal("who has room for all recalls nothing", d.recalls + d.crowded, 0);
     equal("lines written back for others = those that tiles sent down", d.written_back, last.downgrades);
     equal("who has a line is known, and one alone may write it", r.incoherent_lines, 0);
 }

@@ -23,6 +23,9 @@ struct RunOptions {
     std::uint64_t interval = 0; // cycles of an interval of Report::intervals, whole windows; 0: none are kept
     int frames = 1;             // so often all workers run, one time after another; the last counts
     std::function<void(int frame)> next_frame = {}; // called before all but the first, memory being quiet
+    /// If it is given, all workers run once more in the last frame, with caches as they are, and that alone
+    /// counts. Called before it, memory being quiet.
+    std::function<void()> next_part = {};
     /// Another than 0: in each window all that the host may do in any order (tiles, what leaves them, who
     /// wakes) is done in one drawn with this seed. No report depends on it.
     std::uint32_t host_order = 0;
@@ -42,6 +45,8 @@ public:
     /// 0.
     /// With several frames, caches, predictors and open rows stay as the frame before left them: its dirty
     /// lines that outlive a frame have been written, others were dropped, and memory has become quiet.
+    /// Where a frame goes on in a second part, its dirty lines stay; prefetched lines that nobody has used
+    /// until then count as useless.
     /// Tiles run on `host_threads` threads of the host, which changes no digit of the report.
     Report run(const isa::address_space& space, int workers, const Labels& labels,
                const std::function<void(int worker)>& worker, int host_threads = 1,

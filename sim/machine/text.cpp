@@ -164,6 +164,10 @@ void coherence(std::string& out, const Report& r) {
                        d.forwards_dirty, d.forwards_clean, d.forwards_stale, d.written_back);
     out += fmt::format("         invalidations: {} sent, {} to caches that had the line, {} to others\n",
                        d.invalidations, d.invalidations_received, d.invalidations_stale);
+    if (r.config.coherence.directory_entries != 0 && !r.config.coherence.snoops())
+        out += fmt::format("         recalls: {} lines, from {} caches that had them and {} that had not; {} "
+                           "requests found no room\n",
+                           d.recalled_lines, d.recalls_received, d.recalls_stale, d.crowded);
     if (r.config.coherence.snoops())
         out += fmt::format("         {} look-ups of others' tags; {} requests passed on to other buses\n",
                            d.snoops, d.passed_on);

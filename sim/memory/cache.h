@@ -106,11 +106,17 @@ public:
     std::uint64_t incoherent() const;
     /// The line's contents are dead: it need not be written back.
     void discard(std::uint64_t address);
-    /// The frame is over: `keep(address)` says which dirty lines are written back; all others are dropped.
-    template <class Keep> void finish(cycle t, std::size_t column, Keep keep) {
+    /// Lines that were prefetched and not used yet were useless to what counts until now.
+    void judge_prefetches() {
         array_.for_each([&](CacheArray::Entry e) {
             count_useless(e);
             array_.set_prefetched(e, false);
+        });
+    }
+    /// The frame is over: `keep(address)` says which dirty lines are written back; all others are dropped.
+    template <class Keep> void finish(cycle t, std::size_t column, Keep keep) {
+        judge_prefetches();
+        array_.for_each([&](CacheArray::Entry e) {
             if (!array_.dirty(e))
                 return;
             if (keep(array_.line(e) << line_shift_))

@@ -16,6 +16,9 @@ Ways::Ways(const Config& c, const cycle& earliest, std::uint64_t disorder)
     : ideal_(c.network.ideal()), network_(c, earliest), mapping_(c.memory),
       line_shift_(
           static_cast<unsigned>(std::countr_zero(static_cast<std::uint64_t>(c.last_cache().line_bytes)))),
+      homes_(static_cast<std::size_t>(c.beyond_tiles(c.cache_levels() - 1) ? c.last_cache().banks
+                                                                           : c.memory.channels)),
+      banks_(c.beyond_tiles(c.cache_levels() - 1)),
       line_mask_(static_cast<std::uint64_t>(c.last_cache().line_bytes) - 1), disorder_(disorder) {}
 
 std::size_t Ways::bank(std::size_t cache, std::uint64_t address) const {
@@ -32,6 +35,10 @@ std::size_t Ways::target(Asker who, std::uint64_t address) const {
     if (who.kind == Asker::tile && t.caches() != 0)
         return bank(t.cache_of(who.number), address);
     return t.channel(mapping_.locate(address & ~line_mask_).channel);
+}
+
+std::size_t Ways::home(std::uint64_t address) const {
+    return banks_ ? (address >> line_shift_) % homes_ : mapping_.locate(address & ~line_mask_).channel;
 }
 
 cycle Ways::reach(Network::Message kind, Asker who, std::uint64_t address, std::uint32_t bytes, cycle t) {

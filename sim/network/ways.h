@@ -81,6 +81,10 @@ public:
         return t;
     }
     const Network& network() const { return network_; }
+    /// Number of the bank of the cache that all tiles share, or else of the memory channel, that answers for
+    /// a line.
+    std::size_t home(std::uint64_t address) const;
+    std::size_t homes() const { return homes_; }
 
     static Shortest shortest(const Config& config);
 
@@ -94,6 +98,8 @@ private:
     Network network_;
     DramMapping mapping_;
     unsigned line_shift_; // of the last cache
+    std::size_t homes_;
+    bool banks_; // are homes, not channels
     std::uint64_t line_mask_;
     cycle disorder_, latest_ = 0;
 };

@@ -24,9 +24,10 @@ bool same_bits(const razor::Film& a, const razor::Film& b) {
 
 } // namespace
 
-NativeRun run_native(const razor::Scene& scene, const razor::Film& simulated,
-                     const std::atomic<bool>& cancel) {
+NativeRun run_native(const razor::Scene& scene, const razor::Film& simulated, const std::atomic<bool>& cancel,
+                     int tiles) {
     razor::RenderOptions options;
+    options.tiles = tiles;
     options.threads = 1;
     options.cancel = &cancel;
     const razor::RenderResult result = razor::render_native(scene, options);

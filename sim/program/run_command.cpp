@@ -28,6 +28,7 @@
 #include <numeric>
 #include <optional>
 #include <thread>
+#include <tuple>
 
 namespace sim {
 namespace {
@@ -52,13 +53,14 @@ private:
     std::jthread thread_;
 };
 
-json renderer(const razor::FrameStatistics& s, const std::vector<int>& tree_of_worker) {
+json renderer(const razor::FrameStatistics& s, const razor::CountersByKind& counted,
+              const std::vector<int>& tree_of_worker) {
     json out;
     out["plan"] = s.plan;
     out["trees"] = s.trees;
     out["tree_of_worker"] = tree_of_worker;
-    out["counters"] = s.counters;
-    out["counters_by_kind"] = s.by_kind;
+    out["counters"] = counted.sum();
+    out["counters_by_kind"] = counted;
     out["built"] = {{"inner_nodes", s.inner_nodes},
                     {"leaves", s.leaves},
                     {"grid_bytes", s.grid_bytes},
@@ -68,24 +70,39 @@ json renderer(const razor::FrameStatistics& s, const std::vector<int>& tree_of_w
     return out;
 }
 
+/// The part of a frame that counts.
+struct Counted {
+    int first_tile = 0, last_tile = 0;
+    razor::CountersByKind before; // what the frame's tiles before them took
+
+    int tiles() const { return last_tile - first_tile + 1; }
+    razor::CountersByKind of(const razor::FrameStatistics& f) const {
+        razor::CountersByKind c = f.by_kind;
+        c -= before;
+        return c;
+    }
+};
+
 /// What was rendered and what it took, above the machine's own report.
-std::string frame_text(const razor::Settings& s, int workers, int screen_tiles,
+std::string frame_text(const razor::Settings& s, int workers, const Counted& counted,
                        const razor::FrameStatistics& f, const Report& r) {
+    const int screen_tiles = counted.tiles();
     // With few screen tiles a worker, the last one to end decides the time: that says little of the machine.
     const char* few =
         screen_tiles < 4 * workers ? ": few, so workers will be idle; a larger picture says more" : "";
     const std::string& share = r.config.kdtree.share;
-    auto rays = [&](razor::RayKind kind) { return f.by_kind.kind[kind].rays; };
+    const razor::CountersByKind c = counted.of(f);
+    auto rays = [&](razor::RayKind kind) { return c.kind[kind].rays; };
     return fmt::format(
         "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
-        "screen tiles           {}, {:.1f} a worker{}\n"
+        "screen tiles           {} ({} to {}), {:.1f} a worker{}\n"
         "rays                   {} camera, {} light, {} sky; {:.3f} million a second of simulated time\n"
         "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
         "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
         s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", "kdtree.share = " + share,
-        screen_tiles, static_cast<double>(screen_tiles) / workers, few, rays(razor::kind_camera),
-        rays(razor::kind_light), rays(razor::kind_sky),
-        static_cast<double>(f.counters.rays) / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
+        screen_tiles, counted.first_tile, counted.last_tile, static_cast<double>(screen_tiles) / workers, few,
+        rays(razor::kind_camera), rays(razor::kind_light), rays(razor::kind_sky),
+        static_cast<double>(c.sum().rays) / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
         f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
         f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
 }
@@ -167,6 +184,12 @@ void RunCommand::add_to(CLI::App& app) {
            "render the frame so many times in one run and count the last alone: caches, predictors and "
            "topology pages are warm, all else is built anew; without it, 1")
         ->type_name("N");
+    run.add_option(
+           "--tiles", tiles_,
+           "count these screen tiles of 16 x 16 pixels alone, numbered row by row from 0: those before them "
+           "are rendered first, by all workers, and what they leave in caches and trees is there; those "
+           "after them are not rendered; without it, all")
+        ->type_name("FIRST..LAST");
     run.add_option("--jitter", jitter_,
                    "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later; runs that "
                    "differ in the seed alone say how far results must lie apart to mean anything; 0: none; "
@@ -214,6 +237,12 @@ int RunCommand::run() const {
             interval_.empty() ? 100000 : razor::parse_whole("--interval", interval_, {1000, 1e9}));
     run_options.frames = frames_.empty() ? 1 : razor::parse_whole("--frames", frames_, {1, 1000});
     const razor::SceneDescription description = scene_.describe();
+    Counted counted;
+    counted.last_tile = razor::screen_tiles(description.settings) - 1;
+    if (!tiles_.empty()) {
+        std::tie(counted.first_tile, counted.last_tile) =
+            razor::parse_span("--tiles", tiles_, {0, static_cast<double>(counted.last_tile)});
+    }
     const std::string scene = razor::to_toml(description);
     for (const std::string& output : outputs_)
         razor::check_output(output);
@@ -226,11 +255,27 @@ int RunCommand::run() const {
     razor::Frame frame(built, {.workers = workers, .tree_of_worker = trees});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
-    run_options.next_frame = [&](int) {
-        frame.reset();
+    // A frame ends with the last tile that counts, and its last part begins with the first one.
+    const auto take = [&](int first, int end) {
+        frame.take_tiles(first, end);
         if (interrupted.load())
             frame.stop();
     };
+    const auto begin_frame = [&](int n) {
+        const bool split = n + 1 == run_options.frames && counted.first_tile > 0;
+        take(0, split ? counted.first_tile : counted.last_tile + 1);
+    };
+    begin_frame(0);
+    run_options.next_frame = [&](int n) {
+        frame.reset();
+        begin_frame(n);
+    };
+    if (counted.first_tile > 0) {
+        run_options.next_part = [&] {
+            counted.before = frame.statistics().by_kind;
+            take(counted.first_tile, counted.last_tile + 1);
+        };
+    }
     Report report;
     {
         razor::Progress progress(!quiet_);
@@ -246,7 +291,7 @@ int RunCommand::run() const {
     std::optional<NativeRun> native;
     try {
         if (!interrupted.load() && !no_native_)
-            native = run_native(built, frame.film(), interrupted);
+            native = run_native(built, frame.film(), interrupted, counted.last_tile + 1);
     } catch (const razor::Cancelled&) {
         // said below
     }
@@ -271,7 +316,10 @@ int RunCommand::run() const {
         json out{{"program", "razor-sim"},
                  {"version", razor::version()},
                  {"options",
-                  {{"workers", workers}, {"share", config.kdtree.share}, {"frames", run_options.frames}}},
+                  {{"workers", workers},
+                   {"share", config.kdtree.share},
+                   {"frames", run_options.frames},
+                   {"tiles", {counted.first_tile, counted.last_tile}}}},
                  {"scene", scene}};
         json run = json::parse(print_json(report));
         json host = run["host"];
@@ -280,8 +328,8 @@ int RunCommand::run() const {
         out["machine_provenance"] = provenance_json(machine_description);
         if (calibration)
             out["calibration"] = calibration_json(*calibration);
-        out["renderer"] = renderer(statistics, trees);
-        out["renderer"]["screen_tiles"] = frame.header().tiles;
+        out["renderer"] = renderer(statistics, counted.of(statistics), trees);
+        out["renderer"]["screen_tiles"] = counted.tiles();
         host["topology_page_seconds"] = statistics.page_seconds;
         if (native)
             host["native"] = native_json(*native, report.host_seconds);
@@ -291,9 +339,8 @@ int RunCommand::run() const {
     }
     const std::string text =
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
-        frame_text(description.settings, workers, frame.header().tiles, statistics, report) +
-        print_text(report) + (native ? native_text(*native, report.host_seconds) : "") +
-        code_text(frame.plan());
+        frame_text(description.settings, workers, counted, statistics, report) + print_text(report) +
+        (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

@@ -29,7 +29,8 @@ private:
     MachineOptions machine_;
     razor::SceneOptions scene_;
     std::vector<std::string> outputs_;
-    std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_;
+    std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,
+        tiles_;
     bool quiet_ = false, no_native_ = false, no_calibration_ = false;
 };
 

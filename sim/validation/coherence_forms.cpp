@@ -238,6 +238,17 @@ std::vector<CoherenceForm> coherence_forms() {
             add(apart == 1 ? "false sharing" : "no sharing", topology,
                 apart == 1 ? "as a ping-pong" : "hits of the L1", c, accesses, expected);
         }
+        // A directory with room for one line recalls it from who has it before another one is read.
+        Config small = c;
+        small.coherence.directory_entries = small.coherence.directory_ways = 1;
+        const auto recalled = [&](integer from, integer to) {
+            return fetched(c, to) + static_cast<cycle>(2 * way(c, 0, from) + 2 * words(c) + c.l2.latency);
+        };
+        add("two lines and a directory with room for one", topology,
+            "request, look-up, recall, answer, memory's open row", small,
+            {{4, 0, false}, {9, 16, false}, {2, 0, false}, {11, 16, false}, {9, 0, false}},
+            {fetched(c, 4) + static_cast<cycle>(c.memory.tRCD), recalled(4, 9), recalled(9, 2),
+             recalled(2, 11), recalled(11, 9)});
         // A write of what another has: it is done when that one has said that it dropped it.
         const std::vector<TimedAccess> shared = {{7, 0, false}, {5, 0, false}, {5, 0, true}};
         const integer grant = words(c); // to the writer, goes first from the directory

@@ -36,6 +36,11 @@ TEST(Arguments, ParseOrRefuse) {
          {"", "640", "640x", "x480", "640x480x3", "0x5", "640X480", "-1x5", "640 x 480", "1001x1"}) {
         EXPECT_THROW(parse_size("--size", bad, {1, 1000}), UserError) << bad;
     }
+    EXPECT_EQ(parse_span("--tiles", "3..17", {0, 17}), std::pair(3, 17));
+    EXPECT_EQ(parse_span("--tiles", "0..0", {0, 17}), std::pair(0, 0));
+    for (const char* bad : {"", "3", "3..", "..3", "3...5", "5..3", "0..18", "-1..3", "3..4..5", "3-5"}) {
+        EXPECT_THROW(parse_span("--tiles", bad, {0, 17}), UserError) << bad;
+    }
     constexpr std::array<std::string_view, 2> words{"y", "z"};
     EXPECT_EQ(parse_choice("--up", "z", words), 1U);
     EXPECT_THROW(parse_choice("--up", "x", words), UserError);

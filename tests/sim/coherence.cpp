@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <random>
 
 namespace sim::test {
@@ -83,6 +84,8 @@ OracleCounts counts_of(const Report& r) {
     out.forwards_clean = d.forwards_clean;
     out.invalidations = d.invalidations;
     out.fetched = l2.fills - d.supplied();
+    out.recalled_lines = d.recalled_lines;
+    out.recalls = d.recalls;
     return out;
 }
 
@@ -105,6 +108,8 @@ void expect_equal(const OracleCounts& a, const OracleCounts& b, const std::strin
     EXPECT_EQ(a.forwards_clean, b.forwards_clean) << what;
     EXPECT_EQ(a.invalidations, b.invalidations) << what;
     EXPECT_EQ(a.fetched, b.fetched) << what;
+    EXPECT_EQ(a.recalled_lines, b.recalled_lines) << what;
+    EXPECT_EQ(a.recalls, b.recalls) << what;
 }
 
 TEST(Coherence, CountsEqualATableOfStates) {
@@ -122,6 +127,81 @@ TEST(Coherence, CountsEqualATableOfStates) {
             oracle.access(s.tile, s.core, s.line, s.write);
         expect_equal(counts_of(act(c, steps)), oracle.counts(), fmt::format("seed {}", seed));
     }
+}
+
+/// A directory's sets, least recently asked for first, before a table of states that has room for all.
+class SmallDirectory {
+public:
+    SmallDirectory(const Config& c)
+        : oracle_(static_cast<int>(c.chip.tiles), static_cast<int>(c.chip.cores)),
+          ways_(u(c.coherence.directory_ways)),
+          homes_(static_cast<int>(c.l3.size_bytes != 0 ? c.l3.banks : c.memory.channels)),
+          sets_(static_cast<int>(c.coherence.directory_entries / c.coherence.directory_ways)) {}
+
+    void access(const Step& s) {
+        CoherenceOracle after = oracle_;
+        after.access(s.tile, s.core, s.line, s.write);
+        if (after.counts().asked() != oracle_.counts().asked()) {
+            const int home = s.line % homes_; // lines lie side by side in channels and banks
+            std::vector<int>& set = lines_[home * sets_ + s.line / homes_ % sets_];
+            if (std::erase(set, s.line) == 0 && set.size() == ways_) {
+                oracle_.recall(set.front());
+                set.erase(set.begin());
+            }
+            set.push_back(s.line);
+        }
+        oracle_.access(s.tile, s.core, s.line, s.write);
+    }
+    const OracleCounts& counts() const { return oracle_.counts(); }
+
+private:
+    CoherenceOracle oracle_;
+    std::size_t ways_;
+    int homes_, sets_;
+    std::map<int, std::vector<int>> lines_;
+};
+
+TEST(Coherence, SmallDirectoriesRecallWhatTheyHaveNoRoomFor) {
+    std::uint64_t recalls = 0, written = 0;
+    for (std::uint32_t seed = 1; seed <= 16; ++seed) {
+        Config c = simple();
+        c.chip.tiles = 1 + seed % 4;
+        c.chip.cores = 1 + seed / 4 % 3;
+        c.network.topology = std::array{"ideal", "crossbar", "ring", "mesh"}[seed % 4];
+        if (seed % 3 == 0)
+            c = with_l3(c, 2);
+        c = coherent(c);
+        c.coherence.directory_ways = 1 + seed % 3;
+        c.coherence.directory_entries = c.coherence.directory_ways * (1 + seed / 3 % 2);
+        EXPECT_NO_THROW(check_consistency(c, "small"));
+        const std::vector<Step> steps = random_steps(seed, 500, c, 9);
+        SmallDirectory small(c);
+        for (const Step& s : steps)
+            small.access(s);
+        const Report r = act(c, steps);
+        expect_equal(counts_of(r), small.counts(), fmt::format("seed {}", seed));
+        EXPECT_EQ(r.coherence.recalls_stale + r.coherence.crowded, 0U);
+        recalls += r.coherence.recalls;
+        written += r.coherence.written_back;
+
+        // One with room for all of them is a full map.
+        const Report all = act(
+            [&] {
+                Config more = c;
+                more.coherence.directory_ways = 9;
+                more.coherence.directory_entries = 18;
+                return more;
+            }(),
+            steps);
+        c.coherence.directory_entries = 0;
+        const Report full = act(c, steps);
+        EXPECT_EQ(all.coherence.recalls, 0U);
+        EXPECT_EQ(all.cycles, full.cycles);
+        EXPECT_EQ(all.core.loads, full.core.loads);
+        expect_equal(counts_of(all), counts_of(full), "full");
+    }
+    EXPECT_GT(recalls, 2000U);
+    EXPECT_GT(written, 500U);
 }
 
 /// Tiles that see each other's requests.
@@ -351,6 +431,14 @@ Config fighting(std::uint32_t seed) {
     return coherent(c);
 }
 
+/// The same with directories that have room for few lines.
+Config fighting_for_entries(std::uint32_t seed) {
+    Config c = fighting(seed);
+    c.coherence.directory_ways = std::array{1, 2, 4}[seed % 3];
+    c.coherence.directory_entries = c.coherence.directory_ways * std::array{1, 4, 16}[seed / 3 % 3];
+    return c;
+}
+
 /// What so many of these machines count together; the laws say that every copy is known, and that one cache
 /// alone may write a line.
 CoherenceCounters fight(Config (*machine)(std::uint32_t), std::uint32_t seeds) {
@@ -375,6 +463,14 @@ TEST(Coherence, TilesThatFightKeepTheLaws) {
     EXPECT_GT(all.wait_cycles, 1000U);
 }
 
+TEST(Coherence, TilesThatFightForEntriesKeepTheLaws) {
+    const CoherenceCounters all = fight(fighting_for_entries, 300);
+    EXPECT_GT(all.recalls_received, 10000U);
+    EXPECT_GT(all.recalls_stale, 1000U);
+    EXPECT_GT(all.crowded, 100U);
+    EXPECT_GT(all.lost_upgrades, 100U);
+}
+
 /// The same on buses.
 Config fighting_on_buses(std::uint32_t seed) {
     Config c = fighting(seed);
@@ -396,7 +492,9 @@ TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
 
 TEST(Coherence, ReportsDoNotDependOnTheHost) {
     for (std::uint32_t seed = 1; seed <= 16; ++seed) {
-        const Config c = seed <= 12 ? fighting(seed) : fighting_on_buses(seed);
+        const Config c = seed <= 8    ? fighting(seed)
+                         : seed <= 12 ? fighting_for_entries(seed)
+                                      : fighting_on_buses(seed);
         expect_equal_on_host_threads([&](int threads) { return contend(c, seed, threads); },
                                      fmt::format("seed {}", seed));
         expect_equal_in_any_order(
@@ -510,6 +608,10 @@ TEST(Coherence, WhatItNeedsIsSaid) {
                       "l2.inclusion = \"inclusive\"\nchip.tiles = 4\nl3.size_bytes = 65536\nl3.ways = 8\n"
                       "l3.share = 8\n")
                   .find("l3.share"),
+              std::string::npos);
+    const std::string entries = on + "l2.inclusion = \"inclusive\"\ncoherence.directory_entries = ";
+    EXPECT_EQ(mistake(entries + "24\n"), "");
+    EXPECT_NE(mistake(entries + "20\n").find("no multiple of coherence.directory_ways, 8"),
               std::string::npos);
     const std::string snoops = "coherence.plain = \"snoop\"\nl2.inclusion = \"inclusive\"\n",
                       bus = "network.topology = \"bus\"\n";

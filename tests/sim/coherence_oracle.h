@@ -1,5 +1,6 @@
-// MESI as a table of states: for every line who has it in which state, of caches that never evict. Every tile
-// has cores with an L1 each and a last cache below them. Written for the tests alone; slow and plain.
+// MESI as a table of states: for every line who has it in which state, of caches that never evict but what a
+// directory recalls. Every tile has cores with an L1 each and a last cache below them. Written for the tests
+// alone; slow and plain.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,10 @@ struct OracleCounts {
     std::uint64_t l2_misses = 0, l2_upgrades = 0, l2_invalidations = 0, l2_downgrades = 0, l2_coherence = 0;
     std::uint64_t reads = 0, writes = 0, exclusive = 0, shared = 0;
     std::uint64_t forwards_dirty = 0, forwards_clean = 0, invalidations = 0, fetched = 0; // from below
+    std::uint64_t recalled_lines = 0, recalls = 0;
+
+    /// Requests that a directory hears of.
+    std::uint64_t asked() const { return reads + writes + l2_upgrades; }
 
     bool operator==(const OracleCounts&) const = default;
 };
@@ -27,6 +32,19 @@ public:
             write_line(l, tile, core);
         else
             read_line(l, tile, core);
+    }
+    /// Everybody drops the line; what was changed is written back.
+    void recall(int line) {
+        ++counts_.recalled_lines;
+        for (Tile& t : lines_.at(line)) {
+            if (t.l2.state == invalid)
+                continue;
+            ++counts_.recalls;
+            counts_.l2_downgrades += changed(t) ? 1 : 0;
+            share_l1s(t, -1);
+            take_l1s(t, -1);
+            counts_.l2_invalidations += take(t.l2) ? 1 : 0;
+        }
     }
     const OracleCounts& counts() const { return counts_; }
 

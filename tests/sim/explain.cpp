@@ -33,6 +33,7 @@ void add_figures(std::set<std::string>& out, const char* share, bool snoops = fa
         level->share = level == &c.l5 && !snoops ? "chip" : "tile";
     }
     c.coherence.plain = snoops ? "snoop" : "directory";
+    c.coherence.directory_entries = 64;
     c.l5.inclusion = snoops ? "inclusive" : "none";
     for (CacheConfig* level : {&c.l2, &c.l3, &c.l4})
         level->inclusion = "inclusive";

@@ -1,17 +1,21 @@
-// Several frames in one run: the last one counts alone, and finds what the others have left.
+// Several frames in one run: the last one counts alone, or its second part, and finds what the others left.
 #include "sim/machine/intervals.h"
 #include "tests/sim/kernels.h"
 #include "tests/sim/machines.h"
+
+#include <cstdlib>
 
 namespace sim::test {
 namespace {
 
 Report run_frames(const Config& c, int frames, const std::function<void(std::byte*, int)>& worker,
-                  int workers = 1, int host_threads = 1, std::uint64_t interval = 0) {
+                  int workers = 1, int host_threads = 1, std::uint64_t interval = 0, bool split = false) {
     Memory memory;
     RunOptions options;
     options.frames = frames;
     options.interval = interval;
+    if (split)
+        options.next_part = [] {};
     return Machine(c).run(
         memory.space, workers, {{"work"}}, [&](int w) { worker(memory.data, w); }, host_threads, options);
 }
@@ -95,6 +99,43 @@ TEST(Frames, EachWritesWhatItLeaves) {
     }
 }
 
+// A second part of a frame finds the first one's lines as they were left, and what nobody has written back
+// is written when the frame ends.
+TEST(Frames, APartGoesOnWithDirtyLines) {
+    for (int frames : {1, 2}) {
+        isa::address_space space{std::uint64_t{1} << 26};
+        std::byte* film = space.add("film", -1, std::uint64_t{1} << 20, false);
+        std::byte* scratch = space.add("scratch", -1, std::uint64_t{1} << 20, true);
+        RunOptions options;
+        options.frames = frames;
+        std::vector<int> before;
+        options.next_frame = [&](int n) { before.push_back(n); };
+        options.next_part = [&] { before.push_back(-1); };
+        const Report r = Machine(simple()).run(
+            space, 1, {{"work"}},
+            [&](int) {
+                const bool second = !before.empty() && before.back() < 0;
+                for (int i = 0; i < lines; ++i) {
+                    if (second) {
+                        load(here, film + i * 64, 4, stamp{});
+                    } else {
+                        store(here, film + i * 64, 4, stamp{}, stamp{});
+                        store(here, scratch + i * 64, 4, stamp{}, stamp{});
+                    }
+                }
+            },
+            1, options);
+        EXPECT_EQ(before, frames == 1 ? std::vector{-1} : std::vector({1, -1}));
+        EXPECT_EQ(r.core.loads, u(lines));
+        EXPECT_EQ(r.core.stores, 0U);
+        EXPECT_EQ(r.l1_total().hits, u(lines));
+        EXPECT_EQ(r.memory.reads, 0U);
+        EXPECT_EQ(r.memory.writes, u(lines)) << "at the frame's end";
+        EXPECT_EQ(r.l1_total().dropped + r.l2_total().dropped, u(lines));
+        EXPECT_EQ(r.all_vops, u((2 * frames + 1) * lines));
+    }
+}
+
 Config everything() {
     Config c;
     c.chip.tiles = 3;
@@ -112,14 +153,14 @@ Config everything() {
     c.sim.miss_causes = "on";
     return c;
 }
-Report mixed(const Config& c, int frames, int host_threads, std::uint64_t interval) {
+Report mixed(const Config& c, int frames, int host_threads, std::uint64_t interval, bool split = false) {
     return run_frames(
         c, frames,
         [](std::byte* p, int w) {
             mixed_work(reinterpret_cast<std::int32_t*>(p + (1 << 20)), reinterpret_cast<word*>(p), w,
                        40 + 10 * w);
         },
-        12, host_threads, interval);
+        12, host_threads, interval, split);
 }
 
 // All laws hold on what counts (each run checks them), with every feature on.
@@ -130,8 +171,8 @@ TEST(Frames, LawsHoldOnTheLast) {
             c.sim.window = window;
             c.sim.quantum = quantum;
             const Report cold = mixed(c, 1, 1, 2000);
-            for (int frames : {2, 5}) {
-                const Report r = mixed(c, frames, 1, 2000);
+            for (int parts : {2, 5, -1, -2}) { // frames; or frames of which the last is split
+                const Report r = mixed(c, std::abs(parts), 1, 2000, parts < 0);
                 EXPECT_GT(r.warm_up, 0U);
                 EXPECT_EQ(r.intervals.front().begin, 0U);
                 EXPECT_GT(r.intervals.size(), 3U);
@@ -147,11 +188,13 @@ TEST(Frames, LawsHoldOnTheLast) {
 }
 
 TEST(Frames, HostThreadsChangeNothing) {
-    const Report serial = mixed(everything(), 3, 1, 1000);
-    for (int host_threads : {2, 3}) {
-        const Report r = mixed(everything(), 3, host_threads, 1000);
-        EXPECT_EQ(print_json(r, false), print_json(serial, false));
-        EXPECT_EQ(print_intervals(r), print_intervals(serial));
+    for (bool split : {false, true}) {
+        const Report serial = mixed(everything(), 3, 1, 1000, split);
+        for (int host_threads : {2, 3}) {
+            const Report r = mixed(everything(), 3, host_threads, 1000, split);
+            EXPECT_EQ(print_json(r, false), print_json(serial, false));
+            EXPECT_EQ(print_intervals(r), print_intervals(serial));
+        }
     }
 }
 

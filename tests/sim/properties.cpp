@@ -61,6 +61,9 @@ void add_coherence(Config& c, std::mt19937& random) {
     const bool snoops = c.network.bus() && !c.beyond_tiles(c.cache_levels() - 1) && random() % 4 != 0;
     c.coherence.plain = snoops ? "snoop" : "directory";
     c.coherence.directory_cycles = c.coherence.snoop_cycles = 1 + static_cast<integer>(random() % 40);
+    c.coherence.directory_ways = 1 + static_cast<integer>(random() % 8);
+    c.coherence.directory_entries =
+        static_cast<integer>(random() % 3 * (random() % 40)) * c.coherence.directory_ways;
     const std::array<CacheConfig*, 5> all = {&c.l1, &c.l2, &c.l3, &c.l4, &c.l5};
     const unsigned levels = c.tile_levels();
     for (unsigned level = 1; level < levels; ++level) {
