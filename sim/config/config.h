@@ -119,6 +119,7 @@ struct EnergyConfig {
     double logic_pj = 0, add_pj = 0, multiply_pj = 0, fused_pj = 0, divide_pj = 0; // of a lane
     double l1_access_pj = 0, l1_line_pj = 0, l2_line_pj = 0;
     double network_pj = 0; // of a byte and hop
+    double directory_pj = 0, snoop_pj = 0;
     double core_mw = 0, tile_mw = 0;
 };
 

@@ -454,6 +454,8 @@ void add_energy(Table& t) {
          {"l2_line_pj", &C::l2_line_pj, 0,
           "an access, fill or write-back, the way to the tile's cores included"},
          {"network_pj", &C::network_pj, 0, "a byte over a hop of the network"},
+         {"directory_pj", &C::directory_pj, 0, "a look-up of a directory"},
+         {"snoop_pj", &C::snoop_pj, 0, "a look-up of a cache's tags for what another one asks for"},
          {"core_mw", &C::core_mw, 0, "a core with its L1, whatever it does: leakage and clock"},
          {"tile_mw", &C::tile_mw, 0, "a tile's L2, likewise"}});
 }

@@ -151,7 +151,9 @@ bool applies(const Parameter& p, const Config& config) {
         return false;
     if (p.key.starts_with("coherence.directory_"))
         return config.coherence.kept() && !config.coherence.snoops();
-    if (p.key == "coherence.snoop_cycles")
+    if (p.key == "energy.directory_pj")
+        return config.coherence.kept() && !config.coherence.snoops();
+    if (p.key == "coherence.snoop_cycles" || p.key == "energy.snoop_pj")
         return config.coherence.snoops();
     if (p.key.starts_with("tlb."))
         return p.key == "tlb.entries" || config.tlb.any();

@@ -70,6 +70,12 @@ std::vector<EnergyPart> energy_parts(const Report& r) {
     }
     if (!r.network.ideal())
         events("network", r.network.counters.byte_hops, e.network_pj, "bytes times hops");
+    const CoherenceCounters& d = r.coherence;
+    if (r.config.coherence.snoops())
+        events("snoops", d.snoops, e.snoop_pj, "look-ups of tags for what others ask for");
+    else if (r.config.coherence.kept())
+        events("directory", d.reads + d.writes + d.upgrades + d.claims + d.recalled_lines, e.directory_pj,
+               "look-ups, and lines recalled");
     events("memory rows", r.memory.activates, m.activate_pj, "opened and closed");
     events("memory reads", r.memory.read_bursts, m.read_pj, "bursts");
     events("memory writes", r.memory.write_bursts, m.write_pj, "bursts");

@@ -1,5 +1,6 @@
 // Coherence of plain data: who has which line, as a table of states says (coherence_oracle.h), what that
 // takes, and that nothing else depends on it.
+#include "sim/machine/energy.h"
 #include "sim/validation/coherence_forms.h"
 #include "tests/sim/coherence_oracle.h"
 #include "tests/sim/networks.h"
@@ -592,6 +593,30 @@ TEST(Coherence, WindowsChangeNothingForWhoTakesTurns) {
                 return act(c, random_steps(7, 100, c, 4));
             },
             topology);
+}
+
+TEST(Coherence, LookUpsHaveTheirEnergy) {
+    const auto part = [](const Report& r, const std::string& name) {
+        for (const EnergyPart& p : energy_parts(r))
+            if (p.part == name)
+                return p;
+        return EnergyPart{"none", 0, 0, ""};
+    };
+    const std::vector<Step> steps = {{0, 0, 0, true}, {1, 0, 0, false}, {0, 0, 0, true}, {2, 0, 1, false}};
+    Config c = simple();
+    c.chip.tiles = 3;
+    EXPECT_EQ(part(act(c, steps), "directory").part, std::string("none"));
+    c = coherent(c);
+    c.energy.directory_pj = 20;
+    c.energy.snoop_pj = 7;
+    EXPECT_EQ(part(act(c, steps), "directory").events, 4U) << "two reads, a write, an upgrade";
+    EXPECT_DOUBLE_EQ(part(act(c, steps), "directory").joules, 4 * 20e-12);
+    EXPECT_EQ(part(act(c, steps), "snoops").part, std::string("none"));
+    c.coherence.directory_entries = c.coherence.directory_ways = 1;
+    EXPECT_EQ(part(act(c, steps), "directory").events, 5U) << "and a line recalled";
+    c = snooping(c, 1);
+    EXPECT_DOUBLE_EQ(part(act(c, steps), "snoops").joules, 4 * 2 * 7e-12);
+    EXPECT_EQ(part(act(c, steps), "directory").part, std::string("none"));
 }
 
 TEST(Coherence, WhatItNeedsIsSaid) {
