@@ -53,7 +53,7 @@ std::vector<BlockView> blocks_of(Frame& frame, int patch, int tree = 0, int leve
 /// Appends a block's triangles.
 void add_triangles(const BlockView& block, std::vector<Triangle>& out);
 
-/// All triangles of all opened patches.
+/// All triangles of all blocks of opened patches that are made.
 std::vector<Triangle> triangles_of(Frame& frame, int tree = 0);
 
 } // namespace razor::check

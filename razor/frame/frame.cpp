@@ -74,7 +74,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
 
 void Frame::Impl::reset() {
     *header->queues.get() = QueueRecord{};
-    header->tiles_end = header->tiles;
+    std::atomic_ref(header->tiles_end).store(header->tiles, std::memory_order_relaxed);
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
         tree.root_state.word = absent;
@@ -177,8 +177,9 @@ void Frame::set_reach(double distance) {
 }
 
 void Frame::take_tiles(int first, int end) {
-    impl_->header->tiles_end = end;
-    impl_->header->queues.get()->next_tile.word = first;
+    // Who shows progress looks at them.
+    std::atomic_ref(impl_->header->tiles_end).store(end, std::memory_order_relaxed);
+    std::atomic_ref(impl_->header->queues.get()->next_tile.word).store(first, std::memory_order_relaxed);
 }
 
 void Frame::stop() {
@@ -218,7 +219,8 @@ std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) 
 double Frame::progress() const {
     auto& word = impl_->header->queues.get()->next_tile.word;
     int taken = std::atomic_ref(word).load(std::memory_order_relaxed);
-    return std::min(1.0, static_cast<double>(taken) / impl_->header->tiles_end);
+    const int end = std::atomic_ref(impl_->header->tiles_end).load(std::memory_order_relaxed);
+    return std::min(1.0, static_cast<double>(taken) / end);
 }
 
 FrameStatistics Frame::statistics() const {

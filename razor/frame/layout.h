@@ -211,7 +211,8 @@ static_assert(sizeof(GraphNodeRecord) == 40);
 
 /// Followed by words: anchors x[stride], y[stride], z[stride] (row j, column i at j * (quads_u + 1) + i);
 /// then, where the header gives an offset, corners, cell boxes, ancestors, middles, normals. A cell is 2 x 2
-/// quads. Before the normals, where a side hangs and there are finer blocks, boxes of parts.
+/// quads. Before the normals, where a side of the patch hangs, blocks have 8 quads along a side and there are
+/// finer ones, boxes of parts.
 struct alignas(line_bytes) BlockHeader {
     float box_low[3], box_high[3]; // of its vertices and all finer ones, the instance's coordinates
     std::int32_t patch;

@@ -1,4 +1,4 @@
-// Opening a patch and making it finer: blocks of one level, filled in whole.
+// Opening a patch and making it finer: blocks of one level, announced or filled in whole.
 #pragma once
 
 #include "razor/kernels/block_bounds.h"

@@ -251,7 +251,7 @@ void add_caches(Table& t) {
         "coherence.directory_entries", c, &C::directory_entries, "", 0, 0, 1 << 30,
         "of the directory at each bank of the cache that all tiles share, or at each memory channel, a line "
         "each; a line that another's needs the room of is recalled from who has it; 0: room for all");
-    t.add("coherence.directory_ways", c, &C::directory_ways, "", 8, 1, 1 << 20,
+    t.add("coherence.directory_ways", c, &C::directory_ways, "", 8, 1, 1024,
           "entries of a set; the one asked for least recently leaves");
     t.add("coherence.snoop_cycles", c, &C::snoop_cycles, "cycles", 6, 1, 10000,
           "from a request on a bus until all caches there have said what they have of its line");

@@ -18,7 +18,7 @@ Coherence::Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, 
                  [&ways, bytes = line_bytes_,
                   sets = static_cast<std::uint64_t>(config.coherence.directory_entries /
                                                     config.coherence.directory_ways)](std::uint64_t address) {
-                     return ways.home(address) * sets + address / bytes / ways.homes() % sets;
+                     return ways.home(address) * sets + Directory::set_of(address / bytes, sets);
                  }),
       heard_(ways_.network().topology().buses()) {}
 
@@ -61,20 +61,24 @@ Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
     return out;
 }
 
-/// Of a directory with room for some lines: until it has room for this one.
+/// Of a directory with room for some lines: until it has room for this one. Where it had none for an earlier
+/// one, several leave.
 cycle Coherence::make_room(const Request& r, cycle t) {
-    if (!directory_.is_crowded_for(r.read))
-        return t;
-    const auto leaving = directory_.leaving(r.read, [&](std::uint64_t line) {
-        const Directory::Line& l = *directory_.find(line);
-        const auto asks = [&](std::uint32_t cache) { return under_way(cache).asks(line); };
-        return !(l.owner != Directory::nobody && asks(l.owner)) &&
-               std::none_of(l.sharers.begin(), l.sharers.end(), asks);
-    });
-    if (leaving)
-        return recall(r, *leaving, t);
-    ++counters_.crowded;
-    return t;
+    cycle ready = t;
+    while (directory_.is_crowded_for(r.read)) {
+        const auto leaving = directory_.leaving(r.read, [&](std::uint64_t line) {
+            const Directory::Line& l = *directory_.find(line);
+            const auto asks = [&](std::uint32_t cache) { return under_way(cache).asks(line); };
+            return !(l.owner != Directory::nobody && asks(l.owner)) &&
+                   std::none_of(l.sharers.begin(), l.sharers.end(), asks);
+        });
+        if (!leaving) {
+            ++counters_.crowded;
+            break;
+        }
+        ready = std::max(ready, recall(r, *leaving, t));
+    }
+    return ready;
 }
 
 /// All that have the line drop it; returns when they have said so.
@@ -90,12 +94,12 @@ cycle Coherence::recall(const Request& r, std::uint64_t line, cycle t) {
         cycle done = there + at.latency();
         if (at.holds(line)) {
             ++counters_.recalls_received;
-            if (holder == l.owner) {
+            if (holder == l.owner)
                 done = std::max(there, l.since) + at.latency();
-                if (at.share(line, line_bytes_, r.column)) {
-                    ++counters_.written_back;
-                    write_back(holder, r, line, done);
-                }
+            // A sharer's too: who writes a shared word has changed the line before the directory hears of it.
+            if (at.share(line, line_bytes_, r.column)) {
+                ++counters_.written_back;
+                write_back(holder, r, line, done);
             }
             at.lose(line, line_bytes_);
         } else {

@@ -14,8 +14,9 @@
 // which requests are served; messages take their ways over the network, and act on the tiles' caches at once,
 // that is after the window: whether one has a line is what its tags say then. Not modelled: ports of caches
 // that look lines up or bring them; that a line which is asked for again while it is taken away cannot be
-// read meanwhile; that a request waits where all lines of its set are being asked for; that a bus lets only
-// so many requests be under way, or memory read in vain what an owner brings.
+// read meanwhile, or, before a cache beyond the tiles, recalled; that a request waits where all lines of its
+// set are being asked for; that a bus lets only so many requests be under way, or memory read in vain what an
+// owner brings.
 #pragma once
 
 #include "sim/machine/tile.h"

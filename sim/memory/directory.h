@@ -32,6 +32,11 @@ public:
         bool has(std::uint32_t cache) const { return owner == cache || shared_by(cache); }
     };
 
+    /// The set of a line, by its number, among those of its home: spread, as a home's lines may be any.
+    static std::uint64_t set_of(std::uint64_t line, std::uint64_t sets) {
+        return (line * 0x9E3779B97F4A7C15U >> 32) % sets;
+    }
+
     /// `ways` entries a set, of which set_of(address) is a line's number; 0: a full map.
     Directory(std::size_t ways, std::function<std::uint64_t(std::uint64_t)> set_of)
         : ways_(ways), set_of_(std::move(set_of)) {}

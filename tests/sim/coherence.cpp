@@ -144,7 +144,8 @@ public:
         after.access(s.tile, s.core, s.line, s.write);
         if (after.counts().asked() != oracle_.counts().asked()) {
             const int home = s.line % homes_; // lines lie side by side in channels and banks
-            std::vector<int>& set = lines_[home * sets_ + s.line / homes_ % sets_];
+            std::vector<int>& set =
+                lines_[home * sets_ + static_cast<int>(Directory::set_of(u(s.line), u(sets_)))];
             if (std::erase(set, s.line) == 0 && set.size() == ways_) {
                 oracle_.recall(set.front());
                 set.erase(set.begin());
@@ -203,6 +204,61 @@ TEST(Coherence, SmallDirectoriesRecallWhatTheyHaveNoRoomFor) {
     }
     EXPECT_GT(recalls, 2000U);
     EXPECT_GT(written, 500U);
+}
+
+// A line gets an entry beyond its set where the only other one is just being asked for; the next that needs
+// room there has both leave.
+TEST(Coherence, CrowdedSetsEmptyAgain) {
+    Config c = simple();
+    c.chip.tiles = 3;
+    c = coherent(c);
+    c.chip.threads = c.chip.cores = 1;
+    c.chip.placement = "pack";
+    c.latency[static_cast<std::size_t>(operation::add)] = 10;
+    c.coherence.directory_entries = c.coherence.directory_ways = 1;
+    const Report r = run_on(
+        c,
+        [](std::byte* base, int worker) {
+            stamp clock;
+            const auto wait = [&clock](int cycles) {
+                for (int i = 0; i < cycles / 10; ++i)
+                    clock = scalar_op(operation::add, clock);
+            };
+            if (worker == 0)
+                load(here, base, 4, clock);
+            wait(2000);
+            if (worker == 2)
+                load(here, base, 4, clock);
+            wait(6000);
+            if (worker == 1)
+                load(here, base + 64, 4, clock);
+            wait(20);
+            if (worker == 0)
+                store(here, base, 4, clock, stamp{}); // a right, on its way when the other is looked up
+            wait(8000);
+            if (worker == 2)
+                load(here, base + 128, 4, clock);
+        },
+        3);
+    EXPECT_EQ(r.coherence.crowded, 1U);
+    EXPECT_EQ(r.coherence.recalled_lines, 2U);
+    EXPECT_EQ(r.coherence.recalls_received, 2U);
+    EXPECT_EQ(r.coherence.written_back, 1U);
+}
+
+TEST(Directory, LinesOfAHomeUseAllSets) {
+    // Lines whose home is the same: every k-th, or runs of them, as banks, channels and bank groups lie.
+    for (const std::uint64_t sets : {16U, 64U, 100U})
+        for (const auto& [run, apart] :
+             {std::pair(1U, 1U), std::pair(1U, 8U), std::pair(4U, 32U), std::pair(2U, 64U)}) {
+            std::vector<int> lines(sets);
+            for (std::uint64_t i = 0; i < 64 * sets; ++i)
+                ++lines[Directory::set_of(i / run * apart + i % run, sets)];
+            EXPECT_GE(*std::min_element(lines.begin(), lines.end()), 32)
+                << sets << ' ' << run << ' ' << apart;
+            EXPECT_LE(*std::max_element(lines.begin(), lines.end()), 128)
+                << sets << ' ' << run << ' ' << apart;
+        }
 }
 
 /// Tiles that see each other's requests.
