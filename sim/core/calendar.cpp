@@ -34,4 +34,20 @@ void Calendar::move_on(std::uint64_t number) {
     first_ = earliest;
 }
 
+/// Of several words, the first of which, `number`, has `free` slots to take.
+Calendar::Span Calendar::take_across(std::uint64_t number, std::uint64_t free, std::uint32_t count) {
+    Slot first = no_slot;
+    for (;; free = ~word(++number)) {
+        note_full(number, word(number));
+        if (free == 0)
+            continue;
+        first = first == no_slot ? number * 64 + static_cast<unsigned>(std::countr_zero(free)) : first;
+        const std::uint64_t taken = lowest(free, count);
+        word(number) |= taken;
+        count -= static_cast<std::uint32_t>(std::popcount(taken));
+        if (count == 0)
+            return {first, last_of(number, taken)};
+    }
+}
+
 } // namespace sim

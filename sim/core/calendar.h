@@ -42,14 +42,14 @@ public:
 
     /// Takes the first free slot from `from` on.
     Slot take(Slot from) {
-        for (std::uint64_t number = from / 64, open = ~std::uint64_t{0} << (from % 64);;
-             ++number, open = ~std::uint64_t{0}) {
-            std::uint64_t& w = word(number);
-            std::uint64_t free = ~w & open;
-            if (free != 0) {
+        for (Start s = start(from);; ++s.number, s.open = ~std::uint64_t{0}) {
+            std::uint64_t& w = word(s.number);
+            const std::uint64_t free = ~w & s.open;
+            if (free != 0) [[likely]] {
                 w |= free & (~free + 1);
-                return number * 64 + static_cast<unsigned>(std::countr_zero(free));
+                return s.number * 64 + static_cast<unsigned>(std::countr_zero(free));
             }
+            note_full(s.number, w);
         }
     }
     /// The first free slot from `from` on; takes none.
@@ -61,23 +61,20 @@ public:
     }
     /// Takes the first `count` free slots, 64 at most, from `from` on, adjacent or not.
     Span take(Slot from, std::uint32_t count) {
-        std::uint64_t number = from / 64;
-        std::uint64_t open = ~std::uint64_t{0} << (from % 64);
-        for (Slot first = no_slot;; ++number, open = ~std::uint64_t{0}) {
-            std::uint64_t& w = word(number);
-            std::uint64_t free = ~w & open;
-            if (free == 0)
-                continue;
-            first = first == no_slot ? number * 64 + static_cast<unsigned>(std::countr_zero(free)) : first;
-            const std::uint64_t taken = lowest(free, count);
-            w |= taken;
-            count -= static_cast<std::uint32_t>(std::popcount(taken));
-            if (count == 0)
-                return {first, number * 64 + 63 - static_cast<unsigned>(std::countl_zero(taken))};
-        }
+        const Start s = start(from);
+        std::uint64_t& w = word(s.number);
+        const std::uint64_t free = ~w & s.open;
+        if (static_cast<std::uint32_t>(std::popcount(free)) < count) [[unlikely]]
+            return take_across(s.number, free, count);
+        const std::uint64_t taken = lowest(free, count);
+        w |= taken;
+        return {s.number * 64 + static_cast<unsigned>(std::countr_zero(free)), last_of(s.number, taken)};
     }
     /// Frees a slot that was taken.
-    void release(Slot slot) { word(slot / 64) &= ~(std::uint64_t{1} << (slot % 64)); }
+    void release(Slot slot) {
+        word(slot / 64) &= ~(std::uint64_t{1} << (slot % 64));
+        full_count_ = 0;
+    }
     /// The first of `length` adjacent free slots from `from` on; takes none.
     Slot find_run(Slot from, std::uint32_t length) {
         for (Slot end = from + length;;) {
@@ -107,6 +104,26 @@ public:
 private:
     static constexpr Slot no_slot = ~Slot{0};
 
+    /// The first word that may have a free slot from `from` on, and which of its slots count.
+    struct Start {
+        std::uint64_t number, open;
+    };
+    Start start(Slot from) const {
+        const std::uint64_t number = from / 64;
+        if (number - full_from_ < full_count_)
+            return {full_from_ + full_count_, ~std::uint64_t{0}};
+        return {number, ~std::uint64_t{0} << (from % 64)};
+    }
+    void note_full(std::uint64_t number, std::uint64_t w) {
+        if (~w != 0)
+            return;
+        if (number != full_from_ + full_count_) {
+            full_from_ = number;
+            full_count_ = 0;
+        }
+        ++full_count_;
+    }
+
     /// The lowest `count` bits, 1 to 64, that are set in `free`, or all.
     static std::uint64_t lowest(std::uint64_t free, std::uint32_t count) {
 #ifdef __BMI2__
@@ -119,6 +136,10 @@ private:
 #endif
     }
 
+    static Slot last_of(std::uint64_t number, std::uint64_t taken) {
+        return number * 64 + 63 - static_cast<unsigned>(std::countl_zero(taken));
+    }
+    Span take_across(std::uint64_t number, std::uint64_t free, std::uint32_t count);
     std::uint64_t& word(std::uint64_t number) {
         if (number - first_ > mask_) [[unlikely]] // also what is earlier than the first
             move_on(number);
@@ -143,6 +164,8 @@ private:
     std::vector<std::uint64_t> words_; // a power of two
     std::uint64_t mask_;
     std::uint64_t first_ = 0; // the number, in unbounded time, of the ring's earliest word
+    std::uint64_t full_from_ = 0,
+                  full_count_ = 0; // some words in which no slot is free, to be passed at once
     std::uint64_t absent_ = 0;
     const cycle* earliest_;
     unsigned shift_;

@@ -73,6 +73,7 @@ void Fibre::arrive(boost::context::fiber&& left, const void** stack, std::size_t
 
 void Fibre::switch_to(Fibre& other) {
     leaving = this;
+    left_at_ = __builtin_frame_address(0);
     announce(&fake_stack_, other.stack_, other.stack_bytes_);
     boost::context::fiber left = std::move(other.context_).resume();
     arrive(std::move(left), &leaving->stack_, &leaving->stack_bytes_);

@@ -22,13 +22,21 @@ public:
     /// From this fibre, which runs, to another. Returns when somebody switches back.
     void switch_to(Fibre& other);
     bool finished() const { return finished_; }
+    /// Its stack, as far as it will probably be used first, comes to the host's caches.
+    void prefetch() const {
+        constexpr int lines = 32, line_bytes = 64, below = 2;
+        if (left_at_ != nullptr)
+            for (int i = -below; i < lines - below; ++i)
+                __builtin_prefetch(static_cast<const std::byte*>(left_at_) + i * line_bytes);
+    }
 
 private:
     void arrive(boost::context::fiber&& left, const void** stack, std::size_t* size);
 
     boost::context::fiber context_;
     bool finished_ = false;
-    const void* stack_ = nullptr; // lowest address
+    const void* stack_ = nullptr;   // lowest address
+    const void* left_at_ = nullptr; // where it was in it when it left last
     std::size_t stack_bytes_ = 0;
     void* fake_stack_ = nullptr;
 };

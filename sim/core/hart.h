@@ -19,8 +19,7 @@ struct Hart {
     Hart(std::uint32_t number, Tile& tile, Core& core, const Config& config, std::size_t columns)
         : number(number), tile(&tile), core(&core), window(static_cast<std::size_t>(config.core.window)),
           registers(static_cast<std::size_t>(config.core.vector_registers)),
-          store_buffer(static_cast<std::size_t>(config.core.store_buffer)), stacks(columns, Stack{}),
-          vops(columns, 0), instructions(columns, 0) {}
+          store_buffer(static_cast<std::size_t>(config.core.store_buffer)), columns(columns) {}
 
     std::uint32_t number;
     Tile* tile;
@@ -43,7 +42,7 @@ struct Hart {
     cycle boundary = ~cycle{0}; // the end of the interval (intervals.h) that these lie in ...
     std::uint64_t interval = 0; // ... its length, 0 before the first one ...
     cycle origin = 0;           // ... where that begins ...
-    Stack marked{};             // ... and the sum of `stacks` when the one before it ended
+    Stack marked{};             // ... and the sum of all columns' stacks when the one before it ended
     cycle finish = 0;           // when the worker's last result was there
     RegisterFile registers;
     std::uint64_t spill_base = 0;
@@ -60,10 +59,14 @@ struct Hart {
 
     SiteAtHand site;        // of the operation at hand, for prefetchers by stride
     std::size_t column = 0; // of its kind of work and phase
-    std::vector<Stack> stacks;
-    Stack* stack = &stacks[0]; // of the column, and so are ...
-    std::vector<std::uint64_t> vops, instructions;
-    CoreCounters counters;
+    struct Column {
+        std::uint64_t vops = 0, instructions = 0;
+        Stack stack{};
+    };
+    std::vector<Column> columns;
+    Column* at = &columns[0]; // that column's
+    CoreCounters counters;    // but for what the columns and `vector_instructions` sum to
+    std::uint64_t vector_instructions = 0;
     KindCounts by_kind{};
 
     // --- operands of the operation at hand whose times are open
@@ -87,17 +90,27 @@ struct Hart {
             account_across(from, to, why);
             return;
         }
-        (*stack)[static_cast<std::size_t>(why)] += to - from;
+        at->stack[static_cast<std::size_t>(why)] += to - from;
     }
     void account_across(cycle from, cycle to, Cause why);
     void begin_intervals(cycle t, std::uint64_t length);
     void close_interval();
     Stack sum_of_stacks() const;
     Stack& stack_of_interval() const;
+    /// What most operations touch comes to the host's caches.
+    void prefetch() const {
+        const auto* self = reinterpret_cast<const std::byte*>(this);
+        for (std::size_t at = 0; at < 5 * 64; at += 64)
+            __builtin_prefetch(self + at);
+        for (const void* p : {static_cast<const void*>(&window[position]), static_cast<const void*>(at),
+                              static_cast<const void*>(&at->stack[4]), static_cast<const void*>(&counters),
+                              static_cast<const void*>(&by_kind)})
+            __builtin_prefetch(p);
+    }
     /// Work and time count under this column from now on.
     void enter(std::size_t next) {
         column = next;
-        stack = &stacks[next];
+        at = &columns[next];
     }
 };
 

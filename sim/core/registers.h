@@ -19,12 +19,22 @@ class RegisterFile {
 public:
     enum class Use { resident, stored, unstored };
 
-    explicit RegisterFile(std::size_t capacity) : recent_((capacity + 7) / 8 * 8), capacity_(capacity) {}
+    explicit RegisterFile(std::size_t capacity)
+        : capacity_(capacity), many_(capacity > 8 ? capacity : 0),
+          recent_(capacity > 8 ? many_.data() : few_) {}
+    RegisterFile(const RegisterFile&) = delete;
+    RegisterFile& operator=(const RegisterFile&) = delete;
 
     /// Names a new value and holds it.
     std::uint32_t make() {
         if (++last_ == 0)
             last_ = 1;
+#ifdef __AVX2__
+        if (capacity_ - 1 < 8) {
+            keep(put_first(moved(eight(), capacity_ - 1), last_));
+            return last_;
+        }
+#endif
         if (capacity_ != 0)
             push(capacity_ - 1, last_);
         return last_;
@@ -34,15 +44,8 @@ public:
         if (capacity_ == 0 || value == 0 || recent_[0] == value)
             return Use::resident;
 #ifdef __AVX2__
-        if (capacity_ <= 8) {
-            const __m256i equal = _mm256_cmpeq_epi32(eight(), _mm256_set1_epi32(static_cast<int>(value)));
-            const auto at = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
-            if (at != 0) {
-                push(static_cast<std::size_t>(std::countr_zero(at)), value);
-                return Use::resident;
-            }
-            return bring_back(value);
-        }
+        if (capacity_ <= 8)
+            return use_all(value) ? Use::resident : bring_back(value);
 #endif
         for (std::size_t i = 1; i < capacity_; ++i)
             if (recent_[i] == value) {
@@ -50,6 +53,28 @@ public:
                 return Use::resident;
             }
         return bring_back(value);
+    }
+    /// Uses values one after the other, if it can tell soon that all are here; if not, false, and none is
+    /// used.
+    template <class... Value> bool use_all(Value... values) {
+#ifdef __AVX2__
+        if (capacity_ - 1 < 8) {
+            __m256i all = eight();
+            const auto found = [&all](std::uint32_t value) {
+                if (value == 0)
+                    return true;
+                const __m256i equal = _mm256_cmpeq_epi32(all, _mm256_set1_epi32(static_cast<int>(value)));
+                const auto at = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
+                all = moved(all, std::countr_zero(at | 256U) & 7U);
+                return at != 0;
+            };
+            if (!(found(values) && ...))
+                return false;
+            keep(all);
+            return true;
+        }
+#endif
+        return capacity_ == 0 || ((values == 0) && ...);
     }
 
 private:
@@ -62,21 +87,31 @@ private:
     }
 #ifdef __AVX2__
     __m256i eight() const {
-        return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(recent_.data()));
+        return _mm256_load_si256(reinterpret_cast<const __m256i*>(few_));
     }
+    void keep(__m256i all) {
+        _mm256_store_si256(reinterpret_cast<__m256i*>(few_), all);
+    }
+    /// The one at `out` first, those before it one further on.
+    static __m256i moved(__m256i all, std::size_t out) {
+        const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(to_front[out]));
+        return _mm256_permutevar8x32_epi32(all, _mm256_cvtepu8_epi32(places));
+    }
+    static __m256i put_first(__m256i all, std::uint32_t value) {
+        return _mm256_blend_epi32(all, _mm256_set1_epi32(static_cast<int>(value)), 1);
+    }
+    static constexpr std::uint8_t to_front[8][8] = {
+        {0, 1, 2, 3, 4, 5, 6, 7}, {1, 0, 2, 3, 4, 5, 6, 7}, {2, 0, 1, 3, 4, 5, 6, 7},
+        {3, 0, 1, 2, 4, 5, 6, 7}, {4, 0, 1, 2, 3, 5, 6, 7}, {5, 0, 1, 2, 3, 4, 6, 7},
+        {6, 0, 1, 2, 3, 4, 5, 7}, {7, 0, 1, 2, 3, 4, 5, 6},
+    };
 #endif
     /// The value at `out` goes, those before it move up by one, and `value` is first.
     void push(std::size_t out, std::uint32_t value) {
-        std::uint32_t* recent = recent_.data();
+        std::uint32_t* recent = recent_;
 #ifdef __AVX2__
         if (capacity_ <= 8) { // all at once
-            const __m256i before = _mm256_setr_epi32(0, 0, 1, 2, 3, 4, 5, 6);
-            const __m256i place = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-            const __m256i stays = _mm256_cmpgt_epi32(place, _mm256_set1_epi32(static_cast<int>(out)));
-            const __m256i from = _mm256_blendv_epi8(before, place, stays);
-            const __m256i moved = _mm256_permutevar8x32_epi32(eight(), from);
-            const __m256i first = _mm256_set1_epi32(static_cast<int>(value));
-            _mm256_storeu_si256(reinterpret_cast<__m256i*>(recent), _mm256_blend_epi32(moved, first, 1));
+            keep(put_first(moved(eight(), out), value));
             return;
         }
 #endif
@@ -90,10 +125,12 @@ private:
             std::swap(carried, recent[i]);
     }
 
-    std::vector<std::uint32_t> recent_; // last used first
+    alignas(32) std::uint32_t few_[8] = {}; // as many as there can be, and zeroes, if that is up to eight
     std::size_t capacity_;
-    std::array<std::uint32_t, 1024> stored_{};
+    std::vector<std::uint32_t> many_;
+    std::uint32_t* recent_; // last used first
     std::uint32_t last_ = 0;
+    std::array<std::uint32_t, 1024> stored_{};
 };
 
 } // namespace sim

@@ -97,13 +97,13 @@ inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, b
 /// touches.
 void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from,
                          Data& data) {
-    std::uint32_t bytes = piece_lanes_ * 4;
-    if (lanes == all_lanes && address % bytes == 0 && bytes <= line_bytes_) [[likely]] {
-        std::uint32_t slots = slots_of(bytes);
-        std::uint64_t end = address + width * 4;
+    const std::uint32_t bytes = piece_lanes_ * 4;
+    if (lanes == all_lanes && (address & (bytes - 1)) == 0 && bytes <= line_bytes_) [[likely]] {
+        const std::uint32_t slots = slots_of(bytes);
+        const std::uint64_t end = address + width * 4;
         while (address < end) {
-            std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
-            auto pieces = static_cast<std::uint32_t>((next - address) / bytes);
+            const std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
+            const auto pieces = static_cast<std::uint32_t>(next - address) >> piece_shift_;
             touch_line(h, address >> line_shift_, write, pieces, pieces * slots, from, data);
             address = next;
         }
@@ -241,7 +241,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
 stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector) {
     charge_overhead(h, begin(h));
     settle(h, ready);
-    Issued at = issue(h, load_kind, 1, ready);
+    Issued at = issue(h, load_kind, ready);
     Data data;
     std::uint64_t a = address(p);
     const cycle from = translated(h, a, a + bytes - 1, at.first);
@@ -309,7 +309,7 @@ stamp Engine::load_indexed(Hart& h, const void* p, const std::int32_t* index, st
 
 void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     settle(h, ready);
-    Issued at = issue(h, store_kind, 1, ready);
+    Issued at = issue(h, store_kind, ready);
     Data data;
     const std::uint64_t a = address(p);
     const cycle from = translated(h, a, a + bytes - 1, at.first);
@@ -367,7 +367,7 @@ void Engine::store_indexed(Hart& h, const void* p, const std::int32_t* index, st
 
 void Engine::prefetch(Hart& h, const void* p, Due ready) {
     settle(h, ready);
-    Issued at = issue(h, load_kind, 1, ready);
+    Issued at = issue(h, load_kind, ready);
     if (may_prefetch(h, address(p))) {
         cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
         ++h.core->l1.counters().busy_cycles;
@@ -433,7 +433,7 @@ struct Next {
         return *this;
     }
     Next& lanes(const stamp& s, std::uint32_t span) {
-        engine.need_lanes(hart, ready, s, span);
+        engine.need_lanes(hart, ready, s, span, engine.in_registers(hart, s));
         return *this;
     }
 };

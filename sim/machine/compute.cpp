@@ -96,6 +96,19 @@ inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructio
     return r;
 }
 
+/// Among scalars.
+inline stamp Engine::compute_scalar(Hart& h, std::size_t kind, Due ready) {
+    settle(h, ready);
+    const Issued at = issue(h, kind, ready);
+    finish_issue(h, at, 0);
+    count(h, 1, false);
+    stamp r;
+    r.first = r.last = at.last + latency_[kind];
+    r.cause = static_cast<std::uint8_t>(Cause::compute);
+    h.complete.later(Due(r.last, Cause::compute));
+    return r;
+}
+
 /// An address whose operands are there at `ready`, or when what is pending is: no instruction yet.
 stamp Engine::fold_address(Hart& h, Due ready) {
     stamp s;
@@ -128,7 +141,7 @@ void Engine::unfold(Hart& h, Due& ready, const stamp& s) {
             operands.later(Due(s.first, static_cast<Cause>(s.cause)));
         }
         constexpr auto kind = static_cast<std::size_t>(operation::address);
-        Issued at = issue(h, kind, 1, operands);
+        Issued at = issue(h, kind, operands);
         u = {number, at.last + latency_[kind]};
         ++h.counters.unfolded;
         h.complete.later(Due(u.ready, Cause::compute));
@@ -139,7 +152,7 @@ void Engine::unfold(Hart& h, Due& ready, const stamp& s) {
 void Engine::branch(Hart& h, site where, Due ready, bool taken) {
     charge_overhead(h, begin(h));
     settle(h, ready);
-    Issued at = issue(h, branch_class, 1, ready);
+    Issued at = issue(h, branch_class, ready);
     finish_issue(h, at, 0);
     count(h, 1, false);
     ++h.counters.branches;
@@ -165,40 +178,43 @@ namespace {
 using sim::Engine;
 using sim::Hart;
 
-/// Lane by lane; across lanes to a vector; across lanes to a scalar; among scalars.
-enum class Shape { lanes, across, to_scalar, scalar };
+/// Lane by lane; across lanes to a vector; across lanes to a scalar.
+enum class Shape { lanes, across, to_scalar };
 
-/// An operation of the running thread, once `need` has been asked of every operand.
-template <class... Stamp> inline stamp operate(operation op, Shape shape, const Stamp&... operands) {
+/// An operation of the running thread on vectors, once `need` has been asked of every operand.
+template <Shape shape, class... Stamp> inline stamp operate(operation op, const Stamp&... operands) {
     Engine& engine = *sim::running_engine;
     Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
-    auto kind = static_cast<std::size_t>(op);
-    if (shape != Shape::scalar)
-        kind = sim::vector_kind(kind);
-    auto need = [&](const stamp& s) {
-        if (shape == Shape::scalar)
-            engine.need_scalar(hart, ready, s);
-        else if (shape == Shape::lanes)
-            engine.need_lanes(hart, ready, s, engine.span(kind));
+    const std::size_t kind = sim::vector_kind(static_cast<std::size_t>(op));
+    const bool there = engine.in_registers(hart, operands...);
+    const auto need = [&](const stamp& s) {
+        if (shape == Shape::lanes)
+            engine.need_lanes(hart, ready, s, engine.span(kind), there);
         else
-            engine.need_all(hart, ready, s, engine.span(kind));
+            engine.need_last(hart, ready, s, engine.span(kind), there);
     };
     (need(operands), ...);
-    return engine.compute(hart, kind, shape == Shape::scalar ? 1 : engine.vector_instructions(), ready,
-                          shape == Shape::lanes || shape == Shape::across);
+    return engine.compute(hart, kind, engine.vector_instructions(), ready, shape != Shape::to_scalar);
+}
+template <class... Stamp> inline stamp operate_scalar(operation op, const Stamp&... operands) {
+    Engine& engine = *sim::running_engine;
+    Hart& hart = *sim::running_hart;
+    sim::Due ready = engine.begin(hart);
+    (engine.need_scalar(hart, ready, operands), ...);
+    return engine.compute_scalar(hart, static_cast<std::size_t>(op), ready);
 }
 
 } // namespace
 
 stamp vector_op(operation op, const stamp& a) {
-    return operate(op, Shape::lanes, a);
+    return operate<Shape::lanes>(op, a);
 }
 stamp vector_op(operation op, const stamp& a, const stamp& b) {
-    return operate(op, Shape::lanes, a, b);
+    return operate<Shape::lanes>(op, a, b);
 }
 stamp vector_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
-    return operate(op, Shape::lanes, a, b, c);
+    return operate<Shape::lanes>(op, a, b, c);
 }
 stamp cross_op(operation op, const stamp& a, const stamp& b) {
     if (op == operation::shuffle && sim::running_engine->shuffles_by_lane()) [[unlikely]] {
@@ -206,13 +222,13 @@ stamp cross_op(operation op, const stamp& a, const stamp& b) {
         Hart& hart = *sim::running_hart;
         engine.assemble_shuffle(hart, engine.begin(hart));
     }
-    return operate(op, Shape::across, a, b);
+    return operate<Shape::across>(op, a, b);
 }
 stamp cross_to_scalar(operation op, const stamp& a, const stamp& b) {
-    return operate(op, Shape::to_scalar, a, b);
+    return operate<Shape::to_scalar>(op, a, b);
 }
 stamp scalar_op(operation op, const stamp& a) {
-    return operate(op, Shape::scalar, a);
+    return operate_scalar(op, a);
 }
 stamp scalar_op(operation op, const stamp& a, const stamp& b) {
     if (op == operation::address && sim::running_engine->folds_addresses()) [[unlikely]] {
@@ -223,10 +239,10 @@ stamp scalar_op(operation op, const stamp& a, const stamp& b) {
         engine.need_scalar(hart, ready, b);
         return engine.fold_address(hart, ready);
     }
-    return operate(op, Shape::scalar, a, b);
+    return operate_scalar(op, a, b);
 }
 stamp scalar_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
-    return operate(op, Shape::scalar, a, b, c);
+    return operate_scalar(op, a, b, c);
 }
 void branch(site where, const stamp& condition, bool taken) {
     Engine& engine = *sim::running_engine;

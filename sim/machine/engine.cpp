@@ -51,7 +51,8 @@ Labels with_frame_end(Labels labels) {
 Engine::Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
                int host_threads, const RunOptions& options, const std::function<void(int)>& worker)
     : config_(config), pieces_(std::max(1U, width / narrow(config.core.lanes))),
-      piece_lanes_(width / pieces_), issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
+      piece_lanes_(width / pieces_), piece_shift_(log2(piece_lanes_ * 4)),
+      issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
       issue_width_(narrow(config.core.issue_width)), line_bytes_(narrow(config.l1.line_bytes)),
       line_shift_(log2(config.l1.line_bytes)), port_byte_shift_(log2(config.l1.port_bytes)),
@@ -154,12 +155,20 @@ void Engine::describe_kinds() {
 
 // --- windows
 
+/// Tiles in which something may happen by itself. In the others only what comes from outside does.
+void Engine::find_active_tiles() {
+    active_.clear();
+    for (Tile* tile : order_)
+        if (tile->scheduler.unfinished() != 0 || (tile->events && tile->events->busy()))
+            active_.push_back(tile);
+}
+
 /// The earliest cycle at which anything wants to happen; ~0: never.
 cycle Engine::next_event() const {
     cycle next = beyond_->next();
-    for (const Tile& tile : tiles_) {
-        next = std::min(next, tile.scheduler.next());
-        for (const Tile::Deed& d : tile.deeds)
+    for (const Tile* tile : active_) {
+        next = std::min(next, tile->scheduler.next());
+        for (const Tile::Deed& d : tile->deeds)
             next = std::min(next, d.at);
     }
     return next;
@@ -181,24 +190,26 @@ void Engine::run_tile(Tile& tile) {
 
 void Engine::run_tiles() {
     if (host_threads_.count() == 1)
-        for (Tile* tile : order_)
+        for (Tile* tile : active_)
             run_tile(*tile);
     else
         host_threads_.all([this](int number) {
-            for (Tile* tile : order_)
+            for (Tile* tile : active_)
                 if (host_thread(*tile) == number)
                     run_tile(*tile);
         });
-    for (const Tile& tile : tiles_)
-        if (tile.scheduler.failure())
-            fail(tile.scheduler.failure());
+    for (const Tile* tile : active_)
+        if (tile->scheduler.failure())
+            fail(tile->scheduler.failure());
 }
 
 /// Words that several tiles may reach, and pages: in order of (cycle, thread).
 void Engine::perform_deeds() {
     std::vector<Tile::Deed> due;
-    for (Tile* tile : order_) {
+    for (Tile* tile : active_) {
         std::vector<Tile::Deed>& all = tile->deeds;
+        if (all.empty())
+            continue;
         auto later = std::stable_partition(all.begin(), all.end(),
                                            [&](const Tile::Deed& d) { return d.at < window_end_; });
         due.insert(due.end(), std::make_move_iterator(all.begin()), std::make_move_iterator(later));
@@ -278,16 +289,17 @@ void Engine::forget_tickets(Tile& tile) {
 
 /// No request that is not served yet arrives at memory before `arrival`.
 void Engine::set_floors(cycle arrival) {
-    for (Tile& tile : tiles_)
-        if (tile.events)
-            tile.events->set_floor(arrival + shortest_read_);
+    for (Tile* tile : active_)
+        if (tile->events)
+            tile->events->set_floor(arrival + shortest_read_);
         else
-            tile.tickets.set_floor(arrival + shortest_read_);
+            tile->tickets.set_floor(arrival + shortest_read_);
 }
 
 /// What the order of the following must not matter for.
 void Engine::shuffle() {
     std::shuffle(order_.begin(), order_.end(), shuffled_);
+    std::shuffle(active_.begin(), active_.end(), shuffled_);
     for (Tile& tile : tiles_) {
         std::shuffle(tile.deeds.begin(), tile.deeds.end(), shuffled_);
         std::shuffle(tile.leaving.requests.begin(), tile.leaving.requests.end(), shuffled_);
@@ -298,6 +310,7 @@ void Engine::shuffle() {
 
 /// Runs the next window in which something happens; false if nothing ever will.
 bool Engine::run_window() {
+    find_active_tiles();
     cycle next = next_event();
     if (next == ~cycle{0})
         return false;
@@ -314,8 +327,9 @@ bool Engine::run_window() {
     if (!failure_)
         perform_deeds();
     serve_window();
-    for (Tile* tile : order_) {
-        answer_parked(*tile, window_end_, [](const Hart&) { return true; });
+    for (Tile* tile : active_) {
+        if (!tile->parked.empty())
+            answer_parked(*tile, window_end_, [](const Hart&) { return true; });
         forget_tickets(*tile);
         tile->attribution.publish_notes();
     }
@@ -324,11 +338,12 @@ bool Engine::run_window() {
 
 /// What left the tiles in the window is answered, as far as it can be by now.
 void Engine::serve_window() {
-    for (Tile* tile : order_)
-        beyond_->accept(tile->leaving.requests);
+    for (Tile* tile : order_) // what others take from their caches leaves idle tiles too
+        if (!tile->leaving.requests.empty())
+            beyond_->accept(tile->leaving.requests);
     beyond_->serve(window_end_);
     set_floors(window_end_);
-    for (Tile* tile : order_)
+    for (Tile* tile : active_)
         if (tile->events)
             tile->events->try_again();
 }
@@ -340,6 +355,7 @@ void Engine::settle_tiles() {
                            [](const Tile& t) { return t.events && t.events->busy(); });
     };
     while (busy()) {
+        find_active_tiles();
         const cycle next = next_event();
         window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
         set_floors(next);

@@ -48,6 +48,7 @@ public:
 
     // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
     stamp compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector);
+    stamp compute_scalar(Hart& h, std::size_t kind, Due ready);
     void branch(Hart& h, site where, Due ready, bool taken);
     stamp load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector);
     stamp load_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready);
@@ -96,12 +97,20 @@ public:
         else
             need_scalar(h, ready, s);
     }
-    void need_all(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
-        need_register(h, ready, s, span);
+    /// Whether the vectors among these operands are in registers, all of which are used then.
+    template <class... Stamp> bool in_registers(Hart& h, const Stamp&... s) {
+        return !registers_ || h.registers.use_all(s.value...);
+    }
+    /// What needs a vector's last sub-vector: of one that is in a register, or to be brought there.
+    void need_last(Hart& h, Due& ready, const stamp& s, std::uint32_t span, bool there) {
+        if (!there)
+            need_register(h, ready, s, span);
         need_scalar(h, ready, s);
     }
-    void need_lanes(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
-        need_register(h, ready, s, span);
+    /// ... and what follows it sub-vector by sub-vector.
+    void need_lanes(Hart& h, Due& ready, const stamp& s, std::uint32_t span, bool there) {
+        if (!there)
+            need_register(h, ready, s, span);
         if (is_ticket(s.last)) [[unlikely]]
             need_open(h, ready, s, span);
         else
@@ -147,7 +156,7 @@ private:
     }
     void unfold(Hart& h, Due& ready, const stamp& s);
     void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
-        if (s.value != 0 && registers_) {
+        if (s.value != 0) {
             RegisterFile::Use where = h.registers.use(s.value);
             if (where != RegisterFile::Use::resident) [[unlikely]]
                 reload(h, ready, s.value, where == RegisterFile::Use::unstored, span);
@@ -172,7 +181,11 @@ private:
     }
     cycle turn(Hart& h, cycle t);
     cycle hold_core(Hart& h, cycle t);
+    void account_issue(Hart& h, Issued at, std::uint32_t instructions, Due ready) const;
+    cycle come_to_issue(Hart& h, Due ready);
+    void note_issue(Hart& h, std::size_t kind, std::uint32_t instructions, Issued at, Due ready);
     Issued issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
+    Issued issue(Hart& h, std::size_t kind, Due ready);
     Issued issue_all(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
     Issued book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
     cycle book_together(Core& core, std::size_t kind, cycle t) const;
@@ -278,6 +291,7 @@ private:
     void describe_kinds();
     // --- windows
     bool run_window();
+    void find_active_tiles();
     cycle next_event() const;
     void set_floors(cycle arrival);
     void run_tiles();
@@ -307,7 +321,8 @@ private:
     // --- constants of the machine, in the types that the hot paths want
     Config config_;
     std::uint32_t pieces_;      // machine instructions of a vector operation
-    std::uint32_t piece_lanes_; // logical lanes of one of them
+    std::uint32_t piece_lanes_; // logical lanes of one of them, a power of two
+    unsigned piece_shift_;      // of their bytes
     unsigned issue_shift_, port_shift_;
     std::uint32_t issue_width_, line_bytes_;
     unsigned line_shift_, port_byte_shift_;
@@ -347,7 +362,8 @@ private:
     Published published_; // words that several tiles reach
     std::unique_ptr<Beyond> beyond_;
     std::deque<Tile> tiles_;
-    std::vector<Tile*> order_; // in which the host takes them
+    std::vector<Tile*> order_;  // in which the host takes them
+    std::vector<Tile*> active_; // of these
     std::mt19937 shuffled_;
     std::deque<Hart> harts_;
     HostThreads host_threads_; // tile t runs on number t % count

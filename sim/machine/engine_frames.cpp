@@ -16,11 +16,12 @@ void Engine::begin_part(cycle t) {
         if (h.worker < 0)
             continue;
         h.finished = false;
-        h.tile->scheduler.add(h.number, t, [this, &h] {
+        const auto work = [this, &h] {
             running_hart = &h;
             worker_(h.worker);
             h.finished = true;
-        });
+        };
+        h.tile->scheduler.add(h.number, t, work, [&h] { h.prefetch(); });
     }
     cycles_ = t;
 }

@@ -8,10 +8,11 @@ namespace sim {
 /// What has been counted so far.
 Interval Engine::sums() const {
     Interval s;
-    for (const Hart& h : harts_) {
-        s.vops += h.counters.vops;
-        s.instructions += h.counters.instructions;
-    }
+    for (const Hart& h : harts_)
+        for (const Hart::Column& column : h.columns) {
+            s.vops += column.vops;
+            s.instructions += column.instructions;
+        }
     for (const Tile& tile : tiles_) {
         for (const Core& core : tile.cores) {
             s.l1_accesses += core.l1.counters().reads + core.l1.counters().writes;
@@ -69,19 +70,23 @@ Report Engine::report() const {
             r.core.*row.count += h.counters.*row.count;
         for (std::size_t k = 0; k < issue_kinds; ++k)
             r.by_kind[k] += h.by_kind[k];
-        for (std::size_t i = 0; i < labels_.columns(); ++i) {
-            r.work[i].vops += h.vops[i];
-            r.work[i].instructions += h.instructions[i];
-        }
         int number = static_cast<int>(h.number);
         ThreadReport t;
+        for (std::size_t i = 0; i < labels_.columns(); ++i) {
+            const Hart::Column& column = h.columns[i];
+            r.work[i].vops += column.vops;
+            r.work[i].instructions += column.instructions;
+            r.core.vops += column.vops;
+            t.instructions += column.instructions;
+            t.stacks.push_back(column.stack);
+        }
+        r.core.instructions += t.instructions;
+        r.core.lane_slots += h.vector_instructions * piece_lanes_;
         t.worker = h.worker;
         t.tile = static_cast<int>(h.tile->number);
         t.core = number / threads;
         t.thread = number % threads;
         t.finish = h.finish;
-        t.instructions = h.counters.instructions;
-        t.stacks = h.stacks;
         r.threads.push_back(std::move(t));
     }
     r.drained = std::max({r.cycles, to_core_cycles(config_, static_cast<integer>(r.memory.last_clock)),

@@ -70,24 +70,24 @@ void Hart::begin_intervals(cycle t, std::uint64_t length) {
 
 Stack Hart::sum_of_stacks() const {
     Stack sum{};
-    for (const Stack& column : stacks)
+    for (const Column& column : columns)
         for (std::size_t i = 0; i < cause_count; ++i)
-            sum[i] += column[i];
+            sum[i] += column.stack[i];
     return sum;
 }
 
 /// The cycles from `from` on reach beyond the interval's end.
 void Hart::account_across(cycle from, cycle to, Cause why) {
     const auto cause = static_cast<std::size_t>(why);
-    (*stack)[cause] += boundary - from;
+    at->stack[cause] += boundary - from;
     close_interval();
     for (from = boundary, boundary += interval; boundary < to; boundary += interval) {
-        (*stack)[cause] += interval;
+        at->stack[cause] += interval;
         marked[cause] += interval;
         stack_of_interval()[cause] += interval;
         from = boundary;
     }
-    (*stack)[cause] += to - from;
+    at->stack[cause] += to - from;
 }
 
 /// That which ends at `boundary`.

@@ -18,45 +18,72 @@ inline cycle Engine::turn(Hart& h, cycle t) {
     return t;
 }
 
-inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
-    Core& core = *h.core;
-    cycle t = ready.at();
+/// The thread's cycles up to its last issue have a cause.
+inline void Engine::account_issue(Hart& h, Issued at, std::uint32_t instructions, Due ready) const {
+    const cycle least = issue_width_ == 1 ? instructions : (instructions + issue_width_ - 1) / issue_width_;
+    const cycle begin = std::max(h.accounted, at.first), end = at.last + 1;
+    const cycle stalled = std::min(std::max(ready.at(), h.accounted), begin);
+    const cycle busy = begin + std::min(least, end - begin);
+    if (end > h.boundary) [[unlikely]] {
+        h.account(h.accounted, stalled, ready.why());
+        h.account(stalled, begin, Cause::slots);
+        h.account(begin, busy, Cause::busy);
+        h.account(busy, end, Cause::slots);
+    } else {
+        Stack& stack = h.at->stack;
+        stack[static_cast<std::size_t>(ready.why())] += stalled - h.accounted;
+        stack[static_cast<std::size_t>(Cause::slots)] += begin - stalled + (end - busy);
+        stack[static_cast<std::size_t>(Cause::busy)] += busy - begin;
+    }
+    h.accounted = end;
+}
+
+/// Returns the cycle from which the thread's operation looks for its issue slots, when the others have come
+/// so far.
+inline cycle Engine::come_to_issue(Hart& h, Due ready) {
+    const cycle t = ready.at();
     if (in_order_) {
         turn(h, t);
-        t = std::max(t, h.bound.at()); // it may have waited since its operands were looked at
-        if (hold_policy_)
-            t = hold_core(h, t);
-    } else {
-        cycle acts = begin(h).at();
-        turn(h, t > acts + booking_reach ? t - booking_reach : acts);
-        t = std::max(t, h.bound.at());
+        const cycle now = std::max(t, h.bound.at()); // it may have waited since its operands were looked at
+        return hold_policy_ ? hold_core(h, now) : now;
     }
+    const cycle acts = begin(h).at();
+    turn(h, t > acts + booking_reach ? t - booking_reach : acts);
+    return std::max(t, h.bound.at());
+}
+
+inline void Engine::note_issue(Hart& h, std::size_t kind, std::uint32_t instructions, Issued at, Due ready) {
+    if (hold_policy_)
+        h.core->busy_until = std::max(h.core->busy_until, at.last + 1);
+    h.at->instructions += instructions;
+    h.by_kind[kind] += instructions;
+    if (at.last >= h.accounted)
+        account_issue(h, at, instructions, ready);
+}
+
+inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
+    const cycle t = come_to_issue(h, ready);
     Issued at{};
     if (needs_[kind] == Needs::slot) {
-        Calendar::Span s = core.issue.take(t << issue_shift_, instructions);
+        Calendar::Span s = h.core->issue.take(t << issue_shift_, instructions);
         at = {s.first >> issue_shift_, s.last >> issue_shift_};
     } else {
-        at = book(core, kind, instructions, t);
+        at = book(*h.core, kind, instructions, t);
     }
-    if (hold_policy_)
-        core.busy_until = std::max(core.busy_until, at.last + 1);
-    h.counters.instructions += instructions;
-    h.by_kind[kind] += instructions;
-    h.instructions[h.column] += instructions;
-    if (at.first > h.accounted) {
-        cycle stalled = std::min(std::max(ready.at(), h.accounted), at.first);
-        h.account(h.accounted, stalled, ready.why());
-        h.account(stalled, at.first, Cause::slots);
-        h.accounted = at.first;
-    }
-    if (at.last >= h.accounted) {
-        cycle least = issue_width_ == 1 ? instructions : (instructions + issue_width_ - 1) / issue_width_;
-        cycle busy = std::min<cycle>(least, at.last + 1 - h.accounted);
-        h.account(h.accounted, h.accounted + busy, Cause::busy);
-        h.account(h.accounted + busy, at.last + 1, Cause::slots);
-        h.accounted = at.last + 1;
-    }
+    note_issue(h, kind, instructions, at, ready);
     return at;
+}
+
+/// ... of a single instruction.
+inline Issued Engine::issue(Hart& h, std::size_t kind, Due ready) {
+    const cycle t = come_to_issue(h, ready);
+    cycle at;
+    if (needs_[kind] == Needs::slot)
+        at = h.core->issue.take(t << issue_shift_) >> issue_shift_;
+    else
+        at = book(*h.core, kind, 1, t).last;
+    note_issue(h, kind, 1, {at, at}, ready);
+    return {at, at};
 }
 
 /// More than a calendar takes at once.
@@ -85,11 +112,10 @@ inline void Engine::finish_issue(Hart& h, Issued at, cycle granted, Cause held) 
 }
 
 inline void Engine::count(Hart& h, std::uint32_t instructions, bool vector) {
-    ++h.counters.vops;
-    ++h.vops[h.column];
+    ++h.at->vops;
     if (vector) {
         ++h.counters.vector_vops;
-        h.counters.lane_slots += static_cast<std::uint64_t>(instructions) * piece_lanes_;
+        h.vector_instructions += instructions;
     }
 }
 
@@ -102,7 +128,10 @@ inline void Engine::charge_overhead(Hart& h, Due ready) {
     if (whole == 0)
         return;
     h.counters.overhead_instructions += whole;
-    issue(h, integer_kind, whole, ready);
+    if (whole == 1)
+        issue(h, integer_kind, ready);
+    else
+        issue(h, integer_kind, whole, ready);
 }
 
 inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses,

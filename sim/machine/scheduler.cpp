@@ -2,10 +2,12 @@
 
 namespace sim {
 
-void Scheduler::add(std::uint32_t thread, cycle t, std::function<void()> work) {
+void Scheduler::add(std::uint32_t thread, cycle t, std::function<void()> work,
+                    std::function<void()> prefetch) {
     threads_.resize(std::max<std::size_t>(threads_.size(), thread + 1));
     threads_[thread] = std::make_unique<Thread>();
     threads_[thread]->number = thread;
+    threads_[thread]->prefetch = std::move(prefetch);
     threads_[thread]->fibre = std::make_unique<Fibre>(
         stack_bytes_, [this, work = std::move(work)] { body(work); }, main_);
     push(key(t, thread));
@@ -49,6 +51,16 @@ void Scheduler::go_on(Key k) {
         horizon_ = std::min(limit_, key((cycle_of(k) / quantum_ + 1) * quantum_, 0)) - 1;
 }
 
+/// Many threads' work does not fit into the host's caches: that of the one after the next.
+void Scheduler::prefetch_next() const {
+    if (queue_.empty())
+        return;
+    const Thread& t = *threads_[queue_.front() & ((Key{1} << thread_bits) - 1)];
+    t.fibre->prefetch();
+    if (t.prefetch)
+        t.prefetch();
+}
+
 /// All that come before the earliest thread.
 void Scheduler::let_events_happen() {
     for (Key first = first_event(); first < limit_ && (queue_.empty() || first <= queue_.front());
@@ -66,6 +78,7 @@ void Scheduler::leave() {
         self.switch_to(main_);
     } else {
         go_on(pop());
+        prefetch_next();
         if (current_ != left)
             self.switch_to(*threads_[current_]->fibre);
     }
@@ -140,6 +153,7 @@ void Scheduler::run(cycle end) {
             if (queue_.empty() || queue_.front() >= limit_)
                 return;
             go_on(pop());
+            prefetch_next();
         }
         main_.switch_to(*threads_[current_]->fibre);
     }

@@ -43,8 +43,8 @@ public:
         : quantum_(quantum), whole_windows_(quantum >= window), stack_bytes_(stack_bytes) {}
 
     /// Adds a thread that begins at cycle `t`: a new one (ascending numbers), or one that has ended once
-    /// more.
-    void add(std::uint32_t thread, cycle t, std::function<void()> body);
+    /// more. `prefetch` brings what it works on to the host's caches, soon before it goes on.
+    void add(std::uint32_t thread, cycle t, std::function<void()> body, std::function<void()> prefetch = {});
     /// Of a scheduler with exact order: from now on these events have their place among the operations.
     void follow(Timeline& events) { events_ = &events; }
     /// One of them was added.
@@ -88,6 +88,7 @@ private:
     struct Thread {
         std::uint32_t number;
         std::unique_ptr<Fibre> fibre;
+        std::function<void()> prefetch;
     };
     struct Cancelled {};
 
@@ -100,6 +101,7 @@ private:
     void push(Key k);
     Key pop();
     void go_on(Key k);
+    void prefetch_next() const;
     void leave();
     void body(const std::function<void()>& work);
 

@@ -40,7 +40,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
         ready.later(Due(h.stored, Cause::synchronise));
     }
     ready.later(Due(std::max(h.now, h.issued), Cause::synchronise));
-    Issued at = issue(h, writes ? store_kind : load_kind, 1, ready);
+    Issued at = issue(h, writes ? store_kind : load_kind, ready);
     h.now = at.last;
     const cycle begins = translated(h, a, a + 3, at.last);
     h.now = std::max(h.now, begins);
@@ -268,8 +268,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         if (woken > h.accounted) {
             std::uint64_t looks = (woken - since) / wide(config_.core.spin_period);
             h.counters.spins += looks;
-            h.counters.instructions += 2 * looks;
-            h.instructions[h.column] += 2 * looks;
+            h.at->instructions += 2 * looks;
             if (h.interval != 0) [[unlikely]]
                 move_looks(h, since, looks);
             h.account(h.accounted, woken, Cause::synchronise);

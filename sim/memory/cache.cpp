@@ -184,6 +184,22 @@ void Cache::prefetch(std::uint64_t address, cycle t, std::size_t column) {
         causes_->use(line, true);
 }
 
+/// An access to an L1, whatever it finds.
+Answer Cache::other_access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t,
+                           std::size_t column) {
+    if (special_)
+        return special_access(line, write, accesses, t, column);
+    const CacheArray::Entry entry = array_.find(line);
+    if (entry == CacheArray::none || array_.in_flight(entry))
+        return waiting_access(entry, line, write, accesses, t, column);
+    array_.touch(entry);
+    if (write)
+        array_.set_dirty(entry, true);
+    counters_.hits += accesses;
+    count_accesses(line, write, accesses, column);
+    return {t + latency_, Cause::l1};
+}
+
 /// An access to an L1 whose line is not there yet.
 Answer Cache::waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
                              cycle t, std::size_t column) {

@@ -39,14 +39,8 @@ public:
 
     /// A core's `accesses` accesses to the line (number) at cycle `t`.
     Answer access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t, std::size_t column) {
-        if (special_) [[unlikely]]
-            return special_access(line, write, accesses, t, column);
-        CacheArray::Entry entry = array_.find(line);
-        if (entry == CacheArray::none || array_.in_flight(entry)) [[unlikely]]
-            return waiting_access(entry, line, write, accesses, t, column);
-        array_.touch(entry);
-        if (write)
-            array_.set_dirty(entry, true);
+        if (special_ || !array_.use_recent(line, write)) [[unlikely]]
+            return other_access(line, write, accesses, t, column);
         counters_.hits += accesses;
         count_accesses(line, write, accesses, column);
         return {t + latency_, Cause::l1};
@@ -148,6 +142,7 @@ private:
         (write ? counters_.writes : counters_.reads) += accesses;
         (write ? cell.l1_writes : cell.l1_reads) += accesses;
     }
+    Answer other_access(std::uint64_t line, bool write, std::uint32_t accesses, cycle t, std::size_t column);
     Answer waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
                           cycle t, std::size_t column);
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);

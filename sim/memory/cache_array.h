@@ -52,6 +52,20 @@ public:
                 return entry(line, w + static_cast<std::uint32_t>(std::countr_zero(equal)));
         return none;
     }
+    /// Whether the line is the one that was used last in its set, and not on its way: then it is used again.
+    bool use_recent(std::uint64_t line, bool write) {
+        std::byte* set = base_ + (line & mask_) * stride_;
+        const auto way = static_cast<std::uint32_t>(set[order_at_]);
+        if (tag_at(set, way) != line >> set_bits_ || in_flight(set + flags_at_, way))
+            return false;
+        if (write) {
+            std::uint64_t dirty;
+            std::memcpy(&dirty, set + flags_at_, 8);
+            dirty |= std::uint64_t{1} << way;
+            std::memcpy(set + flags_at_, &dirty, 8);
+        }
+        return true;
+    }
     /// Makes the entry the most recently used of its set.
     void touch(Entry e) {
         std::byte* order = base_ + (e >> 6U) * stride_ + order_at_;
@@ -170,6 +184,11 @@ private:
             equal |= static_cast<std::uint32_t>(tag_at(tags, w) == wanted) << w;
         return equal;
 #endif
+    }
+    static bool in_flight(const std::byte* flags, std::uint32_t way) {
+        std::uint64_t bits;
+        std::memcpy(&bits, flags + 8, 8);
+        return (bits >> way & 1U) != 0;
     }
     static std::uint32_t tag_at(const std::byte* set, std::uint32_t way) {
         std::uint32_t t;

@@ -49,6 +49,38 @@ TEST(Registers, EqualAListOfTheLastUsed) {
     }
 }
 
+// Two at once are used as one after the other, or not at all.
+TEST(Registers, OperandsAreUsedTogether) {
+    std::mt19937 random(6);
+    for (const std::size_t capacity : {1U, 2U, 5U, 8U, 12U}) {
+        RegisterFile file(capacity), plain(capacity);
+        std::array<int, 2> seen{};
+        std::uint32_t last = 0;
+        for (int i = 0; i < 20000; ++i) {
+            if (last < 20 || random() % 3 == 0) {
+                last = file.make();
+                ASSERT_EQ(plain.make(), last);
+                continue;
+            }
+            const auto any = [&] {
+                return random() % 5 == 0 ? 0 : last - static_cast<std::uint32_t>(random() % 10);
+            };
+            const std::uint32_t a = any(), b = any();
+            const bool all = file.use_all(a, b);
+            ++seen[all ? 1 : 0];
+            for (const std::uint32_t value : {a, b}) {
+                const RegisterFile::Use use = plain.use(value);
+                if (all)
+                    ASSERT_EQ(use, RegisterFile::Use::resident) << "of " << capacity << ", step " << i;
+                else
+                    ASSERT_EQ(file.use(value), use) << "of " << capacity << ", step " << i;
+            }
+        }
+        EXPECT_GT(seen[0], 100) << capacity;
+        EXPECT_GT(seen[1], 100) << capacity;
+    }
+}
+
 TEST(Registers, UnlimitedOnesAreNeverReloaded) {
     RegisterFile file(0);
     const std::uint32_t first = file.make();
