@@ -99,6 +99,23 @@ TEST(Frames, EachWritesWhatItLeaves) {
     }
 }
 
+// What was prefetched before a part counts was useless to what came before it, whoever uses it then.
+TEST(Frames, APartCountsItsOwnPrefetches) {
+    Config c = simple();
+    c.l1.prefetcher = "next-line";
+    c.l1.prefetch_degree = 1;
+    int parts = 0;
+    Memory memory;
+    RunOptions options;
+    options.next_part = [&] { ++parts; };
+    const Report r = Machine(c).run(
+        memory.space, 1, {{"work"}}, [&](int) { load(here, memory.data + parts * 64, 4, stamp{}); }, 1,
+        options);
+    EXPECT_EQ(r.l1_total().hits, 1U) << "the line is there";
+    EXPECT_EQ(r.l1_total().prefetches_useful, 0U);
+    EXPECT_EQ(r.l1_total().prefetches, r.l1_total().prefetches_useless);
+}
+
 // A second part of a frame finds the first one's lines as they were left, and what nobody has written back
 // is written when the frame ends.
 TEST(Frames, APartGoesOnWithDirtyLines) {

@@ -1,0 +1,170 @@
+// Tiles that fight for few lines, as chance wants it, on machines of chance: the laws hold, whatever the host
+// does.
+#include "tests/sim/coherent.h"
+#include "tests/sim/unchanging.h"
+
+#include <fmt/format.h>
+
+#include <random>
+
+namespace sim::test {
+namespace {
+
+/// Loads and stores of few lines by all threads, as chance wants it.
+Report contend(const Config& c, std::uint32_t seed, int host_threads = 1, const RunOptions& options = {}) {
+    Memory memory;
+    return Machine(c).run(
+        memory.space, static_cast<int>(c.all_threads()), {{"work"}},
+        [&](int w) {
+            std::mt19937 random(seed * 1000 + static_cast<std::uint32_t>(w));
+            stamp last;
+            for (int i = 0; i < 150; ++i) {
+                std::byte* p = memory.data + random() % 40 * 64 + random() % 16 * 4;
+                std::byte* far = memory.more + random() % 4096 * 64;
+                switch (random() % 6) {
+                case 0:
+                    store(here, p, 4, last, stamp{});
+                    break;
+                case 1:
+                    store_vector(here, p, all_lanes, last, stamp{}, stamp{});
+                    break;
+                case 2:
+                    load(here, far, 4, last);
+                    break;
+                case 3:
+                    isa::timing::prefetch(here, p, last);
+                    break;
+                case 4:
+                    load(here, p, 4, stamp{});
+                    break;
+                default:
+                    last = load(here, p, 4, last);
+                }
+            }
+        },
+        host_threads, options);
+}
+
+/// Tiles that fight for lines, with caches that keep few of them.
+Config fighting(std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto pick = [&](std::initializer_list<integer> all) { return all.begin()[random() % all.size()]; };
+    Config c;
+    c.chip.tiles = pick({2, 3, 5, 8});
+    c.chip.cores = pick({1, 2, 4});
+    c.chip.threads = pick({1, 2});
+    c.core.window = pick({1, 8, 60});
+    c.core.store_buffer = pick({0, 4});
+    c.l1.size_bytes = pick({256, 1024, 8192});
+    c.l1.ways = 2;
+    c.l1.line_bytes = pick({32, 64});
+    c.l1.mshrs = pick({1, 4, 16});
+    c.l1.write_policy = pick({0, 3}) == 0 ? "through" : "back";
+    c.l1.prefetcher = "none";
+    c.l2.size_bytes = pick({1024, 4096, 65536});
+    c.l2.ways = 4;
+    c.l2.line_bytes = pick({64, 128});
+    c.l2.mshrs = pick({1, 3, 16});
+    c.l2.write_back_buffer = pick({1, 8});
+    if (c.chip.cores == 4 && pick({0, 1}) == 0) {
+        c.l2.share = std::string("2");
+        if (pick({0, 1}) == 0) {
+            c.l3.size_bytes = 8192;
+            c.l3.line_bytes = 128;
+            c.l3.ways = 4;
+            c.l3.share = std::string("tile");
+        }
+    }
+    if (c.l3.size_bytes == 0 && pick({0, 1}) == 0) {
+        c.l3.size_bytes = pick({8192, 262144});
+        c.l3.line_bytes = 128;
+        c.l3.ways = 8;
+        c.l3.mshrs = pick({1, 16});
+        c.l3.share = std::string("chip");
+        c.l3.inclusion = pick({0, 1}) == 0 ? "none" : "inclusive";
+    }
+    c.network.topology = std::array{"ideal", "crossbar", "ring", "mesh"}[random() % 4];
+    c.network.link_bytes = pick({2, 32});
+    c.coherence.directory_cycles = pick({1, 6, 200});
+    c.memory.channels = pick({1, 2});
+    c.sim.quantum = pick({0, 10, 1000});
+    c.sim.window = pick({0, 0, 30, 500, 5000});
+    c.sim.miss_causes = pick({0, 1}) == 0 ? "on" : "off";
+    c.sim.jitter = pick({0, 1});
+    return coherent(c);
+}
+
+/// The same with directories that have room for few lines.
+Config fighting_for_entries(std::uint32_t seed) {
+    Config c = fighting(seed);
+    c.coherence.directory_ways = std::array{1, 2, 4}[seed % 3];
+    c.coherence.directory_entries = c.coherence.directory_ways * std::array{1, 4, 16}[seed / 3 % 3];
+    return c;
+}
+
+/// What so many of these machines count together; the laws say that every copy is known, and that one cache
+/// alone may write a line.
+CoherenceCounters fight(Config (*machine)(std::uint32_t), std::uint32_t seeds) {
+    CoherenceCounters sum;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        const Config c = machine(seed);
+        EXPECT_NO_THROW(check_consistency(c, "fighting")) << seed;
+        Report r;
+        EXPECT_NO_THROW(r = contend(c, seed)) << seed;
+        for (const auto& row : coherence_counters)
+            sum.*row.count += r.coherence.*row.count;
+    }
+    return sum;
+}
+
+TEST(Coherence, TilesThatFightKeepTheLaws) {
+    const CoherenceCounters all = fight(fighting, 300);
+    EXPECT_GT(all.lost_upgrades, 100U);
+    EXPECT_GT(all.silent_upgrades, 100U);
+    EXPECT_GT(all.invalidations_stale, 100U);
+    EXPECT_GT(all.forwards_dirty, 1000U);
+    EXPECT_GT(all.wait_cycles, 1000U);
+}
+
+TEST(Coherence, TilesThatFightForEntriesKeepTheLaws) {
+    const CoherenceCounters all = fight(fighting_for_entries, 300);
+    EXPECT_GT(all.recalls_received, 10000U);
+    EXPECT_GT(all.recalls_stale, 1000U);
+    EXPECT_GT(all.crowded, 100U);
+    EXPECT_GT(all.lost_upgrades, 100U);
+}
+
+/// The same on buses.
+Config fighting_on_buses(std::uint32_t seed) {
+    Config c = fighting(seed);
+    if (c.l3.share == "chip")
+        c.l3.size_bytes = 0;
+    c.coherence.snoop_cycles = std::array{1, 6, 200}[seed % 3];
+    return snooping(c, c.chip.tiles == 8   ? integer{1} << (seed / 3 % 4)
+                       : c.chip.tiles == 2 ? 1 + seed % 2
+                                           : 1);
+}
+
+TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
+    const CoherenceCounters all = fight(fighting_on_buses, 200);
+    EXPECT_GT(all.lost_upgrades, 50U);
+    EXPECT_GT(all.silent_upgrades, 50U);
+    EXPECT_GT(all.forwards_dirty, 1000U);
+    EXPECT_GT(all.passed_on, 1000U);
+}
+
+TEST(Coherence, ReportsDoNotDependOnTheHost) {
+    for (std::uint32_t seed = 1; seed <= 16; ++seed) {
+        const Config c = seed <= 8    ? fighting(seed)
+                         : seed <= 12 ? fighting_for_entries(seed)
+                                      : fighting_on_buses(seed);
+        expect_equal_on_host_threads([&](int threads) { return contend(c, seed, threads); },
+                                     fmt::format("seed {}", seed));
+        expect_equal_in_any_order(
+            [&](std::uint32_t order) { return contend(c, seed, 1, {.host_order = order}); },
+            fmt::format("seed {}", seed));
+    }
+}
+
+} // namespace
+} // namespace sim::test
