@@ -102,7 +102,7 @@ TEST(Frames, EachWritesWhatItLeaves) {
 // What was prefetched before a part counts was useless to what came before it, whoever uses it then.
 TEST(Frames, APartCountsItsOwnPrefetches) {
     Config c = simple();
-    c.l1.prefetcher = "next-line";
+    c.l1.prefetcher = "next";
     c.l1.prefetch_degree = 1;
     int parts = 0;
     Memory memory;
@@ -162,7 +162,7 @@ Config everything() {
     c.core.shared_classes = "divide";
     c.core.store_buffer = 4;
     c.l1.size_bytes = 2048;
-    c.l1.prefetcher = "next-line";
+    c.l1.prefetcher = "next";
     c.l2.size_bytes = 16384;
     c.memory.preset = "ddr4-2400r-2r";
     c.memory.ranks = 2;
