@@ -7,7 +7,8 @@
 The conclusion is which design takes fewer cycles, if they differ by more than --noise percent: what an irrelevant
 change may move (sim.jitter says how much that is). A row for each change: cycles of the first design over those with
 nothing changed; the second design's over the first's; and what became of the conclusion: it stays, is lost (no design
-is better beyond noise any more), appears (where there was none), or flips. Rows are in order of how far the change moves the designs apart or together. What
+is better beyond noise any more), appears (where there was none), or flips. Rows are in order of how far the change moves
+the designs apart or together; the first row of --csv is the run with nothing changed; plot.py draws that file. What
 cannot be halved (1, or what other parameters forbid) is named at the end. Numbers that take no part in time (energies)
 and the simulator's own are left out. What follows -- goes to every run of `razor-sim run`.
 
@@ -78,6 +79,7 @@ def measure(options):
         if not pending:
             raise Mistake("no assumed number is left to change; see --only, and the marks of the machine file")
         rows = []
+        simulation.show_progress([run for *_, runs in pending for run in runs], may_fail=True)
         for key, factor, value, new, runs in pending:
             try:
                 a, b = (r.result()["cycles"] for r in runs)
@@ -129,7 +131,8 @@ def main():
         if not rows:
             raise Mistake("every change was refused: " + refused[0][2])
         if options.csv:
-            simulation.write_csv(options.csv, rows)
+            unchanged = {"key": "", "value": "", "changed": "", "first": 1.0, "ratio": ratio, "verdict": "unchanged"}
+            simulation.write_csv(options.csv, [unchanged, *rows])
         show(options, rows, ratio, refused)
         return 1 if any(r["verdict"] == "FLIPS" for r in rows) else 0
     except (Mistake, argparse.ArgumentError) as mistake:

@@ -5,6 +5,8 @@ import json
 import os
 import shutil
 import subprocess
+import sys
+from concurrent.futures import as_completed
 
 
 class Mistake(Exception):
@@ -34,6 +36,18 @@ def run(program, machine, settings, more, folder):
         raise Mistake(f"{', '.join(settings) or machine}: {lines[-1]}")
     with open(report, encoding="utf-8") as file:
         return json.load(file)
+
+
+def show_progress(runs, may_fail):
+    """On a terminal, how many of these futures are done, until all are or (unless they may) one has failed."""
+    if not sys.stderr.isatty():
+        return
+    done = 0
+    for done, run in enumerate(as_completed(runs), 1):
+        print(f"\r{done} of {len(runs)} runs", end="", file=sys.stderr, flush=True)
+        if not may_fail and run.exception() is not None:
+            break
+    print("\r" + " " * len(f"{done} of {len(runs)} runs") + "\r", end="", file=sys.stderr, flush=True)
 
 
 def check_writable(option, path):

@@ -14,6 +14,8 @@ beside the cycles (and the error), as half the width of a 95 % interval. Steps n
 
     analysis/sweep/sweep.py --seeds 10 --machine configs/machines/tiny.toml --key l2.ways --values 2..16 -- --size 64x64 --spp 1
 
+plot.py draws error and host time of what --reference --csv writes.
+
 A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (-g settings too). Runs are deterministic;
 --jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
 """
@@ -187,6 +189,7 @@ def sweep(options):
         values = [REFERENCE] * options.reference + options.values
         seeds = range(1, options.seeds + 1) if options.seeds > 1 else [0]
         runs = {v: [pool.submit(run, options, v, s, tempfile.mkdtemp(dir=folder)) for s in seeds] for v in values}
+        simulation.show_progress([r for all_of_row in runs.values() for r in all_of_row], may_fail=False)
         try:
             rows = [mean_of([figures(r.result(), v) for r in runs[v]]) for v in values]
         except Mistake:

@@ -65,7 +65,7 @@ public:
                     return true;
                 const __m256i equal = _mm256_cmpeq_epi32(all, _mm256_set1_epi32(static_cast<int>(value)));
                 const auto at = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
-                all = moved(all, std::countr_zero(at | 256U) & 7U);
+                all = moved(all, static_cast<std::size_t>(std::countr_zero(at | 256U)) & 7U);
                 return at != 0;
             };
             if (!(found(values) && ...))
