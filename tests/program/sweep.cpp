@@ -169,6 +169,7 @@ with open(sys.argv[sys.argv.index("--json") + 1], "w") as file:
     EXPECT_EQ(all.code, 1) << all.err; // halved, x has the first design better
     EXPECT_NE(all.out.find("0.900 of the cycles"), std::string::npos) << all.out;
     EXPECT_EQ(text("a.csv"), "key,value,changed,first,ratio,verdict\r\n"
+                             ",,,1.0,0.9,unchanged\r\n"
                              "a.x,4,2,0.5,1.3,FLIPS\r\n"
                              "a.rate,0.5,0.25,0.5,1.3,FLIPS\r\n"
                              "a.x,4,8,2.0,0.7,stays\r\n"
