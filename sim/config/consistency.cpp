@@ -329,8 +329,6 @@ void check_coherence(const std::string& what, const Config& config) {
         fail(what, fmt::format("coherence.directory_entries is {}, which is no multiple of "
                                "coherence.directory_ways, {}: all sets have as many; make it one",
                                c.directory_entries, c.directory_ways));
-    if (config.memory.controller != "immediate")
-        refuse("memory.controller", config.memory.controller, "immediate");
 }
 
 /// What the reference mode stands for.

@@ -23,7 +23,7 @@ Answered Engine::await(Hart& h, cycle ticket) {
 cycle Engine::await_room(Hart& h, cycle since, cycle until) {
     if (until != Answer::unknown && !maybe_sooner(until))
         return turn(h, until);
-    if (until != Answer::unknown)
+    if (until != Answer::unknown && latest(until) > h.tile->events->now())
         h.tile->events->look_again(latest(until));
     h.tile->parked.push_back({&h, 0});
     Away away;

@@ -58,6 +58,8 @@ Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
     give(r, l);
     if (out.from != Outcome::below)
         arrives(r, std::max(out.at, out.finished));
+    else
+        l.coming = l.owner == who;
     return out;
 }
 
@@ -69,7 +71,7 @@ cycle Coherence::make_room(const Request& r, cycle t) {
         const auto leaving = directory_.leaving(r.read, [&](std::uint64_t line) {
             const Directory::Line& l = *directory_.find(line);
             const auto asks = [&](std::uint32_t cache) { return under_way(cache).asks(line); };
-            return !(l.owner != Directory::nobody && asks(l.owner)) &&
+            return !is_coming(line) && !(l.owner != Directory::nobody && asks(l.owner)) &&
                    std::none_of(l.sharers.begin(), l.sharers.end(), asks);
         });
         if (!leaving) {
@@ -200,6 +202,7 @@ cycle Coherence::invalidate(const Request& r, const Directory::Line& l, cycle t)
 /// The line is the asker's.
 void Coherence::give(const Request& r, Directory::Line& l) {
     const std::uint32_t who = number_of(r);
+    l.coming = false;
     if (r.exclusive) {
         l.sharers.clear();
         l.owner = who;
@@ -243,8 +246,15 @@ void Coherence::write_back(std::uint32_t from, const Request& r, std::uint64_t l
 
 void Coherence::arrives(const Request& r, cycle ready) {
     Directory::Line* l = directory_.find(r.read);
-    if (l != nullptr && l->owner == number_of(r)) // it may have been recalled
-        l->since = ready;
+    if (l == nullptr || l->owner != number_of(r)) // it may have been recalled
+        return;
+    l->since = ready;
+    l->coming = false;
+}
+
+bool Coherence::is_coming(std::uint64_t line) const {
+    const Directory::Line* l = directory_.find(line);
+    return l != nullptr && l->owner != Directory::nobody && l->coming;
 }
 
 void Coherence::written(const Request& r) {

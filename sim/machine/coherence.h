@@ -48,6 +48,9 @@ public:
     Outcome ask(const Request& r, cycle t);
     /// Whether a cache that asks for the right to write a line has it; then it is asked for no more.
     bool grants_silently(const Request& r);
+    /// Whether a request for this line has to wait: when its owner has it is not known until arrives() says
+    /// so (memory with queues).
+    bool is_coming(std::uint64_t line) const;
     /// It comes from below at `ready`.
     void arrives(const Request& r, cycle ready);
     /// It is written back.

@@ -75,8 +75,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                   : config.core.predictor == "taken"     ? Prediction::taken
                   : config.core.predictor == "not_taken" ? Prediction::not_taken
                                                          : Prediction::counters),
-      base_(space.base()), window_cycles_(window_cycles(config)), shortest_read_(shortest_answer(config)),
-      reach_(reach_cycles(config)), space_(space), labels_(with_frame_end(labels)),
+      base_(space.base()), window_cycles_(window_cycles(config)), shortest_answer_(shortest_answer(config)),
+      shortest_line_(shortest_line(config)), reach_(reach_cycles(config)), space_(space),
+      labels_(with_frame_end(labels)),
       tables_(config.tlb.tables()
                   ? std::optional(PageTables(config.tlb, LineMap::end_of(space),
                                              wide(config.all_threads()) * spill_bytes_of(config) +
@@ -289,11 +290,12 @@ void Engine::forget_tickets(Tile& tile) {
 
 /// No request that is not served yet arrives at memory before `arrival`.
 void Engine::set_floors(cycle arrival) {
+    const Floors floors{arrival + shortest_answer_, arrival + shortest_line_};
     for (Tile* tile : active_)
         if (tile->events)
-            tile->events->set_floor(arrival + shortest_read_);
+            tile->events->set_floors(floors);
         else
-            tile->tickets.set_floor(arrival + shortest_read_);
+            tile->tickets.set_floors(floors);
 }
 
 /// What the order of the following must not matter for.

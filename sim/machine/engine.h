@@ -351,8 +351,8 @@ private:
     enum class Prediction { counters, taken, not_taken, none, perfect } prediction_;
 
     const std::byte* base_;
-    std::uint64_t window_cycles_; // of the windows in which tiles run by themselves
-    std::uint64_t shortest_read_;
+    std::uint64_t window_cycles_;                   // of the windows in which tiles run by themselves
+    std::uint64_t shortest_answer_, shortest_line_; // of what lies beyond a tile
     std::uint64_t reach_; // cycles that an operation may lie behind its thread's latest turn
     const isa::address_space& space_;
     Labels labels_;                    // the caller's, and the end of the frame

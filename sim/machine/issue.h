@@ -156,7 +156,7 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
     cycle last = (s.last >> port_shift_) + l1_latency_; // through the ports
     if (is_ticket(a.ready)) {
         data.tickets[data.open++] = a.ready;
-        if (last <= h.tile->tickets.floor())
+        if (last <= h.tile->tickets.floors().any)
             return;
     } else {
         last = std::max(a.ready, last);

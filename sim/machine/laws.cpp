@@ -166,7 +166,8 @@ void check_below(const Report& r, const CacheCounters& above, const CacheCounter
     equal("reads of a level + lines that owners brought = fills of the one above + upgrades without their "
           "line (L2: + read-modify-writes)",
           c.reads + (beyond ? r.coherence.supplied() : 0),
-          above.fills + (beyond ? r.coherence.lost_upgrades : 0) + (l2 ? r.core.modifications : 0));
+          above.fills + (beyond ? r.coherence.lost_upgrades : c.lost_upgrades) +
+              (l2 ? r.core.modifications : 0));
     equal(
         "writes of a level = write-backs + clean victims + writes through of the one above (L2: + releases)",
         c.writes,
@@ -272,7 +273,8 @@ void check_coherence(const Report& r) {
             equal("without coherence nobody asks others", d.*row.count, 0);
         for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
             const CacheCounters c = r.cache_total(level);
-            equal("without coherence nobody asks to write or share", c.upgrades + c.downgrades, 0);
+            equal("without coherence nobody asks to write or share",
+                  c.upgrades + c.lost_upgrades + c.downgrades, 0);
         }
         return;
     }

@@ -2,13 +2,16 @@
 // request holds its MSHR or its place in the write-back buffer until memory has decided its answer and the
 // answer is there, which may be windows later; those that find none free wait for them, and lines for room in
 // memory's queues, each in the order in which they came. At the same cycle memory acts before what lies here,
-// and that before new requests.
+// and that before new requests. On a coherent machine a request acts when the directory, or the hub of the
+// buses, has it; one for a line whose owner is still being answered waits until that is decided, and then
+// goes on in the order in which it came.
 #pragma once
 
 #include "sim/machine/beyond.h"
 #include "sim/memory/waiting_memory.h"
 
 #include <queue>
+#include <unordered_map>
 
 namespace sim {
 
@@ -44,10 +47,11 @@ private:
     struct Transfer {
         Ways::Asker who;
         std::uint64_t address;
-        cycle ticket;         // the tile's, or, of a cache here, among tickets_
-        std::uint32_t bytes;  // that come back, or go there
-        std::size_t port = 0; // of a tile
-        cycle since = 0;      // when memory was asked
+        std::uint32_t bytes; // that come back, or go there
+        cycle ticket = 0;    // of a cache here, among tickets_
+        Request request{};   // of a tile
+        cycle known = 0;     // where caches are coherent: no answer leaves earlier
+        cycle since = 0;     // when memory was asked
     };
     /// What a cache here has answered with a ticket.
     struct Unanswered {
@@ -72,14 +76,23 @@ private:
     }
     cycle send_for(Ways::Asker cache, const Access& a, Event::Kind kind);
     void send(cycle t, Event::Kind kind, const Transfer& line);
+    void come(cycle there, Event::Kind kind, const Transfer& line);
     void act(const Event& e);
     void act(const Request& r);
+    void claim(Request r);
+    bool grants_silently(const Request& r);
+    void next_waiting(std::size_t port, bool mshr);
+    bool is_blocked(const Request& r);
+    void ask_others(const Request& r);
+    void write_owners(const Request& r);
+    void wake();
     void want_buffer(const Request& r);
     void want_mshr(const Request& r);
     void enter_buffer(Request r);
     void enter_mshr(Request r);
     void look_up(Request r);
     void answer(const Request& r, Answer a);
+    void reply(const Request& r, Answer a);
     void take_answers();
 
     std::uint64_t shortest_; // core cycles of a read of memory
@@ -91,6 +104,10 @@ private:
     std::vector<Transfer> transfers_;
     std::vector<std::uint64_t> free_; // of these
     std::vector<Unanswered> unanswered_;
+    // Of a coherent machine, by line: what waits until it is known when the line's owner has it, and the
+    // lines of which that is known now.
+    std::unordered_map<std::uint64_t, std::vector<Request>> blocked_;
+    std::vector<std::uint64_t> known_;
 };
 
 } // namespace sim

@@ -1,6 +1,7 @@
 #include "sim/machine/tile_events.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sim {
 
@@ -48,7 +49,10 @@ void Arrivals::happen(std::uint32_t slot, cycle now) {
     Request& r = requests_[slot];
     if (!r.booked && r.kind != Kind::discard && !r.recalled) {
         r.booked = true;
-        const cycle begins = cache_.book(r.access);
+        Access taken = r.access;
+        if (r.kind == Kind::own) // no data move
+            taken.bytes = 1;
+        const cycle begins = cache_.book(taken);
         if (begins != now) {
             r.access.at = begins;
             return events_.foresee(begins, r.access.asker + 1, r.sequence, number_, slot);
@@ -73,8 +77,7 @@ bool Arrivals::act(std::uint32_t slot, cycle now) {
     }
     events_.site_ = r.site;
     const Access access = r.access; // what it asks for may move the requests
-    const Answer answer =
-        r.recalled ? cache_.pass(access) : cache_.serve_booked(access, r.kind == Kind::write);
+    const Answer answer = serve(r, access);
     if (answer.refused) {
         note_refusal(answer.ready);
         return false;
@@ -83,10 +86,18 @@ bool Arrivals::act(std::uint32_t slot, cycle now) {
     return true;
 }
 
+Answer Arrivals::serve(const Request& r, const Access& a) {
+    if (r.recalled)
+        return cache_.pass(a);
+    return r.kind == Kind::own ? cache_.own_booked(a) : cache_.serve_booked(a, r.kind == Kind::write);
+}
+
 void Arrivals::finish(std::uint32_t slot, const Answer& answer, cycle now) {
     const Request r = requests_[slot];
     lines_[slot] = nothing;
     free_.push_back(slot);
+    if (r.kind != Kind::write && r.access.by != nullptr && cache_.coherent())
+        r.access.by->settle_right(r.access.address, r.access.bytes, answer.shared);
     if (r.kind == Kind::read && answer.dirty)
         deliver_dirty(r.access, now);
     if (is_ticket(answer.ready))
@@ -109,18 +120,36 @@ void Arrivals::deliver_dirty(const Access& a, cycle now) {
     a.by->send_back(a.address, now, a.column);
 }
 
+bool Arrivals::is_asked(std::uint64_t address, const Cache& by) const {
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+        if (const Request& r = requests_[i]; lines_[i] == cache_.line_of(address) && r.access.by == &by &&
+                                             by.line_of(r.access.address) == by.line_of(address) &&
+                                             (r.kind == Kind::read || r.kind == Kind::own))
+            return true;
+    return false;
+}
+
+/// Whole lines among these bytes that are on their way to be written.
+template <class Visit> void Arrivals::each_write(std::uint64_t address, std::uint64_t bytes, Visit visit) {
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+        if (Request& r = requests_[i]; lines_[i] != nothing && r.kind == Kind::write && r.access.whole &&
+                                       !r.recalled &&
+                                       r.access.address - address < bytes) // not what lies before
+            visit(r);
+}
+
 bool Arrivals::recall(std::uint64_t address, std::uint64_t bytes) {
     bool dirty = false;
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-        if (lines_[i] == nothing)
-            continue;
-        Request& r = requests_[i];
-        if (r.kind != Kind::write || !r.access.whole || r.recalled ||
-            r.access.address - address >= bytes) // also what lies before
-            continue;
+    each_write(address, bytes, [&](Request& r) {
         r.recalled = true;
         dirty |= !r.access.clean;
-    }
+    });
+    return dirty;
+}
+
+bool Arrivals::clean(std::uint64_t address, std::uint64_t bytes) {
+    bool dirty = false;
+    each_write(address, bytes, [&](Request& r) { dirty |= !std::exchange(r.access.clean, true); });
     return dirty;
 }
 

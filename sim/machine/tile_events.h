@@ -28,7 +28,11 @@ public:
         : events_(events), number_(number), cache_(cache) {
         cache.act_on(*this);
     }
-    Answer read(const Access& a) override { return {enter(a, Kind::read), cache_.cause()}; }
+    // Who has the right to write the line is said when this has acted.
+    Answer read(const Access& a) override {
+        return {enter(a, Kind::read), cache_.cause(), false, false, true};
+    }
+    Answer own(const Access& a) override { return {enter(a, Kind::own), cache_.cause(), false, false, true}; }
     Answer write(const Access& a) override { return {enter(a, Kind::write), cache_.cause()}; }
     /// The line of this address will be dead when word of it has come.
     void discard(std::uint64_t address, cycle t, std::uint32_t asker) {
@@ -36,13 +40,15 @@ public:
         a.asker = asker;
         enter(a, Kind::discard);
     }
+    bool is_asked(std::uint64_t address, const Cache& by) const override;
     bool recall(std::uint64_t address, std::uint64_t bytes) override;
+    bool clean(std::uint64_t address, std::uint64_t bytes) override;
 
 private:
     friend class TileEvents;
     static constexpr std::uint64_t nothing = ~std::uint64_t{0};
 
-    enum class Kind : std::uint8_t { read, write, discard };
+    enum class Kind : std::uint8_t { read, own, write, discard };
     struct Request {
         Access access;
         cycle ticket;
@@ -57,7 +63,9 @@ private:
     cycle after_others(const Access& a, Kind kind, cycle at) const;
     void happen(std::uint32_t slot, cycle now);
     bool act(std::uint32_t slot, cycle now);
+    Answer serve(const Request& r, const Access& a);
     void finish(std::uint32_t slot, const Answer& answer, cycle now);
+    template <class Visit> void each_write(std::uint64_t address, std::uint64_t bytes, Visit visit);
     void deliver_dirty(const Access& a, cycle now);
     bool waits(std::uint64_t line) const;
     void wait(std::uint32_t slot) { waiting_.push_back(slot); }
@@ -95,6 +103,8 @@ public:
     }
     /// Who waits for room hears at this cycle too, as if something had been answered.
     void look_again(cycle t) { foresee(t, 0, ~std::uint64_t{0}, nobody, no_slot); }
+    /// Nothing has happened yet that is later.
+    cycle now() const { return now_; }
     void tell(Heard heard) { heard_ = std::move(heard); }
 
     void step() override;
@@ -102,9 +112,9 @@ public:
     void come_to(cycle now) { now_ = std::max(now_, now); }
     /// What lies beyond has answered: those that waited for that try again.
     void try_again();
-    /// No ticket of what lies beyond the tile will be answered with an earlier cycle.
-    void set_floor(cycle floor) {
-        beyond_ = floor;
+    /// Of tickets of what lies beyond the tile.
+    void set_floors(const Floors& floors) {
+        beyond_ = floors;
         update();
     }
 
@@ -129,7 +139,8 @@ private:
     void answered(cycle now, const Cache* by);
     void update() {
         next = events_.empty() ? ~cycle{0} : events_.top().at;
-        tickets_.set_floor(next == ~cycle{0} ? beyond_ : std::min(beyond_, next + least_));
+        const cycle here = next == ~cycle{0} ? next : next + least_;
+        tickets_.set_floors({std::min(beyond_.any, here), std::min(beyond_.lines, here)});
     }
 
     Scheduler& scheduler_;
@@ -140,7 +151,8 @@ private:
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::uint64_t sequence_ = 0;
     std::uint64_t least_ = ~std::uint64_t{0} >> 1U; // cycles that a cache takes
-    cycle now_ = 0, beyond_ = 0;
+    cycle now_ = 0;
+    Floors beyond_;
 };
 
 } // namespace sim

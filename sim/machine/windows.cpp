@@ -24,7 +24,7 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
 
 namespace {
 
-std::uint64_t shortest_line(const Config& c) {
+std::uint64_t line_from_below(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
     const Ways::Shortest way = Ways::shortest(c);
     const std::uint64_t memory = MemoryLines::shortest_read(c) + way.back;
@@ -36,45 +36,41 @@ std::uint64_t shortest_line(const Config& c) {
     return queued ? std::min(cache, memory) : cache;
 }
 
-/// Until a directory has looked up what a tile asks for; where a bank takes its turn only what follows
-/// counts. Or until caches of its bus have heard of it.
+/// Until a directory has looked up what a tile asks for; where a bank takes its turn, or requests act when
+/// they are there, only what follows counts. Or until caches of its bus have heard of it.
 std::uint64_t shortest_known(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
+    const std::uint64_t there = c.memory.controller == "queued" ? 0 : Ways::shortest(c).there;
     if (c.coherence.snoops())
-        return Ways::shortest(c).there + wide(c.coherence.snoop_cycles);
-    return wide(c.coherence.directory_cycles) +
-           (c.beyond_tiles(last) ? wide(c.cache(last).latency) : Ways::shortest(c).there);
+        return there + wide(c.coherence.snoop_cycles);
+    return wide(c.coherence.directory_cycles) + (c.beyond_tiles(last) ? wide(c.cache(last).latency) : there);
 }
 
 } // namespace
 
 std::uint64_t shortest_answer(const Config& c) {
     if (!c.coherence.kept())
-        return shortest_line(c);
+        return line_from_below(c);
     const std::uint64_t right = shortest_known(c) + (c.coherence.snoops() ? 0 : Ways::shortest(c).there);
-    return std::min(shortest_line(c), right);
+    return std::min(line_from_below(c), right);
 }
 
-namespace {
-
-/// Of a line, from below or from another tile: for the right to write alone hardly anybody waits, and windows
-/// as short as that would take many times as long.
-std::uint64_t shortest_data(const Config& c) {
+std::uint64_t shortest_line(const Config& c) {
     if (!c.coherence.kept())
-        return shortest_line(c);
+        return line_from_below(c);
     const Ways::Shortest way = Ways::shortest(c);
     const std::uint64_t told = shortest_known(c) + (c.coherence.snoops() ? 0 : way.there);
-    return std::min(shortest_line(c), told + wide(c.cache(c.tile_levels() - 1).latency) + way.back);
+    return std::min(line_from_below(c), told + wide(c.cache(c.tile_levels() - 1).latency) + way.back);
 }
 
-} // namespace
-
+// For the right to write alone hardly anybody waits, and windows as short as that would take many times as
+// long.
 std::uint64_t window_cycles(const Config& c) {
     if (c.sim.window != 0)
         return wide(c.sim.window);
     // An operation may follow the last piece of its operand by as many cycles less as it has pieces (rule 1).
     integer pieces = std::max<integer>(1, ISA_WIDTH / c.core.lanes);
-    return wide(std::max<integer>(1, static_cast<integer>(shortest_data(c)) - (pieces - 1)));
+    return wide(std::max<integer>(1, static_cast<integer>(shortest_line(c)) - (pieces - 1)));
 }
 
 std::uint64_t reach_cycles(const Config& c) {

@@ -13,6 +13,8 @@ std::uint64_t to_memory_clocks(const Config& config, std::uint64_t core_cycles);
 /// Core cycles from a tile's request to the answer, at the least: of the cache beyond it, of memory, or of a
 /// directory.
 std::uint64_t shortest_answer(const Config& config);
+/// ... to one with a line, from below or from another tile.
+std::uint64_t shortest_line(const Config& config);
 /// Cycles of a window between meetings of tiles and memory (sim.window, or what it stands for).
 std::uint64_t window_cycles(const Config& config);
 /// No operation asks for a core's resources farther ahead of its thread's time than this.

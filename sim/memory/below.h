@@ -58,6 +58,9 @@ public:
     /// A cache below drops its line of these bytes: whole lines among them that are on their way to be
     /// written go there instead. Returns whether any was dirty.
     virtual bool recall(std::uint64_t address, std::uint64_t bytes) = 0;
+    /// Somebody else reads these bytes: what of them is on its way to be written goes there too, and what
+    /// comes is clean. Returns whether any was dirty.
+    virtual bool clean(std::uint64_t address, std::uint64_t bytes) = 0;
 };
 
 class Below {
@@ -73,6 +76,9 @@ public:
     /// Of a coherent machine: the line is above, and will be written. Ready when nobody else has it; with
     /// `shared` that is not decided yet.
     virtual Answer own(const Access& a) { return {a.at, Cause::memory}; }
+    /// Whether that cache above has asked for the line of this address, or the right to write it, and nothing
+    /// here has acted on that yet: then it stays where others' requests, which come first, would take it.
+    virtual bool is_asked(std::uint64_t /*address*/, const Cache& /*by*/) const { return false; }
 };
 
 /// What leaves a tile: a dirty line to be written, a line to be read, or the one and then the other; or word

@@ -76,6 +76,11 @@ public:
     /// A shared word in the line was written elsewhere: drops the line, writing it back if it is dirty.
     void invalidate(std::uint64_t address, cycle t, std::size_t column);
     Answer own(const Access& a) override;
+    /// ... for accesses in order of time, as serve_booked().
+    Answer own_booked(const Access& a) { return give_right(a, a.at); }
+    /// What the level below has said of a line that was asked for there: whether it may be written here, and
+    /// then above too, where one cache alone has it.
+    void settle_right(std::uint64_t address, std::uint64_t bytes, bool shared);
     /// Nobody below has lines of these bytes but this cache: they may be written here, and above where one
     /// cache alone has them.
     void grant(std::uint64_t address, std::uint64_t bytes);
@@ -131,6 +136,7 @@ public:
     std::uint64_t line_of(std::uint64_t address) const { return address >> line_shift_; }
     Cause cause() const { return cause_; }
     unsigned level() const { return level_; }
+    bool coherent() const { return coherent_; }
     /// From this cycle on no bank is busy.
     cycle quiet() const { return quiet_; }
 
@@ -162,6 +168,7 @@ private:
                      bool forced, bool stays = false);
     Answer later_of(Answer a, Answer b) const;
     Answer ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t line, cycle done);
+    Answer give_right(const Access& a, cycle start);
     void drop_others(const Access& a, CacheArray::Entry entry);
     Answer share_others(const Access& a, CacheArray::Entry entry, Answer answer);
     bool above_hold(std::uint64_t address, const Cache* but) const;

@@ -42,6 +42,7 @@ Answer Cache::ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t 
     Access right{line << line_shift_, std::uint32_t{1} << line_shift_, done, a.column};
     right.forced = a.forced;
     right.by = this;
+    right.asker = number_;
     const Answer answer = below_.own(right);
     if (answer.refused)
         return answer;
@@ -55,20 +56,34 @@ Answer Cache::ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t 
 Answer Cache::own(const Access& a) {
     Calendar& bank = banks_[(a.address >> line_shift_) & bank_mask_];
     const cycle start = bank.find_run(a.at, 1);
+    const Answer answer = give_right(a, start);
+    if (answer.refused)
+        return answer;
+    bank.mark_run(start, 1);
+    quiet_ = std::max(quiet_, start + 1);
+    ++counters_.busy_cycles;
+    return answer;
+}
+
+/// The right to write a line, to the cache above that asks; its bank begins with that at `start`.
+Answer Cache::give_right(const Access& a, cycle start) {
     const std::uint64_t line = a.address >> line_shift_;
     const CacheArray::Entry entry = array_.find(line);
+    if (entry == CacheArray::none) { // it was taken meanwhile: the line has to come again
+        Access again = a;
+        again.exclusive = true;
+        const Answer answer = act(again, false, start);
+        counters_.lost_upgrades += answer.refused ? 0 : 1;
+        return answer;
+    }
     Answer answer{start + latency_, cause_};
-    if (entry != CacheArray::none && array_.shared(entry)) {
+    if (array_.shared(entry)) {
         const Answer right = ask_right(a, entry, line, start + latency_);
         if (right.refused)
             return right;
         answer = later_of(answer, right);
     }
-    if (entry != CacheArray::none)
-        drop_others(a, entry);
-    bank.mark_run(start, 1);
-    quiet_ = std::max(quiet_, start + 1);
-    ++counters_.busy_cycles;
+    drop_others(a, entry);
     answer.shared = !owns(a.address);
     return answer;
 }
@@ -98,6 +113,17 @@ bool Cache::above_hold(std::uint64_t address, const Cache* but) const {
                        [&](const Cache* c) { return c != but && c->holds(address); });
 }
 
+void Cache::settle_right(std::uint64_t address, std::uint64_t bytes, bool shared) {
+    if (!shared)
+        return grant(address, bytes);
+    for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
+        for (Cache* c : above_)
+            c->settle_right(at, std::min(bytes, std::uint64_t{1} << line_shift_), true);
+        if (const CacheArray::Entry entry = array_.find(at >> line_shift_); entry != CacheArray::none)
+            array_.set_shared(entry, true);
+    }
+}
+
 void Cache::grant(std::uint64_t address, std::uint64_t bytes) {
     const std::uint64_t size = std::uint64_t{1} << line_shift_;
     for (std::uint64_t at = address; at < address + bytes; at += size) {
@@ -120,6 +146,9 @@ void Cache::grant(std::uint64_t address, std::uint64_t bytes) {
 bool Cache::lose(std::uint64_t address, std::uint64_t bytes) {
     bool dirty = false;
     for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
+        if (below_.is_asked(at, *this))
+            continue;
+        dirty |= coming_ != nullptr && coming_->recall(at, std::uint64_t{1} << line_shift_);
         for (Cache* c : above_)
             dirty |= c->lose(at, std::min(bytes, std::uint64_t{1} << line_shift_));
         const CacheArray::Entry entry = array_.find(at >> line_shift_);
@@ -138,7 +167,9 @@ bool Cache::lose(std::uint64_t address, std::uint64_t bytes) {
 bool Cache::share(std::uint64_t address, std::uint64_t bytes, std::size_t column) {
     bool dirty = false;
     for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
-        bool changed = false;
+        if (below_.is_asked(at, *this))
+            continue;
+        bool changed = coming_ != nullptr && coming_->clean(at, std::uint64_t{1} << line_shift_);
         for (Cache* c : above_)
             changed |= c->share(at, std::min(bytes, std::uint64_t{1} << line_shift_), column);
         const CacheArray::Entry entry = array_.find(at >> line_shift_);

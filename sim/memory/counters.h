@@ -19,9 +19,9 @@ struct CacheCounters {
     std::uint64_t written_through = 0, written_around = 0;
     std::uint64_t hardware_prefetches = 0, prefetches_useful = 0, prefetches_late = 0, prefetches_useless = 0;
     std::uint64_t compulsory = 0, capacity = 0, conflict = 0, coherence = 0;
-    std::uint64_t upgrades = 0, downgrades = 0;
+    std::uint64_t upgrades = 0, lost_upgrades = 0, downgrades = 0;
 };
-inline constexpr std::array<CounterRow<CacheCounters>, 28> cache_counters = {{
+inline constexpr std::array<CounterRow<CacheCounters>, 29> cache_counters = {{
     {"reads", &CacheCounters::reads, "read accesses"},
     {"writes", &CacheCounters::writes, "write accesses"},
     {"hits", &CacheCounters::hits, "accesses that found their line, on its way or there"},
@@ -57,6 +57,9 @@ inline constexpr std::array<CounterRow<CacheCounters>, 28> cache_counters = {{
     {"coherence", &CacheCounters::coherence, "misses of lines invalidated since they were last used"},
     {"upgrades", &CacheCounters::upgrades,
      "times that the level below was asked for the right to write a line that was here (coherence.plain)"},
+    {"lost_upgrades", &CacheCounters::lost_upgrades,
+     "times that caches above asked for the right to write a line that had left this one meanwhile, and came "
+     "again (reference mode)"},
     {"downgrades", &CacheCounters::downgrades,
      "changed lines that were sent down because others read them (coherence.plain)"},
 }};

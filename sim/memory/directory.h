@@ -23,7 +23,8 @@ public:
     /// Caches by number: an owner, modified or exclusive, or sharers, or nobody.
     struct Line {
         std::uint32_t owner = nobody;
-        cycle since = 0; // when the owner has it
+        cycle since = 0;     // when the owner has it ...
+        bool coming = false; // ... which is not known yet
         std::vector<std::uint32_t> sharers;
 
         bool shared_by(std::uint32_t cache) const {

@@ -29,6 +29,9 @@ public:
     }
     Answer write(const Access& a) override { return below_.write(a); }
     Answer own(const Access& a) override { return below_.own(a); }
+    bool is_asked(std::uint64_t address, const Cache& by) const override {
+        return below_.is_asked(address, by);
+    }
 
     std::uint64_t lines() const { return lines_; }
     /// That were added to them, all together.

@@ -32,13 +32,14 @@ public:
         for (;;) {
             std::size_t held = 0;
             cycle next = ~cycle{0};
-            bool open = false;
+            cycle floor = unknown; // of those that are open
             for (Hold& h : holds_) {
                 if (h.from > t)
                     continue;
                 if (is_ticket(h.until) && !resolve(h)) {
                     ++held;
-                    open = true;
+                    const Floors& floors = tickets_.floors();
+                    floor = std::min(floor, h.what == What::right ? floors.any : floors.lines);
                 } else if (h.until > t) {
                     ++held;
                     next = std::min(next, h.until);
@@ -46,7 +47,7 @@ public:
             }
             if (held < entries_)
                 return t;
-            if (open && next > tickets_.floor())
+            if (floor != unknown && next > floor)
                 return heard_ && next != unknown ? at_most(next) : unknown;
             t = next;
         }

@@ -34,6 +34,12 @@ struct Answered {
     Cause from = Cause::memory;
 };
 
+/// No open ticket will be answered with an earlier cycle; none for a line, which takes longer than the right
+/// to write one.
+struct Floors {
+    cycle any = 0, lines = 0;
+};
+
 class Tickets {
 public:
     /// A new one, unanswered.
@@ -65,7 +71,7 @@ public:
     /// One for the same as `ticket`, but for what is there at `least` at the earliest. Without need if no
     /// open ticket will be answered that early.
     cycle no_earlier(cycle ticket, cycle least, Cause from) {
-        if (least <= floor_)
+        if (least <= floors_.any)
             return ticket;
         cycle bounded = join({least, least, from}, &ticket, 1);
         entries_.back().bounded = true;
@@ -84,9 +90,8 @@ public:
         out = e.time;
         return true;
     }
-    /// No open ticket will be answered with an earlier cycle.
-    cycle floor() const { return floor_; }
-    void set_floor(cycle floor) { floor_ = floor; }
+    const Floors& floors() const { return floors_; }
+    void set_floors(const Floors& floors) { floors_ = floors; }
     std::size_t size() const { return entries_.size(); }
     /// Forgets the oldest answered tickets whose time has come by then: nobody's next operation is earlier.
     void forget(cycle by) {
@@ -140,7 +145,7 @@ private:
     std::deque<Entry> entries_;
     std::deque<cycle> parts_;
     std::uint64_t begin_ = 0, parts_begin_ = 0;
-    cycle floor_ = 0;
+    Floors floors_;
 };
 
 } // namespace sim

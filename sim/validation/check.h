@@ -39,7 +39,7 @@ std::vector<ValidationRow> check_reference();
 std::vector<ValidationRow> check_tlb();
 /// Each of network_pings() in exact cycles, each of network_loads() within 2 %.
 std::vector<ValidationRow> check_network();
-/// Each of coherence_forms(): accesses in exact cycles.
+/// Each of coherence_forms() in both modes: accesses in exact cycles.
 std::vector<ValidationRow> check_coherence();
 /// Each memory preset beside dram_bounds.h: saturated random and sequential reads, idle random reads.
 std::vector<ValidationRow> check_dram();

@@ -73,10 +73,10 @@ cycle fetched_over_bus(const Config& c, integer tile) {
     return static_cast<cycle>(std::max(memory, all_said(c, tile)) + c.network.hop_cycles + lines(c));
 }
 
-void add_snoops(std::vector<CoherenceForm>& out) {
+void add_snoops(const std::string& mode, std::vector<CoherenceForm>& out) {
     for (const integer buses : {1, 2, 3})
         for (const integer snoop_cycles : {4, 90}) { // sooner and later than memory
-            Config c = coherent_machine("bus", 12);
+            Config c = coherent_machine("bus", 12, mode);
             c.coherence.plain = "snoop";
             c.network.buses = buses;
             c.coherence.snoop_cycles = snoop_cycles;
@@ -121,8 +121,13 @@ void add_snoops(std::vector<CoherenceForm>& out) {
 
 } // namespace
 
-Config coherent_machine(const std::string& topology, integer tiles) {
+Config coherent_machine(const std::string& topology, integer tiles, const std::string& mode) {
     Config c = network_machine(topology, tiles);
+    c.sim.mode = mode;
+    if (mode == "reference") {
+        c.memory.controller = "queued";
+        c.sim.quantum = c.sim.window = 0;
+    }
     c.coherence.plain = "directory";
     c.coherence.directory_cycles = 5;
     c.l2.inclusion = "inclusive";
@@ -170,7 +175,7 @@ Report act_in_turn(const Config& config, const std::vector<TimedAccess>& accesse
     return r;
 }
 
-std::vector<CoherenceForm> coherence_forms() {
+std::vector<CoherenceForm> coherence_forms(const std::string& mode) {
     std::vector<CoherenceForm> out;
     const auto add = [&out](const char* name, const std::string& topology, const char* by, const Config& c,
                             const std::vector<TimedAccess>& accesses, const std::vector<cycle>& expected) {
@@ -178,7 +183,7 @@ std::vector<CoherenceForm> coherence_forms() {
         act_in_turn(c, accesses, &out.back().measured);
     };
     for (const std::string topology : {"crossbar", "ring", "mesh"}) {
-        const Config c = coherent_machine(topology, 12);
+        const Config c = coherent_machine(topology, 12, mode);
         // Each reads the word that the other wrote, and writes it.
         std::vector<TimedAccess> accesses = {{1, 0, true}};
         std::vector<cycle> expected;
@@ -264,7 +269,7 @@ std::vector<CoherenceForm> coherence_forms() {
             if (t.tile == 5)
                 out.back().measured.front() = t.finish;
     }
-    add_snoops(out);
+    add_snoops(mode, out);
     return out;
 }
 

@@ -8,8 +8,8 @@
 
 namespace sim {
 
-/// network_machine() with a directory at its memory channel, at tile 0, of 5 cycles.
-Config coherent_machine(const std::string& topology, integer tiles);
+/// network_machine() with a directory at its memory channel, at tile 0, of 5 cycles. `mode`: sim.mode.
+Config coherent_machine(const std::string& topology, integer tiles, const std::string& mode = "fast");
 
 /// One access to a line by a tile.
 struct TimedAccess {
@@ -30,7 +30,7 @@ struct CoherenceForm {
     std::vector<cycle> expected, measured;
 };
 /// Ping-pong of a line between two tiles, a producer with several consumers, false sharing, a write of what
-/// others share.
-std::vector<CoherenceForm> coherence_forms();
+/// others share. In both modes these take as long.
+std::vector<CoherenceForm> coherence_forms(const std::string& mode);
 
 } // namespace sim

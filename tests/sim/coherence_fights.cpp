@@ -1,5 +1,6 @@
 // Tiles that fight for few lines, as chance wants it, on machines of chance: the laws hold, whatever the host
 // does.
+#include "sim/validation/coherence_forms.h"
 #include "tests/sim/coherent.h"
 #include "tests/sim/unchanging.h"
 
@@ -102,10 +103,14 @@ Config fighting_for_entries(std::uint32_t seed) {
     return c;
 }
 
+struct Fought : CoherenceCounters {
+    std::uint64_t lost_within_tiles = 0; // upgrades
+};
+
 /// What so many of these machines count together; the laws say that every copy is known, and that one cache
 /// alone may write a line.
-CoherenceCounters fight(Config (*machine)(std::uint32_t), std::uint32_t seeds) {
-    CoherenceCounters sum;
+template <class Machine> Fought fight(Machine machine, std::uint32_t seeds) {
+    Fought sum;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
         const Config c = machine(seed);
         EXPECT_NO_THROW(check_consistency(c, "fighting")) << seed;
@@ -113,12 +118,14 @@ CoherenceCounters fight(Config (*machine)(std::uint32_t), std::uint32_t seeds) {
         EXPECT_NO_THROW(r = contend(c, seed)) << seed;
         for (const auto& row : coherence_counters)
             sum.*row.count += r.coherence.*row.count;
+        for (unsigned level = 0; level < c.tile_levels(); ++level)
+            sum.lost_within_tiles += r.cache_total(level).lost_upgrades;
     }
     return sum;
 }
 
 TEST(Coherence, TilesThatFightKeepTheLaws) {
-    const CoherenceCounters all = fight(fighting, 300);
+    const Fought all = fight(fighting, 300);
     EXPECT_GT(all.lost_upgrades, 100U);
     EXPECT_GT(all.silent_upgrades, 100U);
     EXPECT_GT(all.invalidations_stale, 100U);
@@ -127,7 +134,7 @@ TEST(Coherence, TilesThatFightKeepTheLaws) {
 }
 
 TEST(Coherence, TilesThatFightForEntriesKeepTheLaws) {
-    const CoherenceCounters all = fight(fighting_for_entries, 300);
+    const Fought all = fight(fighting_for_entries, 300);
     EXPECT_GT(all.recalls_received, 10000U);
     EXPECT_GT(all.recalls_stale, 1000U);
     EXPECT_GT(all.crowded, 100U);
@@ -146,18 +153,89 @@ Config fighting_on_buses(std::uint32_t seed) {
 }
 
 TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
-    const CoherenceCounters all = fight(fighting_on_buses, 200);
+    const Fought all = fight(fighting_on_buses, 200);
     EXPECT_GT(all.lost_upgrades, 50U);
     EXPECT_GT(all.silent_upgrades, 50U);
     EXPECT_GT(all.forwards_dirty, 1000U);
     EXPECT_GT(all.passed_on, 1000U);
 }
 
+// A line that its first reader is still being brought waits for that before it goes on to the second, which
+// is as late in both modes.
+TEST(Coherence, LinesGoOnWhenTheirOwnersHaveThem) {
+    for (const std::string topology : {"crossbar", "bus"}) {
+        const auto read_by_two = [&](const std::string& mode) {
+            Config c = coherent_machine(topology, 12, mode);
+            if (topology == "bus")
+                c.coherence.plain = "snoop";
+            return run_on(
+                c,
+                [](std::byte* base, int worker) {
+                    if (worker == 3 || worker == 8)
+                        load(here, base, 4, stamp{});
+                },
+                12);
+        };
+        const Report fast = read_by_two("fast"), reference = read_by_two("reference");
+        EXPECT_GT(fast.coherence.wait_cycles, 0U) << topology;
+        EXPECT_GT(reference.coherence.wait_cycles, 0U) << topology;
+        EXPECT_EQ(reference.cycles, fast.cycles) << topology;
+        EXPECT_EQ(reference.coherence.forwards_clean, 1U) << topology;
+    }
+}
+
+// Two cores of a tile write a line of a third at once, in order of time: the first one's request leaves the
+// second's line, which that is still asking for, alone.
+TEST(Coherence, WhatACoreAsksForStays) {
+    Config c = simple();
+    c.chip.cores = 3;
+    c.chip.placement = "pack";
+    c.latency[static_cast<std::size_t>(operation::add)] = 4000;
+    const Report r = run_on(
+        in_order_of_time(coherent(c)),
+        [](std::byte* base, int worker) {
+            if (worker == 2) {
+                load(here, base, 4, stamp{});
+                return;
+            }
+            const stamp later = scalar_op(operation::add, stamp{});
+            store(here, base, 4, later, stamp{});
+            if (worker == 1)
+                load(here, base, 4, scalar_op(operation::add, later));
+        },
+        3);
+    EXPECT_EQ(r.l1[0].invalidations, 1U);
+    EXPECT_EQ(r.l1[2].invalidations, 1U);
+    EXPECT_EQ(r.l1[1].invalidations, 0U);
+    EXPECT_EQ(r.l1[1].misses, 1U);
+    EXPECT_EQ(r.l1[1].hits, 1U);
+}
+
+// In order of time a request may find that its line has gone while it was on its way within the tile.
+TEST(Coherence, TilesThatFightInOrderOfTimeKeepTheLaws) {
+    const auto fight_in_order = [](Config (*machine)(std::uint32_t)) {
+        return fight([machine](std::uint32_t seed) { return in_order_of_time(machine(seed)); }, 100);
+    };
+    Fought all = fight_in_order(fighting);
+    EXPECT_GT(all.lost_upgrades, 10U);
+    EXPECT_GT(all.silent_upgrades, 10U);
+    EXPECT_GT(all.forwards_dirty, 300U);
+    EXPECT_GT(all.wait_cycles, 300U);
+    EXPECT_GT(all.lost_within_tiles, 10U);
+    all = fight_in_order(fighting_for_entries);
+    EXPECT_GT(all.recalls_received, 1000U);
+    all = fight_in_order(fighting_on_buses);
+    EXPECT_GT(all.forwards_dirty, 300U);
+    EXPECT_GT(all.passed_on, 300U);
+}
+
 TEST(Coherence, ReportsDoNotDependOnTheHost) {
     for (std::uint32_t seed = 1; seed <= 16; ++seed) {
-        const Config c = seed <= 8    ? fighting(seed)
-                         : seed <= 12 ? fighting_for_entries(seed)
-                                      : fighting_on_buses(seed);
+        Config c = seed <= 8    ? fighting(seed)
+                   : seed <= 12 ? fighting_for_entries(seed)
+                                : fighting_on_buses(seed);
+        if (seed % 2 == 0)
+            c = in_order_of_time(c);
         expect_equal_on_host_threads([&](int threads) { return contend(c, seed, threads); },
                                      fmt::format("seed {}", seed));
         expect_equal_in_any_order(

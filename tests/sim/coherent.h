@@ -19,6 +19,14 @@ inline Config coherent(Config c) {
     return c;
 }
 
+/// The same in the reference mode.
+inline Config in_order_of_time(Config c) {
+    c.sim.mode = "reference";
+    c.sim.quantum = c.sim.window = 0;
+    c.memory.controller = "queued";
+    return c;
+}
+
 struct Step {
     int tile, core, line;
     bool write;

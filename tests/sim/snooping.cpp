@@ -19,6 +19,8 @@ TEST(Coherence, CountsOfCachesThatSnoopEqualTheTableToo) {
         const Report r = act(c, steps);
         expect_equal(counts_of(r), oracle.counts(), fmt::format("seed {}", seed));
         EXPECT_EQ(r.coherence.forwards_stale + r.coherence.invalidations_stale, 0U);
+        expect_equal(counts_of(act(in_order_of_time(c), steps)), oracle.counts(),
+                     fmt::format("seed {}, reference mode", seed));
     }
 }
 

@@ -27,7 +27,7 @@ public:
                               tile_.tickets, tile_.attribution);
             tile_.cache_of(1, core).add_above(l1s_.back());
         }
-        tile_.events->set_floor(~cycle{0} >> 1U); // memory answers at once
+        tile_.events->set_floors({~cycle{0} >> 1U, ~cycle{0} >> 1U}); // memory answers at once
         tile_.events->tell([this](cycle, const Cache*) { ++answers_; });
     }
     std::vector<std::vector<cycle>> run(const std::vector<std::vector<TileOracle::Access>>& programs) {
