@@ -231,7 +231,7 @@ Config random_machine(std::mt19937& random) {
     c.coherence.remote_cycles = pick(0, 5000);
     if (pick(0, 1) == 0)
         add_coherence(c, random);
-    else if (pick(0, 1) == 0)
+    if (pick(0, 1) == 0)
         add_queues(c, random);
     if (pick(0, 1) == 0)
         add_tlbs(c, random);
