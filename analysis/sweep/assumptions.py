@@ -4,8 +4,9 @@
     analysis/sweep/assumptions.py --machine configs/machines/tiny.toml --designs kdtree.share=chip kdtree.share=worker -- --size 64x64 --spp 1
     analysis/sweep/assumptions.py --machine M.toml --designs l2.size_bytes=1MiB l2.size_bytes=2MiB --only memory l2 --csv a.csv
 
-The conclusion is which design takes fewer cycles, if they differ by more than --noise percent: what an irrelevant
-change may move (sim.jitter says how much that is). A row for each change: cycles of the first design over those with
+The conclusion is which design takes fewer cycles, if they differ by more than what an irrelevant change may move. That is
+measured: both designs run --seeds times with sim.jitter, their ratio is the mean, and noise two standard deviations of it;
+or --noise says it in percent. A row for each change: cycles of the first design over those with
 nothing changed; the second design's over the first's; and what became of the conclusion: it stays, is lost (no design
 is better beyond noise any more), appears (where there was none), or flips. Rows are in order of how far the change moves
 the designs apart or together; the first row of --csv is the run with nothing changed; plot.py draws that file. What
@@ -15,6 +16,7 @@ and the simulator's own are left out. What follows -- goes to every run of `razo
 Exit code: 0; 1 if the conclusion flips anywhere; 2 on a mistake.
 """
 import argparse
+import statistics
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -57,17 +59,23 @@ def verdict(before, after):
 
 
 def measure(options):
-    """Rows, the unchanged ratio, and what could not be changed, with the reason."""
+    """Rows, the unchanged ratio, its noise, and what could not be changed, with the reason."""
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
 
         def start(*settings):
             return [pool.submit(simulation.run, options.simulator, options.machine, [design, *settings], options.more,
                                 tempfile.mkdtemp(dir=folder)) for design in options.designs]
 
-        base = [r.result() for r in start()]
-        first, second = (r["cycles"] for r in base)
+        seeds = range(1, options.seeds + 1) if options.noise is None else [0]
+        pairs = [start(f"sim.jitter={s}") if s else start() for s in seeds]
+        simulation.show_progress([run for pair in pairs for run in pair], may_fail=False)
+        pairs = [[run.result() for run in pair] for pair in pairs]
+        base = pairs[0][0]
+        ratios = [b["cycles"] / a["cycles"] for a, b in pairs]
+        first, unchanged = statistics.mean(a["cycles"] for a, _ in pairs), statistics.mean(ratios)
+        noise = 2 * statistics.stdev(ratios) if options.noise is None else options.noise / 100
         pending, refused = [], []
-        for key, value in assumed_numbers(base[0], options.designs):
+        for key, value in assumed_numbers(base, options.designs):
             if options.only and not key.startswith(tuple(options.only)):
                 continue
             for factor in FACTORS:
@@ -87,17 +95,17 @@ def measure(options):
                 refused.append((key, factor, str(mistake).rpartition(": ")[2]))
                 continue
             rows.append({"key": key, "value": value, "changed": new, "first": a / first, "ratio": b / a,
-                         "verdict": verdict(conclusion(second / first, options.noise / 100),
-                                            conclusion(b / a, options.noise / 100))})
-    rows.sort(key=lambda r: -abs(r["ratio"] / (second / first) - 1))
-    return rows, second / first, refused
+                         "verdict": verdict(conclusion(unchanged, noise), conclusion(b / a, noise)),
+                         "noise": noise})
+    rows.sort(key=lambda r: -abs(r["ratio"] / unchanged - 1))
+    return rows, unchanged, noise, refused
 
 
-def show(options, rows, ratio, refused):
+def show(options, rows, ratio, noise, refused):
     first, second = options.designs
     better = {-1: f"{second} is better", 0: "neither is better", 1: f"{first} is better"}
-    print(f"{second} takes {ratio:.3f} of the cycles of {first}: {better[conclusion(ratio, options.noise / 100)]}"
-          f" (noise {options.noise:g} %)")
+    print(f"{second} takes {ratio:.3f} of the cycles of {first}: {better[conclusion(ratio, noise)]}"
+          f" (noise {100 * noise:.3g} %{'' if options.noise is not None else f', of {options.seeds} seeds'})")
     width = max(len(r["key"]) for r in rows) + 1
     print(f"{'assumed':<{width}}{'value':>12}{'changed':>12}{'first':>9}{'ratio':>9}  conclusion")
     for r in rows:
@@ -114,12 +122,15 @@ def parse(arguments):
     parser = simulation.parser("assumptions.py", __doc__)
     parser.add_argument("--designs", required=True, nargs=2, metavar="KEY=VALUE", help="what is compared")
     parser.add_argument("--only", nargs="+", metavar="PREFIX", help="of keys to change, such as memory or l2.latency")
-    parser.add_argument("--noise", type=float, default=1, metavar="PERCENT", help="that means nothing; 1 by default")
+    parser.add_argument("--seeds", type=int, default=10, metavar="N", help="that noise is measured with; 10 by default")
+    parser.add_argument("--noise", type=float, metavar="PERCENT", help="that means nothing, instead of measuring it")
     options = parser.parse_args(arguments)
     for design in options.designs:
         if "=" not in design:
             raise Mistake(f"--designs {design}: give KEY=VALUE")
-    if not options.noise >= 0:
+    if options.seeds < 2:
+        raise Mistake(f"--seeds {options.seeds}: give a number from 2")
+    if options.noise is not None and not options.noise >= 0:
         raise Mistake(f"--noise {options.noise}: give a percentage from 0")
     return simulation.checked(options, more)
 
@@ -127,13 +138,14 @@ def parse(arguments):
 def main():
     try:
         options = parse(sys.argv[1:])
-        rows, ratio, refused = measure(options)
+        rows, ratio, noise, refused = measure(options)
         if not rows:
             raise Mistake("every change was refused: " + refused[0][2])
         if options.csv:
-            unchanged = {"key": "", "value": "", "changed": "", "first": 1.0, "ratio": ratio, "verdict": "unchanged"}
+            unchanged = {"key": "", "value": "", "changed": "", "first": 1.0, "ratio": ratio, "verdict": "unchanged",
+                         "noise": noise}
             simulation.write_csv(options.csv, [unchanged, *rows])
-        show(options, rows, ratio, refused)
+        show(options, rows, ratio, noise, refused)
         return 1 if any(r["verdict"] == "FLIPS" for r in rows) else 0
     except (Mistake, argparse.ArgumentError) as mistake:
         print(f"assumptions.py: {mistake}", file=sys.stderr)

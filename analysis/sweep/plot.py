@@ -7,7 +7,7 @@
 errors: of each file, written with sweep.py --reference, the error of every row beside the host's seconds that it took,
 with what chance leaves open; the reference itself is the ring at no error. Files are named by their names.
 tornado: of a file of assumptions.py, what halving and doubling each assumed number does to the ratio of the two designs,
-the farthest first; the shaded band is what means nothing (--noise, as there).
+the farthest first; the shaded band is what means nothing.
 
 FILE.svg or FILE.png; needs Debian's python3-matplotlib. Equal files give equal bytes. Exit code: 0; 2 on a mistake.
 """
@@ -55,7 +55,7 @@ def read(path, *columns):
 
 
 ERRORS = ("error", "error_chance", "host_seconds")
-RATIOS = ("ratio",)
+RATIOS = ("ratio", "noise")
 SOURCES = {ERRORS: "sweep.py --reference --csv", RATIOS: "assumptions.py --csv"}
 
 
@@ -106,7 +106,8 @@ def draw_tornado(plot, options):
     reach = {key: max(abs(ratio - base[0]) for _, ratio in both) for key, both in bars.items()}
     shown = sorted(bars, key=lambda key: -reach[key])[: options.top]
     figure, axes = plot.subplots(figsize=(7, 1.2 + 0.24 * len(shown)))
-    axes.axvspan(1 - options.noise / 100, 1 + options.noise / 100, color="black", alpha=0.1, linewidth=0)
+    noise = rows[0]["noise"]
+    axes.axvspan(1 - noise, 1 + noise, color="black", alpha=0.1, linewidth=0)
     for place, key in enumerate(shown):
         for doubled, ratio in bars[key]:
             axes.barh(place, ratio - base[0], left=base[0], height=0.7, color="tab:orange" if doubled else "tab:blue",
@@ -133,14 +134,11 @@ def parse(arguments):
     parser.add_argument("files", nargs="+", metavar="FILE.csv")
     parser.add_argument("--output", required=True, metavar="FILE", help="a picture: .svg or .png")
     parser.add_argument("--top", type=int, default=20, metavar="N", help="bars of a tornado; 20 by default")
-    parser.add_argument("--noise", type=float, default=1, metavar="PERCENT", help="that means nothing; 1 by default")
     options = parser.parse_args(arguments)
     if os.path.splitext(options.output)[1] not in (".svg", ".png"):
         raise Mistake(f"--output {options.output}: name a .svg or .png file")
     if options.top < 1:
         raise Mistake(f"--top {options.top}: give a number from 1")
-    if not options.noise >= 0:
-        raise Mistake(f"--noise {options.noise}: give a percentage from 0")
     return options
 
 

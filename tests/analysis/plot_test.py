@@ -23,12 +23,12 @@ reference,1000,20.0,0.0,0.0
 1,1010,12.5,0.01,0.002
 100,990,8.0,-0.01,0.003
 """
-TORNADO = """key,value,changed,first,ratio,verdict
-,,,1.0,1.2,unchanged
-l2.latency,20,10,0.9,1.1,stays
-core.window,8,16,1.0,0.8,FLIPS
-l2.latency,20,40,1.1,1.25,stays
-l1.ways,4,2,1.0,1.21,stays
+TORNADO = """key,value,changed,first,ratio,verdict,noise
+,,,1.0,1.2,unchanged,0.03
+l2.latency,20,10,0.9,1.1,stays,0.03
+core.window,8,16,1.0,0.8,FLIPS,0.03
+l2.latency,20,40,1.1,1.25,stays,0.03
+l1.ways,4,2,1.0,1.21,stays,0.03
 """
 
 
@@ -62,7 +62,7 @@ class Plots(unittest.TestCase):
         self.assertEqual([text.get_text() for text in axes.texts], ["1", "100"])
 
     def test_bars_go_from_the_unchanged_ratio(self):
-        options = types.SimpleNamespace(files=[self.path("t.csv", TORNADO)], top=2, noise=1)
+        options = types.SimpleNamespace(files=[self.path("t.csv", TORNADO)], top=2)
         axes = plot.draw_tornado(plot.drawing(), options).axes[0]
         self.assertEqual([label.get_text() for label in axes.get_yticklabels()], ["core.window", "l2.latency"])
         bars = [(round(b.get_y() + b.get_height() / 2), b.get_x(), b.get_width())
@@ -71,6 +71,9 @@ class Plots(unittest.TestCase):
             self.assertEqual(place, expected[0])
             self.assertAlmostEqual(left, expected[1])
             self.assertAlmostEqual(width, expected[2])
+        band = axes.patches[0].get_extents().transformed(axes.transData.inverted())
+        self.assertAlmostEqual(band.x0, 0.97)
+        self.assertAlmostEqual(band.x1, 1.03)
 
     def test_equal_files_give_equal_bytes(self):
         source = self.path("one.csv", ERRORS)
@@ -94,6 +97,7 @@ class Plots(unittest.TestCase):
                 (["errors", self.path("bad.csv", ERRORS.replace("12.5", "soon"))], "line 3: host_seconds is 'soon'"),
                 (["errors", self.path("alone.csv", ERRORS.replace("reference", "2"))], "no run of the reference mode"),
                 (["tornado", good], "has no column ratio; write it with assumptions.py"),
+                (["tornado", self.path("old.csv", TORNADO.replace("noise", "chance"))], "has no column noise"),
                 (["tornado", self.path("r.csv", TORNADO.replace("unchanged", "stays"))], "no row of what is unchanged"),
                 (["tornado", self.path("v.csv", TORNADO.replace("20,10", "much,10"))], "'much'"),
                 (["stars", good], "invalid choice"),
