@@ -4,7 +4,8 @@
 // which of those above have a line, as by duplicate tags: a write takes it from all but the writer's, a read
 // leaves it shared with them, and what one of them has changed comes down first, one access of that cache
 // later. Of lines whose answer is not known yet, nobody has the right; who asks for it twice waits once.
-// Copies within the tile go when the right is asked for, and those elsewhere when the window has ended. Not
+// Copies within the tile go when the right is asked for (reference mode: when the level below acts on that,
+// which then says who has it), and those elsewhere when the window has ended. Not
 // modelled: ports and banks of what others ask for; that the right takes longer where other caches of the
 // tile have to give the line up.
 #include "sim/memory/cache.h"
