@@ -2,6 +2,7 @@
 #include "sim/config/origin.h"
 #include "sim/config/parameters.h"
 #include "tests/scene/temporary_folder.h"
+#include "tests/sim/kernels.h"
 #include "tests/sim/machines.h"
 
 #include <fstream>
@@ -43,6 +44,29 @@ TEST(Shipped, MachinesSayOfEveryLineHowWellItIsKnown) {
         ++files;
     }
     EXPECT_GT(files, 0);
+}
+
+TEST(Shipped, MachinesRunInBothModes) {
+    for (const auto& entry : std::filesystem::directory_iterator(RAZOR_SOURCE_DIR "/configs/machines"))
+        for (const std::string mode : {"fast", "reference"}) {
+            SCOPED_TRACE(entry.path().filename().string() + ", " + mode);
+            Config c;
+            ASSERT_NO_THROW(c = read_machine(entry.path().string(), {"sim.mode=" + mode}));
+            Report r;
+            ASSERT_NO_THROW(r = run_on(
+                                c,
+                                [](std::byte* base, int worker) {
+                                    for (int i = 0; i < 200; ++i) {
+                                        std::byte* p = base + (i * 7 + worker) % 300 * 64;
+                                        if ((i + worker) % 3 == 0)
+                                            store(here, p, 4, stamp{}, stamp{});
+                                        else
+                                            load(here, p, 4, stamp{});
+                                    }
+                                },
+                                static_cast<int>(std::min<integer>(c.all_threads(), 16))));
+            EXPECT_GT(r.l1_total().misses, 0U);
+        }
 }
 
 TEST(Shipped, WhatIsMissingIsFound) {
