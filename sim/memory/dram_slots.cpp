@@ -25,7 +25,7 @@ Clock back(Clock t, Clock distance) {
 DramSlots::DramSlots(const MemoryConfig& c, const DramTiming& timing, std::uint64_t disorder)
     : t_(timing), ranks_(static_cast<std::uint32_t>(c.ranks)),
       groups_(static_cast<std::uint32_t>(c.bank_groups)),
-      rank_planes_(static_cast<std::uint32_t>(std::countr_zero(ranks_))), disorder_(disorder) {
+      rank_planes_(static_cast<std::uint32_t>(std::countr_zero(ranks_))) {
     row_bus_ = 1;
     column_bus_ = c.command_buses == 1 ? row_bus_ : row_bus_ + 1;
     columns_ = column_bus_ + 1;
@@ -36,16 +36,16 @@ DramSlots::DramSlots(const MemoryConfig& c, const DramTiming& timing, std::uint6
     no_activate_ = beats_ + ranks_;
     no_column_ = no_activate_ + ranks_ * groups_;
     size_ = no_column_ + 2 * ranks_ * groups_;
-    reach_ = 1;
     for (const auto& first : t_.column)
         for (const auto& second : first)
             reach_ = std::max(reach_, *std::max_element(second.begin(), second.end()));
+    lookback_ = disorder + std::max({reach_, t_.tFAW, t_.activate[at(Near::group)]});
     beat_ = std::max(t_.tFAW, 4 * t_.activate[at(Near::rank)]);
     // Three quarters of what 64 clocks can take.
     pressing_activates_ = static_cast<int>(4 * 48 / beat_);
     pressing_columns_ = static_cast<int>(48 / t_.column[0][0][at(Near::rank)]);
     between_refreshes_.resize(ranks_);
-    std::uint64_t words = std::bit_ceil(disorder / 64 + 16);
+    std::uint64_t words = std::bit_ceil(lookback_ / 64 + 16);
     mask_ = words - 1;
     words_.resize(words * size_);
     for (std::uint64_t n = 0; n < words; ++n)

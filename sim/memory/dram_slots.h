@@ -20,7 +20,7 @@ public:
     DramSlots(const MemoryConfig& config, const DramTiming& timing, std::uint64_t disorder);
 
     /// Requests come at `now`, and no more than the disorder earlier, from here on.
-    void set_now(Clock now) { kept_ = std::max(kept_, (now > disorder_ ? now - disorder_ : 0) / 64); }
+    void set_now(Clock now) { kept_ = std::max(kept_, (now > lookback_ ? now - lookback_ : 0) / 64); }
 
     /// The first clock from `from` on at which a command may be issued. `now`: when its request came. Where
     /// much is booked after that, commands keep step with each other, or the gaps between them would go to
@@ -80,9 +80,9 @@ private:
     Bits* word(std::uint64_t number) {
         Bits* w = &words_[(number & mask_) * size_];
         if (w[0] != number) [[unlikely]] {
-            if (w[0] > number)
+            if (number < kept_)
                 calendar_has_passed("memory commands", number * 64, kept_ * 64);
-            if (w[0] >= kept_)
+            if (number - kept_ > mask_)
                 return grown(number);
             renew(w, number);
         }
@@ -124,7 +124,7 @@ private:
     std::uint32_t row_bus_, column_bus_, columns_, writes_, planes_, activates_, beats_, no_activate_,
         no_column_, size_;
     std::uint64_t mask_, kept_ = 0; // the first word that is still needed
-    Clock disorder_;
+    Clock lookback_;                // the disorder, and how far before it a command still looks and marks
     std::vector<Bits> words_;
     struct Interval {
         Clock begin = 0, end = 0;
@@ -133,8 +133,8 @@ private:
     Clock latest_ = 0;                        // the last column command in time
     Burst latest_burst_;
     std::int64_t turnarounds_ = 0, rank_switches_ = 0;
-    Clock reach_; // of a column command's marks
-    Clock beat_;  // from activate to activate of a pressed rank, in quarters of a clock
+    Clock reach_ = 1; // of a column command's marks
+    Clock beat_;      // from activate to activate of a pressed rank, in quarters of a clock
     int pressing_activates_, pressing_columns_;
 };
 

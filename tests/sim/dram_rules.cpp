@@ -1,6 +1,7 @@
 // Every command of random traffic keeps every rule of the data sheet, and the checker that says so notices
 // each rule when it is broken.
 #include "sim/memory/dram_load.h"
+#include "sim/memory/dram_slots.h"
 #include "tests/sim/dram_checker.h"
 #include "tests/sim/dram_traffic.h"
 #include "tests/sim/machines.h"
@@ -164,6 +165,27 @@ TEST(DramRules, EachBrokenRuleIsNoticed) {
         EXPECT_EQ(broken.count(rule.name), 1U) << rule.name << " noticed as " << names(broken);
         EXPECT_EQ(broken_rules(wrong.memory, r.log).size(), 0U);
     }
+}
+
+// A command marks clocks before its own, which time may have left: however far ahead others are booked.
+TEST(DramRules, CommandsMayComeAtOnceWhereOthersAreBookedFarAhead) {
+    for (const MemoryConfig& preset : memory_presets())
+        for (Clock ahead = 0; ahead < 40; ++ahead) {
+            Config c = memory_of(preset.preset);
+            DramTiming timing(c.memory);
+            DramSlots slots(c.memory, timing, 0);
+            const Clock now = 64 * 1000;
+            slots.set_now(now);
+            const Clock later = slots.find_column(now + 64 * ahead + 63, now, Column::read, 0, 0);
+            slots.take_column(later, Column::read, 0, 0);
+            const Clock write = slots.find_column(now, now, Column::write, 0, 0);
+            slots.take_column(write, Column::write, 0, 0);
+            const Clock activate = slots.find_activate(now, now, 0, 0);
+            slots.take_activate(activate, 0, 0);
+            const Clock read = slots.find_column(now, now, Column::read, 0, 0);
+            const Clock apart = timing.column[at(Column::write)][at(Column::read)][at(Near::group)];
+            EXPECT_TRUE(read >= write + apart || read < write) << preset.preset << ", " << ahead;
+        }
 }
 
 // Rules that are no parameters: single commands moved by hand.
