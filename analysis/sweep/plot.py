@@ -7,7 +7,7 @@
 errors: of each file, written with sweep.py --reference, the error of every row beside the host's seconds that it took,
 with what chance leaves open; the reference itself is the ring at no error. Files are named by their names.
 tornado: of a file of assumptions.py, what halving and doubling each assumed number does to the ratio of the two designs,
-the farthest first; the shaded band is what means nothing.
+the farthest first; what is shaded around 1 and around the ratio with nothing changed means nothing.
 
 FILE.svg or FILE.png; needs Debian's python3-matplotlib. Equal files give equal bytes. Exit code: 0; 2 on a mistake.
 """
@@ -107,7 +107,8 @@ def draw_tornado(plot, options):
     shown = sorted(bars, key=lambda key: -reach[key])[: options.top]
     figure, axes = plot.subplots(figsize=(7, 1.2 + 0.24 * len(shown)))
     noise = rows[0]["noise"]
-    axes.axvspan(1 - noise, 1 + noise, color="black", alpha=0.1, linewidth=0)
+    for centre in (1, base[0]):
+        axes.axvspan(centre * (1 - noise), centre * (1 + noise), color="black", alpha=0.1, linewidth=0)
     for place, key in enumerate(shown):
         for doubled, ratio in bars[key]:
             axes.barh(place, ratio - base[0], left=base[0], height=0.7, color="tab:orange" if doubled else "tab:blue",
@@ -117,7 +118,7 @@ def draw_tornado(plot, options):
     axes.set_yticks(range(len(shown)), shown)
     axes.invert_yaxis()
     handles = [plot.Rectangle((0, 0), 1, 1, color=c, alpha=0.8) for c in ("tab:blue", "tab:orange")]
-    axes.legend(handles, ["halved", "doubled"], frameon=False, loc="lower right")
+    axes.legend(handles, ["halved", "doubled"], frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncol=2)
     axes.set_xlabel(f"cycles of the second design over the first's ({len(shown)} of {len(bars)} assumed numbers)")
     return figure
 

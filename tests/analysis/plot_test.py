@@ -71,9 +71,10 @@ class Plots(unittest.TestCase):
             self.assertEqual(place, expected[0])
             self.assertAlmostEqual(left, expected[1])
             self.assertAlmostEqual(width, expected[2])
-        band = axes.patches[0].get_extents().transformed(axes.transData.inverted())
-        self.assertAlmostEqual(band.x0, 0.97)
-        self.assertAlmostEqual(band.x1, 1.03)
+        for patch, centre in zip(axes.patches, (1, 1.2)):
+            band = patch.get_extents().transformed(axes.transData.inverted())
+            self.assertAlmostEqual(band.x0, centre * 0.97)
+            self.assertAlmostEqual(band.x1, centre * 1.03)
 
     def test_equal_files_give_equal_bytes(self):
         source = self.path("one.csv", ERRORS)
