@@ -211,6 +211,34 @@ TEST(Coherence, WhatACoreAsksForStays) {
     EXPECT_EQ(r.l1[1].hits, 1U);
 }
 
+// A line that a core has written and throws out is read by another tile, whose request may find it in the
+// core's L1, on its way to the L2, or there: what is written is brought along once, and from there it is
+// clean.
+TEST(Coherence, WhatIsOnItsWayDownGoesAlong) {
+    Config c = in_order_of_time(coherent(simple()));
+    c.chip.tiles = 2;
+    c.chip.placement = "spread";
+    c.latency[static_cast<std::size_t>(operation::add)] = 4000;
+    c.latency[static_cast<std::size_t>(operation::multiply)] = 1;
+    c.l1.ways = 1;
+    for (int delay = 0; delay < 300; ++delay) {
+        const Report r = run_on(
+            c,
+            [&](std::byte* base, int worker) {
+                std::byte* other = base + c.l1.size_bytes; // of the same set
+                if (worker == 0)
+                    store(here, base, 4, load(here, other, 4, stamp{}), stamp{});
+                stamp clock = scalar_op(operation::add, stamp{});
+                for (int i = worker == 0 ? delay : 150; i > 0; --i)
+                    clock = scalar_op(operation::multiply, clock);
+                load(here, worker == 0 ? other : base, 4, clock);
+            },
+            2);
+        EXPECT_EQ(r.coherence.forwards_dirty, 1U) << delay;
+        EXPECT_EQ(r.memory.writes, 1U) << delay;
+    }
+}
+
 // In order of time a request may find that its line has gone while it was on its way within the tile.
 TEST(Coherence, TilesThatFightInOrderOfTimeKeepTheLaws) {
     const auto fight_in_order = [](Config (*machine)(std::uint32_t)) {
