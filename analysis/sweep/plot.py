@@ -78,9 +78,11 @@ def draw_errors(plot, options):
             axes.annotate(r[key], (r["host_seconds"], 100 * r["error"]), textcoords="offset points", xytext=(4, 4),
                           color=colour)
     axes.axhline(0, color="black", linewidth=0.6)
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter("{x:g}")
+    low, high = axes.get_xlim()
+    if low <= 0 or high > 5 * low:  # within less, a logarithmic axis has hardly a number
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("{x:g}")
     axes.set_xlabel("host seconds (ring: the reference mode)")
     axes.set_ylabel(f"cycles beside the reference, % (by {key})")
     axes.legend(frameon=False)
