@@ -13,6 +13,7 @@ FILE.svg or FILE.png; needs Debian's python3-matplotlib. Equal files give equal 
 """
 import argparse
 import csv
+import math
 import os
 import sys
 
@@ -48,9 +49,12 @@ def read(path, *columns):
     for number, row in enumerate(rows, 2):
         for column in columns:
             try:
-                row[column] = float(row[column])
+                value = float(row[column])
             except (TypeError, ValueError):
-                raise Mistake(f"{path}: line {number}: {column} is {row[column]!r}, no number") from None
+                value = math.nan
+            if not math.isfinite(value):
+                raise Mistake(f"{path}: line {number}: {column} is {row[column]!r}, no number")
+            row[column] = value
     return rows
 
 

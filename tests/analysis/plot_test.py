@@ -96,6 +96,7 @@ class Plots(unittest.TestCase):
                 (["errors", self.path("empty.csv", "")], "no rows"),
                 (["errors", self.path("t.csv", TORNADO)], "has no column error; write it with sweep.py --reference"),
                 (["errors", self.path("bad.csv", ERRORS.replace("12.5", "soon"))], "line 3: host_seconds is 'soon'"),
+                (["errors", self.path("nan.csv", ERRORS.replace("12.5", "nan"))], "line 3: host_seconds is 'nan'"),
                 (["errors", self.path("alone.csv", ERRORS.replace("reference", "2"))], "no run of the reference mode"),
                 (["tornado", good], "has no column ratio; write it with assumptions.py"),
                 (["tornado", self.path("old.csv", TORNADO.replace("noise", "chance"))], "has no column noise"),
