@@ -190,15 +190,19 @@ void Engine::run_tile(Tile& tile) {
 }
 
 void Engine::run_tiles() {
-    if (host_threads_.count() == 1)
+    if (host_threads_.count() == 1) {
         for (Tile* tile : active_)
             run_tile(*tile);
-    else
-        host_threads_.all([this](int number) {
+    } else {
+        busy_threads_.assign(static_cast<std::size_t>(host_threads_.count()), false);
+        for (const Tile* tile : active_)
+            busy_threads_[static_cast<std::size_t>(host_thread(*tile))] = true;
+        host_threads_.these(busy_threads_, [this](int number) {
             for (Tile* tile : active_)
                 if (host_thread(*tile) == number)
                     run_tile(*tile);
         });
+    }
     for (const Tile* tile : active_)
         if (tile->scheduler.failure())
             fail(tile->scheduler.failure());

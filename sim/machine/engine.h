@@ -366,7 +366,8 @@ private:
     std::vector<Tile*> active_; // of these
     std::mt19937 shuffled_;
     std::deque<Hart> harts_;
-    HostThreads host_threads_; // tile t runs on number t % count
+    HostThreads host_threads_;       // tile t runs on number t % count
+    std::vector<bool> busy_threads_; // of these, in the window at hand
     cycle window_end_ = 0;
     std::exception_ptr failure_;
     cycle cycles_ = 0; // of the whole run

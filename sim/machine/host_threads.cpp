@@ -13,12 +13,20 @@ void pause() {
 #endif
 }
 
+/// Windows take some ten microseconds of a chip's tiles, what one thread waits for another is a part of that,
+/// and to sleep and be woken costs five: threads with a core each sleep only where they have nothing to do
+/// for many windows. Those that share cores let each other have them.
+std::chrono::microseconds patience_of(int count) {
+    const unsigned cores = std::thread::hardware_concurrency();
+    return std::chrono::microseconds(cores == 0 || static_cast<unsigned>(count) > cores ? 5 : 100);
+}
+
 } // namespace
 
-HostThreads::HostThreads(int count) {
+HostThreads::HostThreads(int count) : patience_(patience_of(count)) {
     for (int i = 1; i < count; ++i) {
         Other& other = others_.emplace_back();
-        other.thread = std::thread(serve, std::ref(other), i);
+        other.thread = std::thread(serve, std::ref(other), i, patience_);
     }
 }
 
@@ -35,21 +43,31 @@ void HostThreads::ask(Other& other, const std::function<void(int)>* job) {
     other.asked.notify_one();
 }
 
-/// Windows are about a microsecond long: looks for longer than that before it lets the host have the core.
-void HostThreads::wait_until(const std::atomic<std::uint32_t>& count, std::uint32_t reached) {
-    for (int look = 0; look < 500; ++look) {
-        if (count.load(std::memory_order_acquire) == reached)
+void HostThreads::wait_until(const std::atomic<std::uint32_t>& count, std::uint32_t reached,
+                             Patience patience) {
+    using Clock = std::chrono::steady_clock;
+    constexpr int looks = 32; // between two looks at the clock
+    const auto reached_soon = [&] {
+        for (int look = 0; look < looks; ++look) {
+            if (count.load(std::memory_order_acquire) == reached)
+                return true;
+            pause();
+        }
+        return false;
+    };
+    if (reached_soon())
+        return;
+    for (const Clock::time_point end = Clock::now() + patience; Clock::now() < end;)
+        if (reached_soon())
             return;
-        pause();
-    }
     for (std::uint32_t seen = count.load(std::memory_order_acquire); seen != reached;
          seen = count.load(std::memory_order_acquire))
         count.wait(seen, std::memory_order_acquire);
 }
 
-void HostThreads::serve(Other& other, int number) {
+void HostThreads::serve(Other& other, int number, Patience patience) {
     for (std::uint32_t job = 1;; ++job) {
-        wait_until(other.asked, job);
+        wait_until(other.asked, job, patience);
         if (other.job == nullptr)
             return;
         (*other.job)(number);
@@ -58,12 +76,18 @@ void HostThreads::serve(Other& other, int number) {
     }
 }
 
-void HostThreads::all(const std::function<void(int)>& job) {
-    for (Other& other : others_)
-        ask(other, &job);
-    job(0);
-    for (Other& other : others_)
-        wait_until(other.done, other.asked.load(std::memory_order_relaxed));
+void HostThreads::await(const Other& other) const {
+    wait_until(other.done, other.asked.load(std::memory_order_relaxed), patience_);
+}
+
+void HostThreads::these(const std::vector<bool>& wanted, const std::function<void(int)>& job) {
+    for (std::size_t i = 0; i < others_.size(); ++i)
+        if (wanted[i + 1])
+            ask(others_[i], &job);
+    if (wanted[0])
+        job(0);
+    for (const Other& other : others_) // those that were not asked are done
+        await(other);
 }
 
 void HostThreads::one(int i, const std::function<void(int)>& job) {
@@ -73,7 +97,7 @@ void HostThreads::one(int i, const std::function<void(int)>& job) {
     }
     Other& other = others_[static_cast<std::size_t>(i) - 1];
     ask(other, &job);
-    wait_until(other.done, other.asked.load(std::memory_order_relaxed));
+    await(other);
 }
 
 } // namespace sim
