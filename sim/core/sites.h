@@ -4,22 +4,19 @@
 
 #include "isa/simulated/port.h"
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace sim {
 
 class Sites {
 public:
     std::uint32_t number(isa::timing::site where) {
-        auto hash = reinterpret_cast<std::uintptr_t>(where.file) / 8 + where.line * 2654435761U;
-        Known& k = recent_[hash % recent_.size()];
-        if (k.file != where.file || k.line != where.line) [[unlikely]]
-            k = {where.file, where.line, find(where)};
-        return k.number;
+        const Known& k = known_[slot_of(where)];
+        return k.file != nullptr ? k.number : note(where);
     }
 
 private:
@@ -27,12 +24,30 @@ private:
         const char* file = nullptr;
         std::uint32_t line = 0, number = 0;
     };
-    std::uint32_t find(isa::timing::site where) {
-        auto next = static_cast<std::uint32_t>(all_.size());
-        return all_.try_emplace({where.file, where.line}, next).first->second;
+    /// Where the place is in `known_`, or would be.
+    std::size_t slot_of(isa::timing::site where) const {
+        const std::uint64_t hash =
+            (reinterpret_cast<std::uintptr_t>(where.file) + where.line) * 0x9E3779B97F4A7C15U;
+        const std::size_t mask = known_.size() - 1;
+        for (std::size_t i = hash >> 32U & mask;; i = (i + 1) & mask)
+            if ((known_[i].file == where.file && known_[i].line == where.line) || known_[i].file == nullptr)
+                return i;
+    }
+    std::uint32_t note(isa::timing::site where) {
+        if (2 * ++met_ > known_.size()) {
+            const std::vector<Known> before = std::exchange(known_, std::vector<Known>(2 * known_.size()));
+            for (const Known& k : before)
+                if (k.file != nullptr)
+                    known_[slot_of({k.file, k.line})] = k;
+        }
+        const auto next = static_cast<std::uint32_t>(all_.size());
+        const std::uint32_t number = all_.try_emplace({where.file, where.line}, next).first->second;
+        known_[slot_of(where)] = {where.file, where.line, number};
+        return number;
     }
 
-    std::array<Known, 1024> recent_;
+    std::vector<Known> known_ = std::vector<Known>(256); // by pointer; a power of two, half empty at least
+    std::size_t met_ = 0;                                // of these
     std::map<std::pair<std::string, std::uint32_t>, std::uint32_t> all_;
 };
 

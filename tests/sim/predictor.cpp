@@ -1,6 +1,8 @@
 // Predictors: mispredictions counted by hand, and by a plain model of McFarling's tables.
+#include "sim/core/sites.h"
 #include "tests/sim/machines.h"
 
+#include <array>
 #include <map>
 #include <random>
 
@@ -102,6 +104,20 @@ TEST(Predictor, CoresNumberSitesThemselves) {
         },
         2);
     EXPECT_EQ(r.core.mispredicts, 1U);
+}
+
+TEST(Predictor, SitesAreNumberedAsTheyAreMet) {
+    const std::array<std::string, 3> files = {"one", "another", "one"}; // the last is the first, elsewhere
+    Sites sites;
+    std::map<std::pair<std::string, std::uint32_t>, std::uint32_t> expected;
+    std::mt19937 random(1);
+    for (int i = 0; i < 20000; ++i) {
+        const std::string& file = files[random() % files.size()];
+        const auto line = static_cast<std::uint32_t>(random() % 2000);
+        const auto next = static_cast<std::uint32_t>(expected.size());
+        EXPECT_EQ(sites.number({file.c_str(), line}), expected.try_emplace({file, line}, next).first->second);
+    }
+    EXPECT_GT(expected.size(), 3500U);
 }
 
 TEST(Predictor, SizesAreChecked) {
