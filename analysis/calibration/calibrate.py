@@ -191,6 +191,9 @@ def main():
     except (Mistake, counts.Malformed, argparse.ArgumentError) as mistake:
         print(f"calibrate.py: {mistake}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("calibrate.py: stopped", file=sys.stderr)
+        return 130
 
 
 if __name__ == "__main__":

@@ -15,11 +15,9 @@ and the simulator's own are left out. What follows -- goes to every run of `razo
 
 Exit code: 0; 1 if the conclusion flips anywhere; 2 on a mistake.
 """
-import argparse
 import statistics
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
 
 import simulation
 from simulation import Mistake
@@ -60,7 +58,7 @@ def verdict(before, after):
 
 def measure(options):
     """Rows, the unchanged ratio, its noise, and what could not be changed, with the reason."""
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
+    with tempfile.TemporaryDirectory() as folder, simulation.Pool(options.jobs) as pool:
 
         def start(*settings):
             return [pool.submit(simulation.run, options.simulator, options.machine, [design, *settings], options.more,
@@ -136,21 +134,17 @@ def parse(arguments):
 
 
 def main():
-    try:
-        options = parse(sys.argv[1:])
-        rows, ratio, noise, refused = measure(options)
-        if not rows:
-            raise Mistake("every change was refused: " + refused[0][2])
-        if options.csv:
-            unchanged = {"key": "", "value": "", "changed": "", "first": 1.0, "ratio": ratio, "verdict": "unchanged",
-                         "noise": noise}
-            simulation.write_csv(options.csv, [unchanged, *rows])
-        show(options, rows, ratio, noise, refused)
-        return 1 if any(r["verdict"] == "FLIPS" for r in rows) else 0
-    except (Mistake, argparse.ArgumentError) as mistake:
-        print(f"assumptions.py: {mistake}", file=sys.stderr)
-        return 2
+    options = parse(sys.argv[1:])
+    rows, ratio, noise, refused = measure(options)
+    if not rows:
+        raise Mistake("every change was refused: " + refused[0][2])
+    if options.csv:
+        unchanged = {"key": "", "value": "", "changed": "", "first": 1.0, "ratio": ratio, "verdict": "unchanged",
+                     "noise": noise}
+        simulation.write_csv(options.csv, [unchanged, *rows])
+    show(options, rows, ratio, noise, refused)
+    return 1 if any(r["verdict"] == "FLIPS" for r in rows) else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(simulation.main(main))

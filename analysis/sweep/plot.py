@@ -153,24 +153,19 @@ KINDS = {"errors": draw_errors, "tornado": draw_tornado}
 
 
 def main():
+    options = parse(sys.argv[1:])
+    figure = KINDS[options.kind](drawing(), options)
+    begun = options.output + ".part" + os.path.splitext(options.output)[1]
     try:
-        options = parse(sys.argv[1:])
-        figure = KINDS[options.kind](drawing(), options)
-        begun = options.output + ".part" + os.path.splitext(options.output)[1]
-        try:
-            about = {"Date": None} if options.output.endswith(".svg") else {"Software": None}
-            figure.savefig(begun, dpi=150, bbox_inches="tight", metadata=about)
-            os.replace(begun, options.output)
-        except OSError as why:
-            raise Mistake(f"{options.output}: {why.strerror}; give a place that can be written") from None
-        finally:
-            if os.path.exists(begun):
-                os.remove(begun)
-        return 0
-    except (Mistake, argparse.ArgumentError) as mistake:
-        print(f"plot.py: {mistake}", file=sys.stderr)
-        return 2
+        about = {"Date": None} if options.output.endswith(".svg") else {"Software": None}
+        figure.savefig(begun, dpi=150, bbox_inches="tight", metadata=about)
+        os.replace(begun, options.output)
+    except OSError as why:
+        raise Mistake(f"{options.output}: {why.strerror}; give a place that can be written") from None
+    finally:
+        if os.path.exists(begun):
+            os.remove(begun)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(simulation.main(main))

@@ -1,4 +1,4 @@
-"""What the programs of this folder share: runs of the simulator, and mistakes that end in one line."""
+"""What the programs of this folder share: runs of the simulator, and ends of a program in one line."""
 import argparse
 import csv
 import json
@@ -6,11 +6,24 @@ import os
 import shutil
 import subprocess
 import sys
-from concurrent.futures import as_completed
+from concurrent.futures import ThreadPoolExecutor, as_completed
 
 
 class Mistake(Exception):
     """Of the user: one line."""
+
+
+def main(run):
+    """Runs a program and returns its exit code: run()'s (none: 0), 2 after a mistake, 130 after Ctrl-C, with a line."""
+    name = os.path.basename(sys.argv[0])
+    try:
+        return run() or 0
+    except (Mistake, argparse.ArgumentError) as mistake:
+        print(f"{name}: {mistake}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"{name}: stopped", file=sys.stderr)
+        return 130
 
 
 def simulator(given):
@@ -25,14 +38,39 @@ def simulator(given):
     return found or os.path.normpath(here)
 
 
+class Pool(ThreadPoolExecutor):
+    """Runs side by side. What ends the program (a mistake, Ctrl-C) ends those under way, and no further one begins."""
+
+    under_way = set()
+    ends = False  # no run that begins from now on is wanted
+
+    def __exit__(self, kind, *more):
+        if kind is not None:
+            Pool.ends = True
+            self.shutdown(wait=False, cancel_futures=True)
+            for process in list(self.under_way):
+                process.terminate()
+        return super().__exit__(kind, *more)
+
+
 def run(program, machine, settings, more, folder):
     """The JSON report of one run with these settings of the machine; `more` are further options."""
     report = os.path.join(folder, "report.json")
     command = [program, "run", "--quiet", "--machine", machine, *more, *(word for s in settings for word in ("-g", s)),
                "--json", report]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        lines = done.stderr.strip().splitlines() or [f"razor-sim ended with {done.returncode}"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        Pool.under_way.add(process)
+        if Pool.ends:
+            process.terminate()
+        try:
+            errors = process.stderr.read()
+        except BaseException:
+            process.terminate()
+            raise
+        finally:
+            Pool.under_way.discard(process)
+    if process.returncode != 0:
+        lines = errors.strip().splitlines() or [f"razor-sim ended with {process.returncode}"]
         raise Mistake(f"{', '.join(settings) or machine}: {lines[-1]}")
     with open(report, encoding="utf-8") as file:
         return json.load(file)

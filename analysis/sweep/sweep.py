@@ -19,12 +19,10 @@ plot.py draws error and host time of what --reference --csv writes.
 A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (-g settings too). Runs are deterministic;
 --jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
 """
-import argparse
 import re
 import statistics
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
 
 import chance
 import simulation
@@ -185,16 +183,12 @@ def parse(arguments):
 
 
 def sweep(options):
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.jobs) as pool:
+    with tempfile.TemporaryDirectory() as folder, simulation.Pool(options.jobs) as pool:
         values = [REFERENCE] * options.reference + options.values
         seeds = range(1, options.seeds + 1) if options.seeds > 1 else [0]
         runs = {v: [pool.submit(run, options, v, s, tempfile.mkdtemp(dir=folder)) for s in seeds] for v in values}
         simulation.show_progress([r for all_of_row in runs.values() for r in all_of_row], may_fail=False)
-        try:
-            rows = [mean_of([figures(r.result(), v) for r in runs[v]]) for v in values]
-        except Mistake:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        rows = [mean_of([figures(r.result(), v) for r in runs[v]]) for v in values]
     for row in rows:
         row["of_first"] = share(row["cycles"], rows[0]["cycles"])
         if options.reference:
@@ -218,13 +212,5 @@ def sweep(options):
     return 0
 
 
-def main():
-    try:
-        return sweep(parse(sys.argv[1:]))
-    except (Mistake, argparse.ArgumentError) as mistake:
-        print(f"sweep.py: {mistake}", file=sys.stderr)
-        return 2
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(simulation.main(lambda: sweep(parse(sys.argv[1:]))))

@@ -126,4 +126,4 @@ def run(options):
 
 
 if __name__ == "__main__":
-    sys.exit(frames.main(lambda: run(parse(sys.argv[1:]))))
+    sys.exit(simulation.main(lambda: run(parse(sys.argv[1:]))))

@@ -1,5 +1,4 @@
 """One frame, natively and simulated: what both programs of this folder run."""
-import argparse
 import json
 import os
 import shutil
@@ -115,17 +114,3 @@ def write_json(path, value):
         if os.path.exists(temporary):
             os.remove(temporary)
         raise Mistake(f"--json {path}: {failure.strerror}") from failure
-
-
-def main(run):
-    """Runs a program of this folder and returns its exit code: 2 after a mistake, 130 after Ctrl-C, a line of each."""
-    name = os.path.basename(sys.argv[0])
-    try:
-        run()
-    except (Mistake, argparse.ArgumentError) as mistake:
-        print(f"{name}: {mistake}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print(f"{name}: stopped", file=sys.stderr)
-        return 130
-    return 0

@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""stop_test.py FOLDER: what ends a study of analysis/sweep (FOLDER) ends its runs, begins no further one and leaves no file."""
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+FOLDER = sys.argv.pop(1)
+
+# In place of razor-sim: notes that it began, and takes a minute; with l2.ways=3 it fails at once.
+SLOW = """#!/bin/sh
+case "$*" in *l2.ways=3*) echo "razor-sim: three ways" >&2; exit 2;; esac
+echo $$ >> "$(dirname "$0")/begun"
+exec sleep 60
+"""
+
+
+class Stops(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.simulator, self.begun, self.csv = (os.path.join(folder.name, n) for n in ("razor-sim", "begun", "out.csv"))
+        with open(self.simulator, "w", encoding="utf-8") as file:
+            file.write(SLOW)
+        os.chmod(self.simulator, 0o755)
+
+    def start(self, program, *options):
+        return subprocess.Popen([sys.executable, os.path.join(FOLDER, program), "--machine", "any.toml", "--simulator",
+                                 self.simulator, "--csv", self.csv, "--jobs", "2", *options], stderr=subprocess.PIPE,
+                                text=True)
+
+    def numbers(self):
+        if not os.path.exists(self.begun):
+            return []
+        with open(self.begun, encoding="utf-8") as file:
+            return [int(line) for line in file.read().split("\n")[:-1]]
+
+    def check(self, study, code, line):
+        """Ends soon, with this code and line, and its runs with it."""
+        _, errors = study.communicate(timeout=30)
+        self.assertEqual((study.returncode, errors), (code, line + "\n"))
+        self.assertLessEqual(len(self.numbers()), 2)
+        for number in self.numbers():
+            self.assertRaises(ProcessLookupError, os.kill, number, 0)
+        self.assertFalse(os.path.exists(self.csv))
+
+    def stop(self, study, line):
+        until = time.monotonic() + 30
+        while len(self.numbers()) < 2 and time.monotonic() < until:
+            time.sleep(0.02)
+        study.send_signal(signal.SIGINT)
+        self.check(study, 130, line)
+
+    def test_sweep(self):
+        self.stop(self.start("sweep.py", "--key", "l2.ways", "--values", "1", "2", "4", "8"), "sweep.py: stopped")
+
+    def test_assumptions(self):
+        self.stop(self.start("assumptions.py", "--designs", "l2.ways=2", "l2.ways=4"), "assumptions.py: stopped")
+
+    def test_a_mistake_of_one_run(self):
+        study = self.start("sweep.py", "--key", "l2.ways", "--values", "3", "2", "4", "8")
+        self.check(study, 2, "sweep.py: l2.ways=3: razor-sim: three ways")
+
+
+if __name__ == "__main__":
+    unittest.main()
