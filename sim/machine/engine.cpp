@@ -379,7 +379,9 @@ void Engine::run_workers() {
                            [](const Tile& t) { return t.scheduler.unfinished() > 0; });
     };
     while (!failure_ && unfinished())
-        if (!run_window())
+        if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed))
+            fail(std::make_exception_ptr(Stopped()));
+        else if (!run_window())
             fail(std::make_exception_ptr(Deadlock(describe_deadlock())));
     if (failure_) {
         for (Tile& tile : tiles_)

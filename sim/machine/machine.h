@@ -5,6 +5,7 @@
 #include "sim/config/config.h"
 #include "sim/machine/report.h"
 
+#include <atomic>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,12 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// RunOptions::stop was set.
+class Stopped : public std::runtime_error {
+public:
+    Stopped() : std::runtime_error("the run was stopped") {}
+};
+
 /// What else is wanted of a run.
 struct RunOptions {
     std::uint64_t interval = 0; // cycles of an interval of Report::intervals, whole windows; 0: none are kept
@@ -29,6 +36,8 @@ struct RunOptions {
     /// Another than 0: in each window all that the host may do in any order (tiles, what leaves them, who
     /// wakes) is done in one drawn with this seed. No report depends on it.
     std::uint32_t host_order = 0;
+    /// Ends the run at the next window's beginning once it is true.
+    const std::atomic<bool>* stop = nullptr;
 };
 
 class Machine {
@@ -41,13 +50,12 @@ public:
     /// Calls worker(0 .. workers-1), each on a hardware thread of its own (chip.placement), with caches cold
     /// and time at 0. The workers' code is compiled for the target `simulated` and touches memory of `space`
     /// alone. Rethrows what a worker or a page service throws, after all other workers have been unwound;
-    /// throws Deadlock. Checks all laws. One run at a time in a process. A worker begins in phase 0 and kind
-    /// 0.
-    /// With several frames, caches, predictors and open rows stay as the frame before left them: its dirty
-    /// lines that outlive a frame have been written, others were dropped, and memory has become quiet.
-    /// Where a frame goes on in a second part, its dirty lines stay; prefetched lines that nobody has used
-    /// until then count as useless.
-    /// Tiles run on `host_threads` threads of the host, which changes no digit of the report.
+    /// throws Deadlock, or Stopped. Checks all laws. One run at a time in a process. A worker begins in phase
+    /// 0 and kind 0. With several frames, caches, predictors and open rows stay as the frame before left
+    /// them: its dirty lines that outlive a frame have been written, others were dropped, and memory has
+    /// become quiet. Where a frame goes on in a second part, its dirty lines stay; prefetched lines that
+    /// nobody has used until then count as useless. Tiles run on `host_threads` threads of the host, which
+    /// changes no digit of the report.
     Report run(const isa::address_space& space, int workers, const Labels& labels,
                const std::function<void(int worker)>& worker, int host_threads = 1,
                const RunOptions& options = {}) const;

@@ -35,15 +35,12 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Looks at the frame from a host thread of its own: progress on a terminal, and an interrupt ends the
-/// workers early.
+/// Looks at the frame from a host thread of its own: progress on a terminal.
 class Watch {
 public:
-    Watch(razor::Frame& frame, razor::Progress& progress, const std::atomic<bool>& interrupted)
+    Watch(const razor::Frame& frame, razor::Progress& progress)
         : thread_([&](const std::stop_token& stop) {
               while (!stop.stop_requested()) {
-                  if (interrupted.load())
-                      frame.stop();
                   progress.show(frame.progress());
                   std::this_thread::sleep_for(std::chrono::milliseconds(50));
               }
@@ -255,15 +252,11 @@ int RunCommand::run() const {
     razor::Frame frame(built, {.workers = workers, .tree_of_worker = trees});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
+    run_options.stop = &interrupted;
     // A frame ends with the last tile that counts, and its last part begins with the first one.
-    const auto take = [&](int first, int end) {
-        frame.take_tiles(first, end);
-        if (interrupted.load())
-            frame.stop();
-    };
     const auto begin_frame = [&](int n) {
         const bool split = n + 1 == run_options.frames && counted.first_tile > 0;
-        take(0, split ? counted.first_tile : counted.last_tile + 1);
+        frame.take_tiles(0, split ? counted.first_tile : counted.last_tile + 1);
     };
     begin_frame(0);
     run_options.next_frame = [&](int n) {
@@ -273,32 +266,35 @@ int RunCommand::run() const {
     if (counted.first_tile > 0) {
         run_options.next_part = [&] {
             counted.before = frame.statistics().by_kind;
-            take(counted.first_tile, counted.last_tile + 1);
+            frame.take_tiles(counted.first_tile, counted.last_tile + 1);
         };
     }
     Report report;
-    {
-        razor::Progress progress(!quiet_);
-        const Watch watch(frame, progress, interrupted);
-        report = machine.run(
-            frame.memory(), workers, labels,
-            [&](int worker) { frame.render(razor::simulated::kernels, worker); }, host_threads, run_options);
-    }
-    // Edges of 2^level, of the frame's units until here.
-    for (TrafficRow& row : report.traffic)
-        if (row.level)
-            *row.level += std::ilogb(frame.unit());
     std::optional<NativeRun> native;
     try {
-        if (!interrupted.load() && !no_native_)
+        {
+            razor::Progress progress(!quiet_);
+            const Watch watch(frame, progress);
+            report = machine.run(
+                frame.memory(), workers, labels,
+                [&](int worker) { frame.render(razor::simulated::kernels, worker); }, host_threads,
+                run_options);
+        }
+        if (!no_native_)
             native = run_native(built, frame.film(), interrupted, counted.last_tile + 1);
-    } catch (const razor::Cancelled&) {
+    } catch (const Stopped&) {
         // said below
+    } catch (const razor::Cancelled&) {
+        // likewise
     }
     if (interrupted.load()) {
         fmt::print(stderr, "razor-sim: interrupted; nothing written\n");
         return razor::interrupted_exit;
     }
+    // Edges of 2^level, of the frame's units until here.
+    for (TrafficRow& row : report.traffic)
+        if (row.level)
+            *row.level += std::ilogb(frame.unit());
     if (native && !native->equal && !native->unfused)
         throw std::logic_error(fmt::format(
             "the simulated picture differs from that of {}; please report this command", native->isa));

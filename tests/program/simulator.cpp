@@ -2,6 +2,7 @@
 #include "tests/program/simulator.h"
 #include "razor/image/exr.h"
 
+#include <chrono>
 #include <map>
 #include <optional>
 #include <set>
@@ -55,6 +56,24 @@ TEST_F(Simulator, SharesTreesAsAsked) {
     }
     EXPECT_EQ(report("a.json").at("renderer").at("tree_of_worker"),
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
+}
+
+// Threads are in the middle of their screen tiles, which take a minute.
+TEST_F(Simulator, InterruptEndsTheRun) {
+    const std::size_t before = folder_.count();
+    for (const char* more : {"", " --host-threads 2 -g chip.tiles=2 -g sim.mode=reference"}) {
+        const auto start = std::chrono::steady_clock::now();
+        const Outcome result =
+            run("timeout --foreground --preserve-status -s INT -k 100 2 " + quoted_argument(RAZOR_SIMULATOR) +
+                    " run --size 512x512 --spp 4096 -o a.exr --json a.json --machine " + tiny + more,
+                folder_.path());
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        EXPECT_EQ(result.code, 130) << result.err;
+        EXPECT_EQ(result.err, "razor-sim: interrupted; nothing written\n");
+        EXPECT_LT(seconds, 30);
+        EXPECT_EQ(folder_.count(), before);
+    }
 }
 
 // Traffic by kind of ray and by level of what is read. At one fixed level rays meet blocks of no other.
