@@ -13,7 +13,7 @@ the designs apart or together; the first row of --csv is the run with nothing ch
 cannot be halved (1, or what other parameters forbid) is named at the end. Numbers that take no part in time (energies)
 and the simulator's own are left out. What follows -- goes to every run of `razor-sim run`.
 
-Exit code: 0; 1 if the conclusion flips anywhere; 2 on a mistake.
+Exit code: 0; 1 if the conclusion flips anywhere; 2 on a mistake; 130 after Ctrl-C.
 """
 import statistics
 import sys

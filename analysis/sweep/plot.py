@@ -9,7 +9,8 @@ with what chance leaves open; the reference itself is the ring at no error. File
 tornado: of a file of assumptions.py, what halving and doubling each assumed number does to the ratio of the two designs,
 the farthest first; what is shaded around 1 and around the ratio with nothing changed means nothing.
 
-FILE.svg or FILE.png; needs Debian's python3-matplotlib. Equal files give equal bytes. Exit code: 0; 2 on a mistake.
+FILE.svg or FILE.png; needs Debian's python3-matplotlib. Equal files give equal bytes. Exit code: 0; 2 on a mistake; 130 after
+Ctrl-C.
 """
 import argparse
 import csv

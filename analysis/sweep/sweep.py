@@ -17,7 +17,8 @@ beside the cycles (and the error), as half the width of a 95 % interval. Steps n
 plot.py draws error and host time of what --reference --csv writes.
 
 A..B doubles from A to B. What follows -- goes to every run of `razor-sim run` (-g settings too). Runs are deterministic;
---jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake.
+--jobs runs several side by side. Exit code: 0; 1 where --expect does not hold; 2 on a mistake; 130 after
+Ctrl-C.
 """
 import re
 import statistics
