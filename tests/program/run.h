@@ -1,6 +1,7 @@
 // Runs one of our programs and keeps what it said.
 #pragma once
 
+#include "tests/program/quoted_argument.h"
 #include "tests/scene/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -20,14 +21,6 @@ struct Outcome {
 
     std::ptrdiff_t error_lines() const { return std::count(err.begin(), err.end(), '\n'); }
 };
-
-inline std::string quoted_argument(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) {
-        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
-    return result + "'";
-}
 
 /// Runs `command` (shell syntax) in `folder`, its streams in files outside it.
 inline Outcome run(const std::string& command, const std::filesystem::path& folder) {

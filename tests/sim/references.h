@@ -1,6 +1,8 @@
 // Streams of references for caches: synthetic, and recorded.
 #pragma once
 
+#include "tests/program/quoted_argument.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -37,7 +39,7 @@ inline std::vector<Reference> synthetic(std::size_t count) {
 inline std::vector<Reference> read_trace(const std::string& file) {
     std::vector<Reference> out;
     std::map<std::uint64_t, std::uint64_t> pages;
-    FILE* pipe = popen(("gzip -dc " + file).c_str(), "r");
+    FILE* pipe = popen(("gzip -dc " + razor::quoted_argument(file)).c_str(), "r");
     if (pipe == nullptr)
         return out;
     int label = 0;
