@@ -260,7 +260,9 @@ void add_caches(Table& t) {
     t.add("coherence.atomic_cycles", c, &C::atomic_cycles, "cycles", 2, 0, 1000,
           "that a read-modify-write adds to its access of the L2, where it acts");
     t.add("coherence.remote_cycles", c, &C::remote_cycles, "cycles", 0, 0, 100000,
-          "that a write or read-modify-write takes longer where the word is reached from several tiles");
+          "that the line of a word which several tiles reach takes from one to another, before a "
+          "read-modify-write "
+          "there acts, and that a write is seen later there than in its own tile");
 }
 
 void add_tlb(Table& t) {

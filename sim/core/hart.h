@@ -80,6 +80,7 @@ struct Hart {
 
     // --- between before_atomic and after_atomic
     Due acting;
+    cycle asked = 0; // for the word's line
     // --- while it sleeps
     const std::int32_t* waits_for = nullptr;
     cycle next_look = 0;               // at the word, in issue slots taken in advance ...

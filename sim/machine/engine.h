@@ -12,6 +12,7 @@
 #include "sim/machine/machine.h"
 #include "sim/machine/tile.h"
 #include "sim/machine/windows.h"
+#include "sim/machine/word_moves.h"
 #include "sim/memory/page_tables.h"
 
 #include <deque>
@@ -274,7 +275,9 @@ private:
     }
     void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
     void claim(Hart& h, std::uint64_t address, cycle t);
-    void publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip);
+    cycle modify(Hart& h, std::uint64_t address, cycle t, bool chip);
+    cycle move_line(const Hart& h, std::uint64_t address, cycle t, cycle service);
+    void publish(Hart& h, std::uint64_t address, cycle written, cycle done, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);
     void look(Hart& sleeper, cycle end);
     void stop_looking(Hart& sleeper, cycle woken);
@@ -360,6 +363,7 @@ private:
     LineMap lines_;
     Homes homes_;
     Published published_; // words that several tiles reach
+    WordMoves moves_;     // of their lines
     std::unique_ptr<Beyond> beyond_;
     std::deque<Tile> tiles_;
     std::vector<Tile*> order_;  // in which the host takes them

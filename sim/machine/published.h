@@ -15,7 +15,8 @@ class Published {
 public:
     struct Write {
         std::uint64_t word = ~std::uint64_t{0};
-        cycle written = 0, visible = 0;
+        cycle written = 0, visible = 0; // to threads of the writer's tile
+        cycle visible_elsewhere = 0;
         std::uint32_t writer = 0;
     };
 
@@ -55,7 +56,7 @@ private:
     void rebuild(cycle oldest) {
         std::vector<Write> kept;
         for (const Write& w : table_)
-            if (w.word != ~std::uint64_t{0} && w.visible > oldest)
+            if (w.word != ~std::uint64_t{0} && w.visible_elsewhere > oldest)
                 kept.push_back(w);
         std::size_t size = std::max<std::size_t>(1024, std::bit_ceil(4 * (kept.size() + 1)));
         table_.assign(size, Write{});

@@ -48,6 +48,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     count(h, 1, false);
     ++h.counters.atomics;
     h.acting = Due(begins, Cause::synchronise);
+    h.asked = begins;
     if (scheduler.exact() || writes) {
         Away away;
         scheduler.wait_turn(Scheduler::key(begins, h.number));
@@ -75,6 +76,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
         Answered there{ready_at, ready_at, line.from};
         if (is_ticket(ready_at))
             there = await(h, ready_at);
+        h.asked = there.last;
         h.acting = Due(there.last + behind, behind == 0 ? there.from : Cause::synchronise);
         Away away;
         scheduler.wait_turn(Scheduler::key(h.acting.at(), h.number));
@@ -100,7 +102,26 @@ void Engine::check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready) 
         return;
     if (t < w->written)
         ++h.counters.causality_waits;
-    ready.later(Due(w->visible, Cause::synchronise));
+    const bool near = harts_[w->writer].tile == h.tile;
+    ready.later(Due(near ? w->visible : w->visible_elsewhere, Cause::synchronise));
+}
+
+/// When a read-modify-write at `t` is done. What was written before `t` it finds, visible to others or not.
+cycle Engine::modify(Hart& h, std::uint64_t address, cycle t, bool chip) {
+    const cycle service = wide(config_.coherence.atomic_cycles);
+    const Published::Write* w = (chip ? published_ : h.tile->published).find(address);
+    const bool future = w != nullptr && t < w->written;
+    if (future && w->writer != h.number)
+        ++h.counters.causality_waits;
+    if (chip)
+        return move_line(h, address, t, service);
+    return (future ? w->written : t) + service;
+}
+
+/// The line of a word that several tiles write comes to the thread's, for `service` cycles: when that is
+/// done.
+cycle Engine::move_line(const Hart& h, std::uint64_t address, cycle t, cycle service) {
+    return moves_.write({address, h.tile->number, h.asked, t, service}, h.tile->earliest);
 }
 
 /// Copies of the word's line go, but for those in the caches below the L1 that the writer's core uses.
@@ -131,15 +152,19 @@ void Engine::claim(Hart& h, std::uint64_t address, cycle t) {
         exit_of(h).tell(Request::claim, address, t, h.column);
 }
 
-/// The word has been written: those that wait for it wake.
-void Engine::publish(Hart& h, std::uint64_t address, cycle written, cycle visible, bool chip) {
-    (chip ? published_ : h.tile->published).write({address, written, visible, h.number}, h.tile->earliest);
+/// The word has been written at `written`, which is done at `done`: those that wait for it wake.
+void Engine::publish(Hart& h, std::uint64_t address, cycle written, cycle done, bool chip) {
+    const cycle visible = done + wide(config_.coherence.visibility_cycles);
+    const cycle elsewhere = visible + wide(config_.coherence.remote_cycles);
+    (chip ? published_ : h.tile->published)
+        .write({address, written, visible, elsewhere, h.number}, h.tile->earliest);
     const auto* word = reinterpret_cast<const std::int32_t*>(base_ + address);
     auto wake = [&](Tile& tile) {
         std::erase_if(tile.sleepers, [&](Hart* sleeper) {
             if (sleeper->waits_for != word)
                 return false;
-            cycle at = std::max({sleeper->acting.at(), visible, chip ? window_end_ : 0});
+            cycle at = std::max(
+                {sleeper->acting.at(), &tile == h.tile ? visible : elsewhere, chip ? window_end_ : 0});
             sleeper->acting = Due(at, Cause::synchronise);
             tile.scheduler.wake(Scheduler::key(at, sleeper->number));
             return true;
@@ -158,8 +183,6 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
     cycle t = h.acting.at();
     std::uint64_t a = address(p);
     bool chip = homes_.is_chip(a);
-    cycle visibility =
-        wide(config_.coherence.visibility_cycles) + (chip ? wide(config_.coherence.remote_cycles) : 0);
     Due ready;
     stamp r;
     if (kind == isa::timing::atomic::load_acquire) {
@@ -183,16 +206,16 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
             release.asker = h.core->l1.number();
             h.core->words.write(release);
             ready = Due(t, Cause::synchronise);
+            if (chip)
+                move_line(h, a, t, 0); // others wait for it, not the writer
         } else {
-            ready = h.acting;
-            check_visible(h, a, t, ready);
-            cycle longer =
-                wide(config_.coherence.atomic_cycles) + (chip ? wide(config_.coherence.remote_cycles) : 0);
-            ready = Due(ready.at() + longer, ready.why());
+            const cycle done = modify(h, a, t, chip);
+            const bool at_once = done == t + wide(config_.coherence.atomic_cycles);
+            ready = Due(done, at_once ? h.acting.why() : Cause::synchronise);
         }
         claim(h, a, t);
         if (wrote)
-            publish(h, a, t, ready.at() + visibility, chip);
+            publish(h, a, t, ready.at(), chip);
     }
     if (!is_ticket(r.last)) {
         h.complete.later(ready);
