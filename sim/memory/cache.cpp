@@ -107,9 +107,10 @@ void Cache::recall(CacheArray::Entry leaving) {
     const std::uint64_t line = array_.line(leaving);
     if (line == CacheArray::no_line)
         return;
-    bool dirty = false;
+    const std::uint64_t address = line << line_shift_, bytes = std::uint64_t{1} << line_shift_;
+    bool dirty = coming_ != nullptr && coming_->recall(address, bytes); // on its way here, to be written back
     for (Cache* c : above_)
-        dirty |= c->back_invalidate(line << line_shift_, std::uint64_t{1} << line_shift_);
+        dirty |= c->back_invalidate(address, bytes);
     if (dirty)
         array_.set_dirty(leaving, true);
 }

@@ -239,6 +239,38 @@ TEST(Coherence, WhatIsOnItsWayDownGoesAlong) {
     }
 }
 
+// An L1 writes a line back while the L2 drops it for another core's: it leaves the tile once, with what the
+// L1 had changed, and comes back to nobody.
+TEST(Coherence, AWriteBackOnItsWayLeavesWithItsLine) {
+    for (const bool directory : {true, false}) {
+        Config c = simple();
+        c.chip.cores = 2;
+        c.l1.size_bytes = 1024;
+        c.l2.size_bytes = 4096;
+        c.l1.ways = c.l2.ways = 1;
+        c.l2.inclusion = "inclusive";
+        c = in_order_of_time(directory ? coherent(c) : c);
+        for (cycle delay = 0; delay < 40; ++delay) {
+            const Report r = run_on(
+                c,
+                [&](std::byte* base, int worker) {
+                    std::byte* same_in_l1 = base + 1024;
+                    std::byte* same_in_both = base + 4096;
+                    if (worker == 0) {
+                        store(here, base, 4, stamp{}, stamp{});
+                        load(here, same_in_l1, 4, stamp{5000, 5000});
+                    } else {
+                        load(here, same_in_both, 4, stamp{4980 + delay, 4980 + delay});
+                    }
+                },
+                2);
+            EXPECT_EQ(r.memory.writes, 1U) << delay;
+            EXPECT_EQ(r.l2[0].fills, 3U) << delay;
+            EXPECT_EQ(r.l2[0].write_backs, 1U) << delay;
+        }
+    }
+}
+
 // In order of time a request may find that its line has gone while it was on its way within the tile.
 TEST(Coherence, TilesThatFightInOrderOfTimeKeepTheLaws) {
     const auto fight_in_order = [](Config (*machine)(std::uint32_t)) {
