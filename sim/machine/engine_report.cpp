@@ -33,6 +33,7 @@ Interval Engine::sums() const {
 Report Engine::report() const {
     Report r;
     r.config = config_;
+    r.host_threads = host_threads_.count();
     r.labels = labels_;
     r.structures = lines_.structures();
     r.workers = workers_;

@@ -37,7 +37,6 @@ Report Machine::run(const isa::address_space& space, int workers, const Labels& 
     auto engine = std::make_unique<Engine>(config_, space, workers, labels, host_threads, options, worker);
     Running running(*engine);
     Report report = engine->run();
-    report.host_threads = host_threads;
     report.processor_seconds = static_cast<double>(std::clock() - worked) / CLOCKS_PER_SEC;
     report.host_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     check_laws(report);
