@@ -84,7 +84,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                                                  isa::address_space::granule))
                   : std::nullopt),
       lines_(space, line_shift_, tables_ ? tables_->bytes() : 0), homes_(space, config.chip.tiles),
-      moves_(static_cast<cycle>(config.coherence.remote_cycles)),
+      moves_(static_cast<cycle>(config.coherence.remote_cycles),
+             static_cast<cycle>(config.coherence.visibility_cycles)),
       beyond_(Beyond::make(config,
                            [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
                                tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);

@@ -275,7 +275,6 @@ private:
     }
     void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
     void claim(Hart& h, std::uint64_t address, cycle t);
-    cycle modify(Hart& h, std::uint64_t address, cycle t, bool chip);
     cycle move_line(const Hart& h, std::uint64_t address, cycle t, cycle service);
     void publish(Hart& h, std::uint64_t address, cycle written, cycle done, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);

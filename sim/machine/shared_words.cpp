@@ -106,20 +106,7 @@ void Engine::check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready) 
     ready.later(Due(near ? w->visible : w->visible_elsewhere, Cause::synchronise));
 }
 
-/// When a read-modify-write at `t` is done. What was written before `t` it finds, visible to others or not.
-cycle Engine::modify(Hart& h, std::uint64_t address, cycle t, bool chip) {
-    const cycle service = wide(config_.coherence.atomic_cycles);
-    const Published::Write* w = (chip ? published_ : h.tile->published).find(address);
-    const bool future = w != nullptr && t < w->written;
-    if (future && w->writer != h.number)
-        ++h.counters.causality_waits;
-    if (chip)
-        return move_line(h, address, t, service);
-    return (future ? w->written : t) + service;
-}
-
-/// The line of a word that several tiles write comes to the thread's, for `service` cycles: when that is
-/// done.
+/// The line of a word that several tiles write comes to the thread's, which has it for `service` cycles.
 cycle Engine::move_line(const Hart& h, std::uint64_t address, cycle t, cycle service) {
     return moves_.write({address, h.tile->number, h.asked, t, service}, h.tile->earliest);
 }
@@ -209,9 +196,14 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
             if (chip)
                 move_line(h, a, t, 0); // others wait for it, not the writer
         } else {
-            const cycle done = modify(h, a, t, chip);
-            const bool at_once = done == t + wide(config_.coherence.atomic_cycles);
-            ready = Due(done, at_once ? h.acting.why() : Cause::synchronise);
+            const cycle service = wide(config_.coherence.atomic_cycles);
+            Due seen = ready = h.acting;
+            check_visible(h, a, t, seen);
+            if (chip)
+                ready.later(Due(move_line(h, a, t, service), Cause::synchronise));
+            else
+                ready = seen;
+            ready = Due(ready.at() + service, ready.why());
         }
         claim(h, a, t);
         if (wrote)

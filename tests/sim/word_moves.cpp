@@ -37,24 +37,24 @@ cycle look_at(word* w, cycle t) {
 }
 
 TEST(WordMoves, ALineMovesOnceForAllOfATileWhoAskBeforeItLeaves) {
-    WordMoves moves(200);
+    WordMoves moves(200, 10);
     auto write = [&](std::uint32_t tile, cycle t) { return moves.write({64, tile, t, t, 4}, 0); };
-    EXPECT_EQ(write(0, 100), 304U); // from where nobody knows
-    EXPECT_EQ(write(1, 100), 508U); // when tile 0 is done
-    EXPECT_EQ(write(2, 101), 712U);
-    EXPECT_EQ(write(0, 102), 308U); // was still on its way to tile 0
-    EXPECT_EQ(write(1, 103), 512U);
-    EXPECT_EQ(write(0, 304), 312U); // asks when it leaves
-    EXPECT_EQ(write(0, 305), 916U); // has left; after tile 2
-    EXPECT_EQ(write(0, 2000), 2004U);
-    EXPECT_EQ(write(0, 3000), 3004U);
-    EXPECT_EQ(write(1, 5000), 5204U);
-    EXPECT_EQ(moves.write({64, 0, 5000, 5300, 4}, 0), 5304U);  // asked before it left
-    EXPECT_EQ(moves.write({128, 1, 5000, 5000, 4}, 0), 5204U); // another word
+    EXPECT_EQ(write(0, 100), 300U); // from where nobody knows
+    EXPECT_EQ(write(1, 100), 514U); // 4 + 10 cycles after tile 0's begins
+    EXPECT_EQ(write(2, 101), 728U);
+    EXPECT_EQ(write(0, 102), 314U); // was still on its way to tile 0
+    EXPECT_EQ(write(1, 103), 528U);
+    EXPECT_EQ(write(0, 314), 328U); // asks when it leaves
+    EXPECT_EQ(write(0, 315), 942U); // has left; after tile 2
+    EXPECT_EQ(write(0, 2000), 2000U);
+    EXPECT_EQ(write(0, 3000), 3000U);
+    EXPECT_EQ(write(1, 5000), 5200U);
+    EXPECT_EQ(moves.write({64, 0, 5000, 5300, 4}, 0), 5300U);  // asked before it left
+    EXPECT_EQ(moves.write({128, 1, 5000, 5000, 4}, 0), 5200U); // another word
 }
 
 TEST(WordMoves, WhatIsForgottenChangesNothing) {
-    WordMoves all(200), recent(200);
+    WordMoves all(200, 10), recent(200, 10);
     std::mt19937 random(5);
     cycle t = 1000;
     for (int i = 0; i < 5000; ++i) {
@@ -117,7 +117,7 @@ TEST(WordMoves, TilesThatFightForAWordTakeTurns) {
             auto first = done.begin() + tile * 4;
             std::sort(first, first + 4);
             for (int i = 1; i < 4; ++i)
-                EXPECT_EQ(first[i] - first[i - 1], service) << mode << ", tile " << tile;
+                EXPECT_EQ(first[i] - first[i - 1], visibility + service) << mode << ", tile " << tile;
         }
         const cycle last = std::max(done[3], done[7]);
         EXPECT_GT(last, 50000 + move) << mode;
