@@ -256,13 +256,12 @@ void add_caches(Table& t) {
     t.add("coherence.snoop_cycles", c, &C::snoop_cycles, "cycles", 6, 1, 10000,
           "from a request on a bus until all caches there have said what they have of its line");
     t.add("coherence.visibility_cycles", c, &C::visibility_cycles, "cycles", 10, 0, 100000,
-          "from a write of a shared word until others see it");
+          "from a write of a shared word until others of its tile see it");
     t.add("coherence.atomic_cycles", c, &C::atomic_cycles, "cycles", 2, 0, 1000,
           "that a read-modify-write adds to its access of the L2, where it acts");
     t.add("coherence.remote_cycles", c, &C::remote_cycles, "cycles", 0, 0, 100000,
           "that the line of a word which several tiles reach takes from one to another, before a "
-          "read-modify-write "
-          "there acts, and that a write is seen later there than in its own tile");
+          "read-modify-write acts there; and that a write is seen later there than in its own tile");
 }
 
 void add_tlb(Table& t) {
