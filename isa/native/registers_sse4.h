@@ -108,13 +108,16 @@ inline F load(const float* p) { return _mm_loadu_ps(p); }
 inline I load(const std::int32_t* p) { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p)); }
 inline void store(float* p, F a) { _mm_storeu_ps(p, a); }
 inline void store(std::int32_t* p, I a) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), a); }
-// Masked-off lanes read a zero of our own instead: no branch, and no access to what may not be there.
+inline F join(float a, float b, float c, float d) { return _mm_setr_ps(a, b, c, d); }
+inline I join(std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) { return _mm_setr_epi32(a, b, c, d); }
+// Masked-off lanes read a zero of our own instead: no branch, and no access to what may not be there. They are joined
+// in registers: g++ would put an array of them together 64 bits at a time, each half read back from where it was
+// stored.
 template <class T, class Index> inline auto load_lanes(const T* p, Index index, M m) {
     static constexpr T zero = 0;
     std::uint32_t b = bits(m);
-    alignas(16) T v[lanes];
-    unroll<lanes>([&](int i) { v[i] = *((b >> i & 1U) != 0 ? p + index(i) : &zero); });
-    return load(v);
+    auto lane = [&](int i) { return *((b >> i & 1U) != 0 ? p + index(i) : &zero); };
+    return join(lane(0), lane(1), lane(2), lane(3));
 }
 inline F load(const float* p, M m) {
     return load_lanes(
