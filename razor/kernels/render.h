@@ -117,12 +117,19 @@ inline namespace resolve_kernel {
     vvec normal = normalise(sums.normal, {zero, zero, zero});
     vvec beauty = sums.beauty * share;
     vvec albedo = sums.albedo * share;
-    vfloat planes[film_planes] = {beauty.x, beauty.y, beauty.z, normal.x, normal.y,
-                                  normal.z, depth,    albedo.x, albedo.y, albedo.z};
-    for (const vfloat& value : planes) {
+    const auto put = [&](const vfloat& value) {
         scatter(film, pixel, value, m);
         film = film + plane;
-    }
+    };
+    const auto put_vector = [&](const vvec& value) {
+        put(value.x);
+        put(value.y);
+        put(value.z);
+    };
+    put_vector(beauty);
+    put_vector(normal);
+    put(depth);
+    put_vector(albedo);
 }
 
 } // namespace resolve_kernel
