@@ -2,11 +2,11 @@
 """What a simulated core counts beside a real build of the same kernels: instructions and data references, by kernel.
 
     analysis/calibration/calibrate.py sse4 --machine configs/machines/xeon-x5355-2s.toml -o sse4.json
-    analysis/calibration/calibrate.py avx2 --machine configs/machines/zen4-2c-avx2.toml --registers 4 -- --size 48x48 --spp 1
+    analysis/calibration/calibrate.py avx2 --machine configs/machines/zen4-2c-avx2.toml --no-fit -- --size 48x48 --spp 4
 
 Renders a frame with the target's kernels under valgrind (callgrind: cachegrind that knows who called whom) and the same
-frame on one worker of the machine with each of --registers, and fits core.vector_registers and core.scalar_overhead to
-all kernels alike. What follows -- is the frame: a scene and options as of `razor render`; the built-in scene at 64x64 with
+frame on one worker of the machine with each of --registers, and fits core.vector_registers, core.scalar_moves and
+core.vector_moves to all kernels alike; or (--no-fit) on the machine as it is. What follows -- is the frame: a scene and options as of `razor render`; the built-in scene at 64x64 with
 one sample without. -o writes what remains between both for a machine file's `calibration`.
 
 valgrind counts a gather and the memory operand of a fused multiplication of avx2 as eight references, so that references
@@ -24,10 +24,10 @@ import fit
 
 BARS = {"instructions": 0.20, "references": 0.25}
 FRAME = ["--size", "64x64", "--spp", "1"]
-FITTED = ("core.vector_registers", "core.scalar_overhead")
+FITTED = ("core.vector_registers", "core.scalar_moves", "core.vector_moves")
 # What decides what is counted, beside these (a key, or a section): a machine that differs in any is not the one that was
 # calibrated.
-DECISIVE = ("core.lanes", "core.gather", "core.address_folding", "core.skip_idle", "lanes", "instructions")
+DECISIVE = ("core.lanes", "core.broadcasts", "core.memory_operands", "core.scalar_overhead", "core.gather", "core.address_folding", "core.skip_idle", "lanes", "instructions")
 
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -98,20 +98,45 @@ def settings_of(report, name):
     return {f"{name}.{key}": value for key, value in report["machine"][name].items()}
 
 
+def complete(counted, simulated):
+    missing = [k for k in counted if not simulated.get(k, {}).get("instructions")]
+    if missing:
+        raise Mistake(f"the simulated frame has no phase {missing[0]}; build both programs anew")
+    return simulated
+
+
+def as_it_is(options, folder, counted, figures):
+    """A report of the machine's own settings, ratios, these settings of FITTED, and the error."""
+    report = simulated_report(options, folder, [])
+    simulated = complete(counted, simulated_counts(report))
+    none = {k: 0 for k in counted}
+    error = fit.error(fit.ratios(counted, simulated, (none, none), (0, 0), figures))
+    return (report, fit.ratios(counted, simulated, (none, none), (0, 0), list(BARS)),
+            [setting(report, key) for key in FITTED], error)
+
+
+def fitted(options, folder, counted, figures):
+    """The same with those of FITTED that have the least error; the report is of one without moves."""
+    def run(*values):
+        return simulated_report(options, folder, [f"{key}={value}" for key, value in zip(FITTED, values)])
+
+    least = options.registers[0]
+    reports = {r: run(r, 0, 0) for r in options.registers}
+    simulated = {r: simulated_counts(report) for r, report in reports.items()}
+    slopes = []
+    for one in ((1, 0), (0, 1)):
+        more = complete(counted, simulated_counts(run(least, *one)))
+        slopes.append({k: more[k]["instructions"] - simulated[least][k]["instructions"] for k in counted})
+    found, error = fit.fit(counted, simulated, slopes, figures)
+    ratios = fit.ratios(counted, simulated[found[0]], slopes, found[1:], list(BARS))
+    return reports[found[0]], ratios, found, error
+
+
 def calibrate(options, folder):
     """What is to be written."""
     counted, said = native_counts(options, folder)
     figures = ["instructions"] if options.target == "avx2" else ["instructions", "references"]
-    least = options.registers[0]
-    reports = {r: simulated_report(options, folder, [f"{FITTED[0]}={r}", f"{FITTED[1]}=0"]) for r in options.registers}
-    simulated = {r: simulated_counts(report) for r, report in reports.items()}
-    with_one = simulated_counts(simulated_report(options, folder, [f"{FITTED[0]}={least}", f"{FITTED[1]}=1"]))
-    missing = [k for k in counted if not with_one.get(k, {}).get("instructions")]
-    if missing:
-        raise Mistake(f"the simulated frame has no phase {missing[0]}; build both programs anew")
-    slope = {k: with_one[k]["instructions"] - simulated[least][k]["instructions"] for k in counted}
-    best, overhead, remains = fit.fit(counted, simulated, slope, figures)
-    everything = fit.ratios(counted, simulated[best], slope, overhead, list(BARS))
+    report, everything, found, remains = (fitted if options.fit else as_it_is)(options, folder, counted, figures)
     whole = sum(c["instructions"] for c in counted.values())
     kernels = []
     for kernel, ratio in everything.items():
@@ -120,8 +145,8 @@ def calibrate(options, folder):
             row[figure] = {"counted": counted[kernel][figure], "ratio": round(ratio[figure], 3),
                            "within": abs(ratio[figure] - 1) <= bar, "fitted": figure in figures}
         kernels.append(row)
-    settings = {key: value for name in DECISIVE for key, value in settings_of(reports[best], name).items()}
-    settings.update(zip(FITTED, (best, overhead)))
+    settings = {key: value for name in DECISIVE for key, value in settings_of(report, name).items()}
+    settings.update(zip(FITTED, found))
     return {"target": options.target, "settings": settings, "error": round(remains, 4), "frame": " ".join(options.frame),
             "build": said.splitlines()[-1] if said else "", "made_by": options.command, "kernels": kernels}
 
@@ -157,6 +182,7 @@ def parse(arguments):
     parser.add_argument("--machine", required=True, metavar="FILE")
     parser.add_argument("-g", action="append", default=[], metavar="KEY=VALUE", help="overrides a setting of the machine")
     parser.add_argument("--registers", nargs="+", type=int, default=[1, 2, 3, 4, 5, 6, 8], metavar="N", help="to try")
+    parser.add_argument("--no-fit", dest="fit", action="store_false", help="take the machine's own settings: for frames held out")
     parser.add_argument("-o", "--output", metavar="FILE.json", help="write what remains, for a machine's `calibration`")
     parser.add_argument("--profile", metavar="FILE", help="callgrind's of the same frame, instead of counting anew")
     parser.add_argument("--valgrind", default="valgrind", metavar="PROGRAM")

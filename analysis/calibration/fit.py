@@ -1,20 +1,24 @@
-"""Which core.vector_registers and core.scalar_overhead bring the simulated core's counts nearest to a native build's.
+"""Which core.vector_registers, core.scalar_moves and core.vector_moves bring the simulated core's counts nearest to a
+native build's.
 
 Counts: {kernel: {"instructions": n, "references": n}}. The error of a kernel's figure is the logarithm of simulated over
-counted; all kernels count alike, however large, as a machine is asked about each. Overhead is charged with every load and
-branch, so that a kernel's instructions are a + b overhead exactly, and references do not change; registers are tried out.
+counted; all kernels count alike, however large, as a machine is asked about each. Moves are charged with every scalar
+computation, and with every instruction of a vector computation, so that a kernel's instructions are a + b scalar + c vector
+exactly, and references do not change; registers are tried out.
 """
 import math
 
-OVERHEADS = [n / 20 for n in range(801)]  # 0 to 40
+SCALAR = [n / 20 for n in range(161)]  # 0 to 8
+VECTOR = [n / 50 for n in range(101)]  # 0 to 2
 
 
-def ratios(counted, simulated, slope, overhead, figures):
-    """Simulated over counted: {kernel: {figure: ratio}}. `slope`: {kernel: instructions an overhead of 1 adds}."""
+def ratios(counted, simulated, slopes, moves, figures):
+    """Simulated over counted: {kernel: {figure: ratio}}. `slopes`, `moves`: scalar and vector; of the first
+    {kernel: instructions that a move adds}."""
     out = {}
     for kernel, real in counted.items():
-        model = {"instructions": simulated[kernel]["instructions"] + overhead * slope[kernel],
-                 "references": simulated[kernel]["references"]}
+        added = sum(slope[kernel] * move for slope, move in zip(slopes, moves))
+        model = {"instructions": simulated[kernel]["instructions"] + added, "references": simulated[kernel]["references"]}
         out[kernel] = {f: model[f] / real[f] for f in figures}
     return out
 
@@ -25,10 +29,10 @@ def error(all_ratios):
     return math.sqrt(sum(squares) / len(squares))
 
 
-def fit(counted, simulated, slope, figures):
-    """(registers, overhead, error) with the least error. `simulated`: {registers: counts without overhead}. Of equal
-    errors the fewest registers and the least overhead."""
-    tried = ((error(ratios(counted, counts, slope, overhead, figures)), registers, overhead)
-             for registers, counts in simulated.items() for overhead in OVERHEADS)
-    least, registers, overhead = min(tried)
-    return registers, overhead, least
+def fit(counted, simulated, slopes, figures):
+    """((registers, scalar, vector), error) with the least error. `simulated`: {registers: counts without moves}. Of equal
+    errors the fewest registers and the least moves."""
+    tried = ((error(ratios(counted, counts, slopes, (scalar, vector), figures)), registers, scalar, vector)
+             for registers, counts in simulated.items() for scalar in SCALAR for vector in VECTOR)
+    least, *found = min(tried)
+    return tuple(found), least

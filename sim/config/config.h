@@ -21,13 +21,13 @@ struct CoreConfig {
     integer issue_width = 0, lanes = 0, window = 0;
     std::string pairing, shared_classes;
     integer shared_cores = 0;
-    integer vector_registers = 0, spill_slots = 0;
-    double scalar_overhead = 0;
+    integer vector_registers = 0, spill_slots = 0, memory_operands = 0;
+    double scalar_overhead = 0, scalar_moves = 0, vector_moves = 0;
     std::string predictor;
     integer predictor_history = 0, predictor_entries = 0, mispredict_cycles = 0;
     std::string switch_policy;
     integer switch_cycles = 0;
-    std::string gather, skip_idle, address_folding;
+    std::string broadcasts, gather, skip_idle, address_folding;
     integer store_buffer = 0;
     integer spin_period = 0;
 };
@@ -35,7 +35,7 @@ struct CoreConfig {
 /// Memory operations that go lane by lane, and what that takes beside their loads and stores.
 struct LanesConfig {
     std::string masked, scatter, shuffle, idle;
-    integer piece_instructions = 0, piece_references = 0;
+    integer piece_instructions = 0, piece_references = 0, gather_instructions = 0;
     integer load_instructions = 0, load_references = 0;
     integer store_instructions = 0, store_references = 0;
 };

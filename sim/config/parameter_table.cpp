@@ -84,10 +84,21 @@ void add_core(Table& t) {
           "operation i issues no earlier than operation i - window; 1: source order");
     t.add("core.vector_registers", s, &C::vector_registers, "values", 0, 0, 512,
           "vector values of full logical width that a thread's registers hold; 0: unlimited");
+    t.add("core.broadcasts", s, &C::broadcasts, {"value", "register"},
+          "what a value with the same scalar in all lanes takes of the registers: as much as any value; "
+          "register: one machine register, and one store or load where it is spilled");
+    t.add("core.memory_operands", s, &C::memory_operands, "operands", 0, 0, 3,
+          "of an operation, that may come from the stack with it: they take no load instruction");
     t.add("core.spill_slots", s, &C::spill_slots, "values", 32, 1, 4096,
           "stack slots that spilled values share");
     t.add("core.scalar_overhead", s, &C::scalar_overhead, "instructions", 0, 0, 100,
           "integer and call overhead charged with every load and branch");
+    t.add("core.scalar_moves", s, &C::scalar_moves, "instructions", 0, 0, 16,
+          "charged with every scalar computation: moves of scalars between registers, to the stack and back");
+    t.add("core.vector_moves", s, &C::vector_moves, "instructions", 0, 0, 16,
+          "charged with every machine instruction of a vector computation: copies of registers that "
+          "two-operand forms "
+          "overwrite, constants");
     t.add("core.predictor", s, &C::predictor,
           {"counters", "bimodal", "gshare", "taken", "not_taken", "none", "perfect"},
           "counters: two bits a branch site (line of source) and history, no two shared; bimodal: two bits a "
@@ -134,13 +145,16 @@ void add_lanes(Table& t) {
     t.add("lanes.shuffle", s, &C::shuffle, {"off", "on"},
           "on: permutations and compressions go lane by lane through the thread's stack, as gathers of all "
           "lanes");
-    t.add("lanes.idle", s, &C::idle, {"skip", "load"},
-          "skip: lane by lane, active lanes alone are loaded; load: idle ones load a zero from the stack, "
-          "which takes no branch");
+    t.add(
+        "lanes.idle", s, &C::idle, {"skip", "test"},
+        "skip: lane by lane, idle lanes take nothing; test: each takes what a lane that is loaded by itself "
+        "does, but the load");
     t.add("lanes.piece_instructions", s, &C::piece_instructions, "instructions", 0, 0, 64,
           "of a sub-vector that goes lane by lane, beside what its lanes take");
     t.add("lanes.piece_references", s, &C::piece_references, "references", 0, 0, 64,
           "of these, loads and stores of the thread's stack");
+    t.add("lanes.gather_instructions", s, &C::gather_instructions, "instructions", 0, 0, 64,
+          "of a sub-vector that is gathered by one instruction (core.gather = line), beside that");
     t.add("lanes.load_instructions", s, &C::load_instructions, "instructions", 0, 0, 64,
           "of a lane that is loaded by itself, beside the load");
     t.add("lanes.load_references", s, &C::load_references, "references", 0, 0, 64,

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "sim/core/calendar.h"
+#include "sim/core/machine_registers.h"
 #include "sim/core/registers.h"
 #include "sim/core/stalls.h"
 #include "sim/core/store_buffer.h"
 #include "sim/machine/report.h"
 #include "sim/memory/prefetcher.h"
 
+#include <optional>
 #include <vector>
 
 namespace sim {
@@ -45,6 +47,8 @@ struct Hart {
     Stack marked{};             // ... and the sum of all columns' stacks when the one before it ended
     cycle finish = 0;           // when the worker's last result was there
     RegisterFile registers;
+    std::optional<MachineRegisters> machine_registers; // instead, where broadcast values take one
+    std::uint32_t memory_operands = 0;                 // that the operation at hand may still have
     std::uint64_t spill_base = 0;
     StoreBuffer store_buffer;
     /// Addresses that were computed because an instruction used them otherwise (core.address_folding).

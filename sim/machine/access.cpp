@@ -214,24 +214,38 @@ void Engine::stored(Hart& h, const Data& data) {
     h.storing.insert(h.storing.end(), data.tickets.begin(), data.tickets.begin() + data.open);
 }
 
-/// Rule 3: a register that was not kept comes back through the L1, stored first if it never was.
+/// Rule 3: a register that was not kept comes back through the L1, stored first if it never was. An operand
+/// that the operation at hand takes from memory is loaded without an instruction, issue slot or port: by the
+/// L1's ports alone.
 void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span) {
-    std::uint64_t place = h.spill_base + value % wide(config_.core.spill_slots) * (width * 4);
+    const bool broadcast = by_register_ && MachineRegisters::is_broadcast(value);
+    const std::uint32_t pieces = broadcast ? 1 : pieces_;
+    const std::uint32_t number = by_register_ ? MachineRegisters::number(value) : value;
+    const std::uint64_t lanes = broadcast ? ~std::uint64_t{0} >> (64 - piece_lanes_) : all_lanes;
+    const std::uint64_t place = h.spill_base + number % wide(config_.core.spill_slots) * (width * 4);
+    const std::uint64_t last = place + pieces * piece_lanes_ * 4 - 1;
     Due now = begin(h);
     h.site = {};
     if (unstored) {
         ++h.counters.spill_stores;
-        Issued at = issue(h, vector_kind(store_kind), pieces_, now);
+        Issued at = issue(h, vector_kind(store_kind), pieces, now);
         Data data;
-        write_lanes(h, place, all_lanes, translated(h, place, place + width * 4 - 1, at.first), data);
+        write_lanes(h, place, lanes, translated(h, place, last, at.first), data);
         if (data.held == Cause::stores) [[unlikely]]
             h.bound.later(Due(data.granted, data.held));
         stored(h, data);
     }
     ++h.counters.spill_loads;
-    Issued at = issue(h, vector_kind(load_kind), pieces_, now);
+    cycle from;
+    if (h.memory_operands != 0) {
+        --h.memory_operands;
+        ++h.counters.memory_operands;
+        from = come_to_issue(h, now);
+    } else {
+        from = issue(h, vector_kind(load_kind), pieces, now).first;
+    }
     Data data;
-    read_lanes(h, place, all_lanes, translated(h, place, place + width * 4 - 1, at.first), data);
+    read_lanes(h, place, lanes, translated(h, place, last, from), data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else
@@ -239,7 +253,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
 }
 
 stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector) {
-    charge_overhead(h, begin(h));
+    charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
     Issued at = issue(h, load_kind, ready);
     Data data;
@@ -253,11 +267,11 @@ stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool 
     finish_issue(h, at, data.granted);
     count(h, 1, vector);
     ++h.counters.loads;
-    return loaded(h, data, vector);
+    return loaded(h, data, vector, vector);
 }
 
 stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready) {
-    charge_overhead(h, begin(h));
+    charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
     if (masked && masked_by_lane_) [[unlikely]]
         return load_indexed(h, p, in_order.data(), lanes, ready);
@@ -279,7 +293,7 @@ stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, bool mask
 }
 
 stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready) {
-    charge_overhead(h, begin(h));
+    charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
     ++h.counters.gathers;
     return load_indexed(h, p, index, lanes, ready);
@@ -287,8 +301,7 @@ stamp Engine::gather(Hart& h, const void* p, const std::int32_t* index, std::uin
 
 stamp Engine::load_indexed(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes,
                            Due ready) {
-    if (lane_gather_)
-        assemble_load(h, lanes, ready);
+    assemble_load(h, lanes, ready);
     std::uint32_t instructions = indexed_instructions(lanes, lane_gather_);
     Issued at = issue(h, vector_kind(load_kind), instructions, ready);
     Data data;

@@ -80,10 +80,14 @@ constexpr std::size_t extract_kind = vector_kind(static_cast<std::size_t>(operat
 
 inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector) {
     settle(h, ready);
-    if (kind == vector_kind(static_cast<std::size_t>(operation::broadcast)))
+    h.memory_operands = 0;
+    const bool broadcast = kind == vector_kind(static_cast<std::size_t>(operation::broadcast));
+    if (broadcast)
         instructions = 1; // all registers of the value are the same one
     const bool one_lane = !vector && kind == extract_kind;
-    Issued at = issue_all(h, kind, one_lane ? instructions : instructions * takes_[kind], ready);
+    const std::uint32_t taken = one_lane ? instructions : instructions * takes_[kind];
+    charge_overhead(h, vector_moves_ * taken, begin(h));
+    Issued at = issue_all(h, kind, taken, ready);
     finish_issue(h, at, 0);
     count(h, instructions, vector || instructions > 1);
     std::uint32_t latency = latency_[kind];
@@ -91,7 +95,7 @@ inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructio
     r.last = at.last + latency;
     r.first = vector ? at.first + latency : r.last;
     r.cause = static_cast<std::uint8_t>(Cause::compute);
-    r.value = vector ? h.registers.make() : 0;
+    r.value = vector ? make_value(h, broadcast) : 0;
     h.complete.later(Due(r.last, Cause::compute));
     return r;
 }
@@ -99,6 +103,7 @@ inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructio
 /// Among scalars.
 inline stamp Engine::compute_scalar(Hart& h, std::size_t kind, Due ready) {
     settle(h, ready);
+    charge_overhead(h, scalar_moves_, begin(h));
     const Issued at = issue(h, kind, ready);
     finish_issue(h, at, 0);
     count(h, 1, false);
@@ -150,7 +155,7 @@ void Engine::unfold(Hart& h, Due& ready, const stamp& s) {
 }
 
 void Engine::branch(Hart& h, site where, Due ready, bool taken) {
-    charge_overhead(h, begin(h));
+    charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
     Issued at = issue(h, branch_class, ready);
     finish_issue(h, at, 0);
@@ -187,6 +192,7 @@ template <Shape shape, class... Stamp> inline stamp operate(operation op, const 
     Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
     const std::size_t kind = sim::vector_kind(static_cast<std::size_t>(op));
+    engine.allow_memory_operands(hart);
     const bool there = engine.in_registers(hart, operands...);
     const auto need = [&](const stamp& s) {
         if (shape == Shape::lanes)

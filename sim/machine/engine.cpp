@@ -26,6 +26,10 @@ unsigned log2(integer x) {
 }
 
 /// Of a thread.
+std::uint32_t in_1024ths(double instructions) {
+    return static_cast<std::uint32_t>(instructions * 1024.0 + 0.5);
+}
+
 std::uint64_t spill_bytes_of(const Config& config) {
     return (wide(config.core.spill_slots) * width * 4 + 4095) / 4096 * 4096;
 }
@@ -58,15 +62,18 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       line_shift_(log2(config.l1.line_bytes)), port_byte_shift_(log2(config.l1.port_bytes)),
       l1_latency_(wide(config.l1.latency)), tile_levels_(config.tile_levels()),
       cache_levels_(config.cache_levels()), pairing_(config.core.pairing),
-      overhead_(static_cast<std::uint32_t>(config.core.scalar_overhead * 1024.0 + 0.5)),
-      registers_(config.core.vector_registers > 0), strides_(uses_strides(config)),
+      overhead_(in_1024ths(config.core.scalar_overhead)), scalar_moves_(in_1024ths(config.core.scalar_moves)),
+      vector_moves_(in_1024ths(config.core.vector_moves)),
+      memory_operands_(narrow(config.core.memory_operands)), registers_(config.core.vector_registers > 0),
+      by_register_(registers_ && config.core.broadcasts == "register"), strides_(uses_strides(config)),
       lane_gather_(config.core.gather == "lane"), lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
       lane_shuffle_(config.lanes.shuffle == "on"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
-      masked_by_lane_(config.lanes.masked == "on"), idle_loads_(config.lanes.idle == "load"),
-      lane_path_{narrow(config.lanes.piece_instructions), narrow(config.lanes.piece_references),
-                 narrow(config.lanes.load_instructions),  narrow(config.lanes.load_references),
-                 narrow(config.lanes.store_instructions), narrow(config.lanes.store_references)},
+      masked_by_lane_(config.lanes.masked == "on"), idle_lanes_(config.lanes.idle == "test"),
+      lane_path_{narrow(config.lanes.piece_instructions),  narrow(config.lanes.piece_references),
+                 narrow(config.lanes.gather_instructions), narrow(config.lanes.load_instructions),
+                 narrow(config.lanes.load_references),     narrow(config.lanes.store_instructions),
+                 narrow(config.lanes.store_references)},
       hold_policy_(config.core.switch_policy == "stall"), tlb_(config.tlb.any()),
       holds_misses_(config.tlb.misses == "stall"), page_shift_(log2(config.tlb.page_bytes)),
       in_order_(config.core.window == 1 || hold_policy_),
@@ -117,6 +124,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             for (integer i = 0; i < config.chip.threads; ++i) {
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
+                if (by_register_)
+                    h.machine_registers.emplace(wide(config.core.vector_registers) * pieces_, pieces_);
                 h.spill_base = lines_.spill_begin() + number * spill_bytes;
                 tile.harts.push_back(&h);
             }

@@ -100,7 +100,7 @@ public:
     }
     /// Whether the vectors among these operands are in registers, all of which are used then.
     template <class... Stamp> bool in_registers(Hart& h, const Stamp&... s) {
-        return !registers_ || h.registers.use_all(s.value...);
+        return !registers_ || (!by_register_ && h.registers.use_all(s.value...));
     }
     /// What needs a vector's last sub-vector: of one that is in a register, or to be brought there.
     void need_last(Hart& h, Due& ready, const stamp& s, std::uint32_t span, bool there) {
@@ -117,6 +117,8 @@ public:
         else
             ready.later(Due(follow(s.first, s.last, span), static_cast<Cause>(s.cause)));
     }
+    /// Of the computation whose operands are needed next, some may come from the stack with it.
+    void allow_memory_operands(Hart& h) const { h.memory_operands = memory_operands_; }
     std::uint32_t vector_instructions() const { return pieces_; }
     bool folds_addresses() const { return folding_; }
     bool shuffles_by_lane() const { return lane_shuffle_; }
@@ -158,10 +160,14 @@ private:
     void unfold(Hart& h, Due& ready, const stamp& s);
     void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         if (s.value != 0) {
-            RegisterFile::Use where = h.registers.use(s.value);
+            const RegisterFile::Use where =
+                by_register_ ? h.machine_registers->use(s.value) : h.registers.use(s.value);
             if (where != RegisterFile::Use::resident) [[unlikely]]
                 reload(h, ready, s.value, where == RegisterFile::Use::unstored, span);
         }
+    }
+    std::uint32_t make_value(Hart& h, bool broadcast) const {
+        return by_register_ ? h.machine_registers->make(broadcast) : h.registers.make();
     }
     void reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span);
     /// Waits until the times of all operands are known.
@@ -191,7 +197,7 @@ private:
     Issued book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
     cycle book_together(Core& core, std::size_t kind, cycle t) const;
     void finish_issue(Hart& h, Issued at, cycle granted, Cause held = Cause::mshrs);
-    void charge_overhead(Hart& h, Due ready);
+    void charge_overhead(Hart& h, std::uint32_t overhead, Due ready);
     void count(Hart& h, std::uint32_t instructions, bool vector);
     void touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from, Data& data);
     void touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots,
@@ -220,7 +226,8 @@ private:
     std::uint32_t masked_instructions(std::uint64_t lanes) const;
     std::uint32_t indexed_instructions(std::uint64_t lanes, bool by_lane) const;
     cycle ticket_of(Hart& h, const Data& data) const;
-    stamp loaded(Hart& h, const Data& data, bool vector);
+    /// `broadcast`: the same for all lanes.
+    stamp loaded(Hart& h, const Data& data, bool vector, bool broadcast = false);
     stamp loaded_ticket(Hart& h, const Data& data);
     void stored(Hart& h, const Data& data);
     // --- a store buffer (store_path.cpp)
@@ -339,11 +346,13 @@ private:
     std::array<Needs, issue_kinds> needs_{};
     std::array<bool, issue_kinds> shared_{};
     Pairing pairing_;
-    std::uint32_t overhead_; // 1/1024 instructions
-    bool registers_, strides_, lane_gather_, lane_scatter_, lane_shuffle_, skip_idle_, folding_, buffered_;
-    bool masked_by_lane_, idle_loads_;
+    std::uint32_t overhead_, scalar_moves_, vector_moves_; // 1/1024 instructions
+    std::uint32_t memory_operands_;
+    bool registers_, by_register_, strides_, lane_gather_, lane_scatter_, lane_shuffle_, skip_idle_, folding_,
+        buffered_;
+    bool masked_by_lane_, idle_lanes_;
     struct LanePath { // config's, narrowed
-        std::uint32_t piece_instructions, piece_references;
+        std::uint32_t piece_instructions, piece_references, gather_instructions;
         std::uint32_t load_instructions, load_references, store_instructions, store_references;
     } lane_path_;
     bool hold_policy_;

@@ -119,10 +119,10 @@ inline void Engine::count(Hart& h, std::uint32_t instructions, bool vector) {
     }
 }
 
-inline void Engine::charge_overhead(Hart& h, Due ready) {
-    if (overhead_ == 0)
+inline void Engine::charge_overhead(Hart& h, std::uint32_t overhead, Due ready) {
+    if (overhead == 0)
         return;
-    h.overhead += overhead_;
+    h.overhead += overhead;
     std::uint32_t whole = h.overhead / 1024;
     h.overhead %= 1024;
     if (whole == 0)
@@ -169,7 +169,7 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
 }
 
 /// What a load brings.
-inline stamp Engine::loaded(Hart& h, const Data& data, bool vector) {
+inline stamp Engine::loaded(Hart& h, const Data& data, bool vector, bool broadcast) {
     stamp r;
     if (data.open != 0) [[unlikely]] {
         r = loaded_ticket(h, data);
@@ -179,7 +179,7 @@ inline stamp Engine::loaded(Hart& h, const Data& data, bool vector) {
         r.cause = static_cast<std::uint8_t>(data.from);
         h.complete.later(Due(data.last, data.from));
     }
-    r.value = vector ? h.registers.make() : 0;
+    r.value = vector ? make_value(h, broadcast) : 0;
     return r;
 }
 

@@ -39,13 +39,15 @@ void Engine::touch_stack(Hart& h, std::uint32_t references, bool write, Due read
 }
 
 void Engine::assemble_load(Hart& h, std::uint64_t lanes, Due ready) {
-    const auto active = static_cast<std::uint32_t>(std::popcount(lanes));
-    const std::uint32_t idle = idle_loads_ ? width - active : 0; // each loads something
-    const std::uint32_t handled = active + idle;
     const LanePath& c = lane_path_;
-    const std::uint32_t instructions = pieces_ * c.piece_instructions + handled * c.load_instructions + idle;
+    std::uint32_t instructions = pieces_ * c.gather_instructions, references = 0;
+    if (lane_gather_) {
+        const auto handled = idle_lanes_ ? width : static_cast<std::uint32_t>(std::popcount(lanes));
+        instructions = pieces_ * c.piece_instructions + handled * c.load_instructions;
+        references = pieces_ * c.piece_references + handled * c.load_references;
+    }
     if (instructions != 0)
-        assemble(h, instructions, pieces_ * c.piece_references + handled * c.load_references + idle, ready);
+        assemble(h, instructions, references, ready);
 }
 
 void Engine::assemble_store(Hart& h, std::uint64_t lanes, Due ready) {

@@ -20,11 +20,12 @@ struct CoreCounters {
                   gathers = 0;
     std::uint64_t scatters = 0, branches = 0, mispredicts = 0, atomics = 0, releases = 0, modifications = 0,
                   waits = 0, spins = 0, causality_waits = 0;
+    std::uint64_t memory_operands = 0;
     std::uint64_t spill_stores = 0, spill_loads = 0, overhead_instructions = 0, switches = 0, pages = 0;
     std::uint64_t buffered_stores = 0, forwarded_loads = 0, blocked_loads = 0, folded = 0, unfolded = 0;
     std::uint64_t assembly_instructions = 0, assembly_references = 0, assembly_stores = 0;
 };
-inline constexpr std::array<CounterRow<CoreCounters>, 29> core_counters = {{
+inline constexpr std::array<CounterRow<CoreCounters>, 30> core_counters = {{
     {"vops", &CoreCounters::vops,
      "vocabulary operations: one operation of full logical width, or one scalar one"},
     {"vector_vops", &CoreCounters::vector_vops, "of these, vector operations"},
@@ -45,8 +46,10 @@ inline constexpr std::array<CounterRow<CoreCounters>, 29> core_counters = {{
      "reads of a shared word before the time at which it was written: 0 where threads are ordered exactly"},
     {"spill_stores", &CoreCounters::spill_stores, "vector values stored because registers ran out"},
     {"spill_loads", &CoreCounters::spill_loads, "vector values that came back"},
+    {"memory_operands", &CoreCounters::memory_operands,
+     "of these, operands from the stack, which take no load instruction (core.memory_operands)"},
     {"overhead_instructions", &CoreCounters::overhead_instructions,
-     "instructions charged by core.scalar_overhead"},
+     "instructions charged by core.scalar_overhead, core.scalar_moves and core.vector_moves"},
     {"switches", &CoreCounters::switches, "changes of the thread that holds a core (policy stall)"},
     {"pages", &CoreCounters::pages, "requests for topology pages"},
     {"buffered_stores", &CoreCounters::buffered_stores, "entries of store buffers that stores took"},
@@ -56,7 +59,7 @@ inline constexpr std::array<CounterRow<CoreCounters>, 29> core_counters = {{
     {"folded", &CoreCounters::folded, "address operations left to the loads and stores that use them"},
     {"unfolded", &CoreCounters::unfolded, "of these, issued after all: something else used them"},
     {"assembly_instructions", &CoreCounters::assembly_instructions,
-     "instructions beside loads and stores of what went lane by lane ([lanes])"},
+     "instructions beside loads and stores of what went lane by lane or was gathered ([lanes])"},
     {"assembly_references", &CoreCounters::assembly_references,
      "of these, loads and stores of the thread's stack"},
     {"assembly_stores", &CoreCounters::assembly_stores, "of these, stores"},

@@ -101,32 +101,39 @@ class Fit(unittest.TestCase):
     """A core whose spills halve with each register, and builds that it models exactly or nearly."""
 
     def setUp(self):
-        self.slope = {"a": 100.0, "b": 300.0, "c": 40.0}
+        self.slopes = ({"a": 100.0, "b": 300.0, "c": 40.0}, {"a": 700.0, "b": 90.0, "c": 200.0})
         work = {"a": (1000, 5000), "b": (2000, 900), "c": (500, 800)}
         self.simulated = {r: {k: {"instructions": w + s / 2**r, "references": 100 + s / 2**r} for k, (w, s) in work.items()}
                           for r in (1, 2, 3, 4, 6)}
 
-    def build(self, registers, overhead, noise=None):
-        return {k: {"instructions": (c["instructions"] + overhead * self.slope[k]) * (noise or {}).get(k, 1),
+    def build(self, registers, scalar, vector, noise=None):
+        of_scalars, of_vectors = self.slopes
+        return {k: {"instructions": (c["instructions"] + scalar * of_scalars[k] + vector * of_vectors[k]) * (noise or {}).get(k, 1),
                     "references": c["references"]} for k, c in self.simulated[registers].items()}
 
     def test_parameters_come_back(self):
         for registers in (1, 3, 6):
-            for overhead in (0, 0.35, 7.5):
-                for figures in (["instructions", "references"], ["instructions"]):
-                    found = fit.fit(self.build(registers, overhead), self.simulated, self.slope, figures)
-                    self.assertEqual(found[:2], (registers, overhead))
-                    self.assertAlmostEqual(found[2], 0)
+            for moves in ((0, 0), (0.35, 0), (0, 0.68), (7.5, 1.9)):
+                found, error = fit.fit(self.build(registers, *moves), self.simulated, self.slopes, ["instructions", "references"])
+                self.assertEqual(found, (registers, *moves))
+                self.assertAlmostEqual(error, 0)
+
+    def test_without_references_registers_come_back_where_they_are_given(self):
+        found, _ = fit.fit(self.build(3, 0.5, 0.1), {3: self.simulated[3]}, self.slopes, ["instructions"])
+        self.assertEqual(found, (3, 0.5, 0.1))
 
     def test_noise_remains_and_moves_little(self):
-        counted = self.build(3, 2, {"a": 1.1, "b": 0.9})
-        registers, overhead, error = fit.fit(counted, self.simulated, self.slope, ["instructions", "references"])
+        noise = {"a": 1.1, "b": 0.9, "c": 1.05}
+        counted = self.build(3, 2, 0.5, noise)
+        (registers, *moves), error = fit.fit(counted, self.simulated, self.slopes, ["instructions", "references"])
         self.assertEqual(registers, 3)
-        self.assertLess(abs(overhead - 2), 1)
-        self.assertGreater(error, 0.02)
-        found = fit.ratios(counted, self.simulated[3], self.slope, overhead, ["instructions"])
-        self.assertLess(found["a"]["instructions"], 1)
-        self.assertGreater(found["b"]["instructions"], 1)
+        none = fit.error(fit.ratios(counted, self.simulated[3], self.slopes, (2, 0.5), ["instructions", "references"]))
+        self.assertLess(error, none)  # than that of the moves before the noise
+        self.assertGreater(error, 0.001)
+        for more in ((0.5, 0), (-0.5, 0), (0, 0.1), (0, -0.1)):
+            beside = fit.ratios(counted, self.simulated[3], self.slopes, [m + d for m, d in zip(moves, more)],
+                                ["instructions", "references"])
+            self.assertGreater(fit.error(beside), error)
 
     def test_too_much_and_too_little_weigh_alike(self):
         twice, half = {"a": {"instructions": 2.0}}, {"a": {"instructions": 0.5}}

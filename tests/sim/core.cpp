@@ -152,6 +152,73 @@ TEST(Core, RegistersKeepTheLastUsed) {
     EXPECT_EQ(r.core.spill_loads, 0U);
 }
 
+// A value that is the same in all lanes, kept in a machine register of its own: beside one value of full
+// width, as many as the other's registers are.
+TEST(Core, BroadcastValuesMayTakeOneMachineRegister) {
+    Config c = simple();
+    c.core.vector_registers = 2;
+    c.core.lanes = ISA_WIDTH / 4; // four machine registers a value
+    const auto work = [](std::byte* p, int) {
+        stamp a = vector_op(operation::add, stamp{});
+        std::array<stamp, 4> same;
+        for (stamp& s : same)
+            s = vector_op(operation::broadcast, stamp{});
+        cross_to_scalar(operation::reduce, a, stamp{});
+        for (const stamp& s : same)
+            cross_to_scalar(operation::reduce, s, stamp{});
+        stamp b = load_broadcast(here, p, 4, stamp{}); // the fifth
+        cross_to_scalar(operation::reduce, a, stamp{});
+        EXPECT_NE(b.value, 0U);
+    };
+    const Report whole = run_on(c, work);
+    EXPECT_GT(whole.core.spill_loads, 3U);
+    c.core.broadcasts = "register";
+    const Report one = run_on(c, work);
+    EXPECT_EQ(one.core.spill_loads, 1U); // `a` alone, of the fifth
+    const auto work_of_one = [](int) {
+        stamp same = vector_op(operation::broadcast, stamp{});
+        vector_op(operation::add, stamp{});
+        vector_op(operation::add, stamp{});
+        cross_to_scalar(operation::reduce, same, stamp{}); // gone: a store and a load of one register
+    };
+    const Report back = run(c, work_of_one);
+    EXPECT_EQ(back.core.spill_stores, 1U);
+    EXPECT_EQ(back.core.spill_loads, 1U);
+    EXPECT_EQ(back.core.instructions, 1U + 2 * 4 + 4 + 2);
+    const std::size_t spill = back.structures.size() - 1;
+    ASSERT_EQ(back.traffic.size(), 1U);
+    EXPECT_EQ(back.traffic[0].structure, spill);
+    EXPECT_EQ(back.traffic[0].traffic.l1_reads, 1U);
+    EXPECT_EQ(back.traffic[0].traffic.l1_writes, 1U);
+}
+
+TEST(Core, OperandsFromTheStackMayTakeNoInstruction) {
+    Config c = simple();
+    c.core.vector_registers = 2;
+    c.core.lanes = ISA_WIDTH / 4;
+    const auto work = [](std::byte* p, int) {
+        stamp a = vector_op(operation::add, stamp{});
+        stamp b = vector_op(operation::add, stamp{});
+        for (int i = 0; i < 2; ++i)
+            vector_op(operation::add, stamp{}); // a and b are out
+        vector_op(operation::add, a, b);
+        store_vector(here, p, all_lanes, stamp{}, b, stamp{}); // still there
+        for (int i = 0; i < 2; ++i)
+            vector_op(operation::add, stamp{});
+        store_vector(here, p, all_lanes, stamp{}, b, stamp{}); // by an instruction of its own
+    };
+    std::array<Report, 3> r;
+    for (std::size_t operands = 0; operands < r.size(); ++operands) {
+        c.core.memory_operands = static_cast<integer>(operands);
+        r[operands] = run_on(c, work);
+        EXPECT_EQ(r[operands].core.spill_loads, 3U);
+        EXPECT_EQ(r[operands].core.memory_operands, operands);
+        EXPECT_EQ(r[operands].core.instructions + 4 * operands, r[0].core.instructions);
+        EXPECT_EQ(r[operands].l1_total().reads, r[0].l1_total().reads);
+    }
+    EXPECT_LE(r[2].cycles, r[0].cycles);
+}
+
 TEST(Core, MispredictsCostTheirPenalty) {
     Config c = simple();
     c.core.predictor = "counters";
@@ -200,6 +267,22 @@ TEST(Core, ScalarOverheadAddsInstructions) {
     });
     EXPECT_EQ(r.core.overhead_instructions, u(n * 3 / 2));
     EXPECT_EQ(r.core.instructions, u(n + n * 3 / 2));
+}
+
+TEST(Core, MovesAddInstructions) {
+    Config c = simple();
+    c.core.lanes = ISA_WIDTH / 4;
+    c.core.scalar_moves = 0.5;
+    c.core.vector_moves = 0.25;
+    const Report r = run(c, [](int) {
+        for (int i = 0; i < n; ++i) {
+            scalar_op(operation::add, stamp{});
+            isa::timing::branch(here, stamp{}, true); // no computation
+            vector_op(operation::add, stamp{});       // four instructions
+        }
+    });
+    EXPECT_EQ(r.core.overhead_instructions, u(n / 2 + n));
+    EXPECT_EQ(r.core.instructions, u(n * 6 + n / 2 + n));
 }
 
 // As far ahead as an issue window of operations can book a unit.

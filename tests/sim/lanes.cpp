@@ -71,17 +71,31 @@ TEST(Lanes, LoadsTakeWhatEachActiveLaneTakes) {
     EXPECT_EQ(a_gather(by_lane()), expected);
 }
 
-TEST(Lanes, IdleLanesLoadAZeroOfTheStack) {
+TEST(Lanes, IdleLanesMayTakeAllButTheLoad) {
     Config c = by_lane();
-    c.lanes.idle = "load";
-    const Counts expected{pieces * 4 + width_lanes * (9 + 1), pieces * 2 + width_lanes * (3 + 1)};
+    c.lanes.idle = "test";
+    const Counts expected{pieces * 4 + width_lanes * 9 + active, pieces * 2 + width_lanes * 3 + active};
     EXPECT_EQ(masked_load(c), expected);
     EXPECT_EQ(a_gather(c), expected);
 }
 
+TEST(Lanes, GathersOfASubVectorMayTakeMoreInstructions) {
+    Config c = by_lane();
+    c.lanes.masked = "off";
+    c.core.gather = "line";
+    const Counts before = a_gather(c), load = masked_load(c);
+    c.lanes.gather_instructions = 5;
+    EXPECT_EQ(a_gather(c), (Counts{before.instructions + 5 * pieces, before.references}));
+    EXPECT_EQ(masked_load(c), load);
+    c.core.gather = "lane"; // nothing is gathered by one instruction
+    const Counts by_lanes = a_gather(c);
+    c.lanes.gather_instructions = 0;
+    EXPECT_EQ(a_gather(c), by_lanes);
+}
+
 TEST(Lanes, StoresTakeWhatEachActiveLaneTakes) {
     Config c = by_lane();
-    c.lanes.idle = "load"; // of no effect on stores
+    c.lanes.idle = "test"; // of no effect on stores
     const Counts expected{pieces * 4 + active * (6 + 1), pieces * 2 + active * (1 + 1)};
     EXPECT_EQ(masked_store(c), expected);
     EXPECT_EQ(a_scatter(c), expected);

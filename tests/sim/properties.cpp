@@ -91,7 +91,11 @@ Config random_machine(std::mt19937& random) {
     c.core.lanes = power(0, 6);
     c.core.window = pick(0, 1) == 0 ? 1 : pick(2, 200);
     c.core.vector_registers = pick(0, 8);
+    c.core.broadcasts = pick(0, 1) == 0 ? "value" : "register";
+    c.core.memory_operands = pick(0, 3);
     c.core.scalar_overhead = static_cast<double>(pick(0, 30)) / 10;
+    c.core.scalar_moves = pick(0, 1) == 0 ? 0 : static_cast<double>(pick(1, 30)) / 10;
+    c.core.vector_moves = pick(0, 1) == 0 ? 0 : static_cast<double>(pick(1, 10)) / 10;
     c.core.predictor =
         std::array{"counters", "bimodal", "gshare", "taken", "not_taken", "none", "perfect"}[random() % 7];
     c.core.predictor_history = pick(0, 6);
@@ -112,7 +116,8 @@ Config random_machine(std::mt19937& random) {
     c.lanes.masked = c.core.gather == "lane" && pick(0, 1) == 0 ? "on" : "off";
     c.lanes.scatter = pick(0, 1) == 0 ? "on" : "off";
     c.lanes.shuffle = pick(0, 2) == 0 ? "on" : "off";
-    c.lanes.idle = pick(0, 1) == 0 ? "load" : "skip";
+    c.lanes.idle = pick(0, 1) == 0 ? "test" : "skip";
+    c.lanes.gather_instructions = pick(0, 2) == 0 ? pick(1, 8) : 0;
     c.lanes.piece_instructions = pick(0, 5);
     c.lanes.piece_references = pick(0, c.lanes.piece_instructions);
     c.lanes.load_instructions = pick(0, 12);

@@ -1,5 +1,5 @@
-// Registers of values against a list of the last ones used.
-#include "sim/core/registers.h"
+// Registers of values, and of the machine, against a list of the last values used.
+#include "sim/core/machine_registers.h"
 
 #include <gtest/gtest.h>
 
@@ -88,6 +88,51 @@ TEST(Registers, UnlimitedOnesAreNeverReloaded) {
         file.make();
     EXPECT_EQ(file.use(first), RegisterFile::Use::resident);
     EXPECT_EQ(file.use(0), RegisterFile::Use::resident);
+}
+
+TEST(Registers, OfTheMachineEqualAListOfTheLastUsed) {
+    std::mt19937 random(7);
+    for (const std::size_t pieces : {1U, 2U, 4U, 8U})
+        for (const std::size_t values : {1U, 2U, 3U, 6U}) {
+            MachineRegisters file(values * pieces, pieces);
+            std::deque<std::uint32_t> held; // last used first
+            std::vector<std::uint32_t> made;
+            std::set<std::uint32_t> stored;
+            const auto hold = [&](std::uint32_t value) {
+                held.push_front(value);
+                std::size_t taken = 0;
+                const auto out = std::find_if(held.begin(), held.end(), [&](std::uint32_t v) {
+                    taken += MachineRegisters::is_broadcast(v) ? 1 : pieces;
+                    return taken > values * pieces;
+                });
+                held.erase(out, held.end());
+            };
+            std::array<int, 3> seen{};
+            for (int i = 0; i < 20000; ++i) {
+                if (made.empty() || random() % 3 == 0) {
+                    const bool broadcast = random() % 3 == 0;
+                    made.push_back(file.make(broadcast));
+                    ASSERT_EQ(MachineRegisters::is_broadcast(made.back()), broadcast);
+                    ASSERT_EQ(MachineRegisters::number(made.back()), made.size());
+                    hold(made.back());
+                    continue;
+                }
+                const std::uint32_t value =
+                    made[made.size() - 1 - random() % std::min<std::size_t>(made.size(), 60)];
+                auto expected = RegisterFile::Use::resident;
+                if (const auto at = std::find(held.begin(), held.end(), value); at != held.end())
+                    held.erase(at);
+                else
+                    expected =
+                        stored.insert(value).second ? RegisterFile::Use::unstored : RegisterFile::Use::stored;
+                hold(value);
+                const RegisterFile::Use use = file.use(value);
+                ASSERT_EQ(use, expected) << values << " values of " << pieces << ", step " << i;
+                ++seen[static_cast<std::size_t>(use)];
+            }
+            for (const int count : seen)
+                EXPECT_GT(count, 100) << values << " values of " << pieces;
+        }
 }
 
 } // namespace
