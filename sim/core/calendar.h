@@ -70,6 +70,8 @@ public:
         w |= taken;
         return {s.number * 64 + static_cast<unsigned>(std::countr_zero(free)), last_of(s.number, taken)};
     }
+    /// Its bits from cycle `t` on come to the host's caches.
+    void prefetch(cycle t) const { __builtin_prefetch(&words_[((t << shift_) / 64) & mask_]); }
     /// Frees a slot that was taken.
     void release(Slot slot) {
         word(slot / 64) &= ~(std::uint64_t{1} << (slot % 64));

@@ -3,7 +3,6 @@
 // stored is remembered for the last 1024 stored ones; a value older than that is charged its store again.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -78,9 +77,11 @@ public:
     }
 
 private:
+    static constexpr std::uint32_t remembered = 1024;
+
     Use bring_back(std::uint32_t value) {
         push(capacity_ - 1, value);
-        std::uint32_t& stored = stored_[value % stored_.size()];
+        std::uint32_t& stored = stored_[value % remembered];
         Use where = stored == value ? Use::stored : Use::unstored;
         stored = value;
         return where;
@@ -130,7 +131,7 @@ private:
     std::vector<std::uint32_t> many_;
     std::uint32_t* recent_; // last used first
     std::uint32_t last_ = 0;
-    std::array<std::uint32_t, 1024> stored_{};
+    std::vector<std::uint32_t> stored_ = std::vector<std::uint32_t>(remembered); // apart: rarely looked at
 };
 
 } // namespace sim

@@ -78,7 +78,8 @@ cycle Engine::book_together(Core& core, std::size_t kind, cycle t) const {
 /// A shuffle whose result is a scalar takes one lane out: no instruction set lacks that.
 constexpr std::size_t extract_kind = vector_kind(static_cast<std::size_t>(operation::shuffle));
 
-inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector) {
+[[gnu::always_inline]] inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructions,
+                                                    Due ready, bool vector) {
     settle(h, ready);
     h.memory_operands = 0;
     const bool broadcast = kind == vector_kind(static_cast<std::size_t>(operation::broadcast));
@@ -86,7 +87,8 @@ inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructio
         instructions = 1; // all registers of the value are the same one
     const bool one_lane = !vector && kind == extract_kind;
     const std::uint32_t taken = one_lane ? instructions : instructions * takes_[kind];
-    charge_overhead(h, vector_moves_ * taken, begin(h));
+    if (vector_moves_ != 0) [[unlikely]]
+        charge(h, vector_moves_ * taken, begin(h));
     Issued at = issue_all(h, kind, taken, ready);
     finish_issue(h, at, 0);
     count(h, instructions, vector || instructions > 1);
@@ -103,7 +105,8 @@ inline stamp Engine::compute(Hart& h, std::size_t kind, std::uint32_t instructio
 /// Among scalars.
 inline stamp Engine::compute_scalar(Hart& h, std::size_t kind, Due ready) {
     settle(h, ready);
-    charge_overhead(h, scalar_moves_, begin(h));
+    if (scalar_moves_ != 0) [[unlikely]]
+        charge(h, scalar_moves_, begin(h));
     const Issued at = issue(h, kind, ready);
     finish_issue(h, at, 0);
     count(h, 1, false);
@@ -192,8 +195,9 @@ template <Shape shape, class... Stamp> inline stamp operate(operation op, const 
     Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
     const std::size_t kind = sim::vector_kind(static_cast<std::size_t>(op));
-    engine.allow_memory_operands(hart);
     const bool there = engine.in_registers(hart, operands...);
+    if (!there)
+        engine.allow_memory_operands(hart);
     const auto need = [&](const stamp& s) {
         if (shape == Shape::lanes)
             engine.need_lanes(hart, ready, s, engine.span(kind), there);

@@ -158,7 +158,7 @@ private:
             ready.later(Due(s.first, static_cast<Cause>(s.cause)));
     }
     void unfold(Hart& h, Due& ready, const stamp& s);
-    void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
+    [[gnu::always_inline]] void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         if (s.value != 0) {
             const RegisterFile::Use where =
                 by_register_ ? h.machine_registers->use(s.value) : h.registers.use(s.value);
@@ -198,6 +198,7 @@ private:
     cycle book_together(Core& core, std::size_t kind, cycle t) const;
     void finish_issue(Hart& h, Issued at, cycle granted, Cause held = Cause::mshrs);
     void charge_overhead(Hart& h, std::uint32_t overhead, Due ready);
+    void charge(Hart& h, std::uint32_t overhead, Due ready);
     void count(Hart& h, std::uint32_t instructions, bool vector);
     void touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from, Data& data);
     void touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots,

@@ -12,6 +12,10 @@ std::size_t wide(integer x) {
     return static_cast<std::size_t>(x);
 }
 
+bool later(const Request& a, const Request& b) {
+    return a.sequence > b.sequence;
+}
+
 /// Requests of one exit that wait until it is known when an MSHR or a place in the buffer is free, in the
 /// order in which they left.
 void hold(std::vector<Request>& held, const Request& r) {
@@ -37,7 +41,7 @@ ImmediateBeyond::ImmediateBeyond(const Config& config, Reply reply)
     : Beyond(config, std::move(reply)), memory_(config, disorder) {
     const CacheConfig& last = config.cache(config.tile_levels() - 1);
     ports_.assign(wide(config.chip.tiles) * exits_,
-                  Port{OrderedPool(wide(last.mshrs)), OrderedPool(wide(last.write_back_buffer)), {}});
+                  Port{OrderedPool(wide(last.mshrs)), OrderedPool(wide(last.write_back_buffer))});
 }
 
 void ImmediateBeyond::count_from(cycle t) {
@@ -63,12 +67,11 @@ void ImmediateBeyond::serve_from_memory(Request r) {
     Port& port = ports_[port_of(r)];
     if (r.write != Request::nothing) {
         OrderedPool::Grant buffer = port.write_backs.take(r.at);
-        if (buffer.at > r.at) {
-            r.at = buffer.at;
-            return push(r);
-        }
+        if (buffer.at > r.at)
+            return wait(port.for_buffer, r, buffer.at);
         port.write_backs.hold(buffer.entry,
                               memory_.write(r.write, ways_.write(asker(r), r.write, r.bytes, r.at)));
+        leave(port.for_buffer, r, port.write_backs);
         if (coherence_)
             coherence_->written(r);
         r.write = Request::nothing;
@@ -76,19 +79,41 @@ void ImmediateBeyond::serve_from_memory(Request r) {
     if (r.read == Request::nothing)
         return;
     OrderedPool::Grant mshr = port.mshrs.take(r.at);
-    if (mshr.at > r.at) {
-        r.at = mshr.at;
+    if (mshr.at > r.at)
+        return wait(port.for_mshr, r, mshr.at);
+    Answer answer{0, Cause::memory};
+    if (coherence_) {
+        answer = read_coherently(r);
+    } else {
+        answer.ready = memory_.read(r.read, ways_.ask(asker(r), r.read, r.at));
+        answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
+    }
+    port.mshrs.hold(mshr.entry, answer.ready);
+    leave(port.for_mshr, r, port.mshrs);
+    reply_(r.tile, r.ticket, answer);
+}
+
+void ImmediateBeyond::wait(Queue& queue, Request r, cycle until) {
+    r.at = until;
+    if (r.sequence <= queue.first) { // one that was first before may be served with it
+        queue.first = r.sequence;
         return push(r);
     }
-    if (coherence_) {
-        const Answer answer = read_coherently(r);
-        port.mshrs.hold(mshr.entry, answer.ready);
-        return reply_(r.tile, r.ticket, answer);
-    }
-    cycle ready = memory_.read(r.read, ways_.ask(asker(r), r.read, r.at));
-    ready = ways_.answer(asker(r), r.read, line_bytes_, ready);
-    port.mshrs.hold(mshr.entry, ready);
-    reply_(r.tile, r.ticket, {ready, Cause::memory});
+    queue.behind.push_back(r);
+    std::push_heap(queue.behind.begin(), queue.behind.end(), later);
+}
+
+/// It has its entry, or needs none: if it was first, another is.
+void ImmediateBeyond::leave(Queue& queue, const Request& r, OrderedPool& pool) {
+    if (queue.first != r.sequence)
+        return;
+    queue.first = no_sequence;
+    if (queue.behind.empty())
+        return;
+    std::pop_heap(queue.behind.begin(), queue.behind.end(), later);
+    Request next = queue.behind.back();
+    queue.behind.pop_back();
+    wait(queue, next, std::max(next.at, pool.take(r.at).at));
 }
 
 /// Of a coherent machine: what needs no MSHR, and no place in the buffer.
@@ -101,6 +126,7 @@ bool ImmediateBeyond::serves_alone(const Request& r) {
     if (r.kind == Request::upgrade && r.stage == Request::arrives && coherence_->grants_silently(r)) {
         reply_(r.tile, r.ticket, {r.at, Cause::coherence});
         // It may have been the one that an MSHR was free for.
+        leave(ports_[port_of(r)].for_mshr, r, ports_[port_of(r)].mshrs);
         if (std::optional<Request> next = release(ports_[port_of(r)].held, false, r.at))
             push(*next);
         return true;

@@ -36,12 +36,23 @@ private:
         Ways& ways;
         Ways::Asker who;
     };
+    /// Requests of one exit that wait for an entry of a pool whose times are known. They have it in the order
+    /// of their sequence: the first is among all that are to be served, at the cycle from which on one is
+    /// free.
+    struct Queue {
+        std::vector<Request> behind; // a heap by sequence, the others
+        std::uint64_t first = no_sequence;
+    };
+    static constexpr std::uint64_t no_sequence = ~std::uint64_t{0};
     struct Port {
         OrderedPool mshrs, write_backs;
-        std::vector<Request> held; // until it is known when an MSHR is free
+        Queue for_mshr{}, for_buffer{};
+        std::vector<Request> held{}; // until it is known when an MSHR is free
     };
     Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(memory_, ways_, cache); }
     void serve_from_memory(Request r);
+    void wait(Queue& queue, Request r, cycle until);
+    void leave(Queue& queue, const Request& r, OrderedPool& pool);
     bool serves_alone(const Request& r);
     Answer read_coherently(const Request& r);
     void serve_from_cache(Request r);

@@ -120,8 +120,11 @@ inline void Engine::count(Hart& h, std::uint32_t instructions, bool vector) {
 }
 
 inline void Engine::charge_overhead(Hart& h, std::uint32_t overhead, Due ready) {
-    if (overhead == 0)
-        return;
+    if (overhead != 0)
+        charge(h, overhead, ready);
+}
+
+[[gnu::noinline]] inline void Engine::charge(Hart& h, std::uint32_t overhead, Due ready) {
     h.overhead += overhead;
     std::uint32_t whole = h.overhead / 1024;
     h.overhead %= 1024;

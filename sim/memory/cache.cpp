@@ -41,14 +41,15 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
       inclusive_(is(machine, level, "inclusive")), exclusive_(is(machine, level, "exclusive")),
       coherent_(machine.coherence.kept() && level < machine.tile_levels()),
       sends_clean_(is(machine, level + 1, "exclusive")),
-      cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), traffic_(traffic_of_level[level]),
+      cause_(static_cast<Cause>(static_cast<unsigned>(Cause::l1) + level)), attribution_(&attribution),
       array_(sets(config), wide(config.ways), replacement_of(config.replacement), coherent_),
+      traffic_(traffic_of_level[level]),
       banks_(level == 0 ? 0 : wide(config.banks), Calendar("cache bank", earliest)),
       mshrs_(wide(config.mshrs), tickets, heard(machine, level)),
       write_backs_(wide(config.write_back_buffer), tickets, heard(machine, level)),
       prefetcher_(config.prefetcher, static_cast<std::uint32_t>(config.prefetch_degree),
                   wide(config.prefetch_sites)),
-      tickets_(tickets), below_(below), site_(site), attribution_(&attribution) {
+      tickets_(tickets), below_(below), site_(site) {
     if (last)
         mshrs_.lift_limit();
     if (machine.sim.miss_causes == "on")

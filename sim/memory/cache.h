@@ -17,6 +17,7 @@
 
 #include "sim/config/config.h"
 #include "sim/core/calendar.h"
+#include "sim/core/host_lines.h"
 #include "sim/memory/attribution.h"
 #include "sim/memory/below.h"
 #include "sim/memory/cache_array.h"
@@ -127,6 +128,8 @@ public:
                 array_.drop(e);
         });
     }
+    /// What most accesses touch comes to the host's caches.
+    void prefetch_host() const { prefetch_lines(this, &counters_ + 1); }
     CacheCounters& counters() { return counters_; }
     const CacheCounters& counters() const { return counters_; }
     /// Lines that are not where the level's inclusion says: 0. Exclusive ones are looked at below one cache
@@ -190,6 +193,7 @@ private:
         counters_.prefetches_useless += array_.prefetched(leaving) ? 1 : 0;
     }
 
+    // --- what nearly every access touches
     unsigned level_, line_shift_, bank_shift_;
     std::uint32_t port_bytes_; // of the L1
     std::uint64_t latency_, bank_mask_;
@@ -200,18 +204,19 @@ private:
     bool special_;                 // an L1 that does more than the least
     bool used_prefetched_ = false; // by the access at hand, for the first time
     Cause cause_;
-    TrafficOfLevel traffic_;
+    Attribution* attribution_;
     CacheArray array_;
+    cycle quiet_ = 0;
+    CacheCounters counters_;
+    // --- what others do
+    TrafficOfLevel traffic_;
     std::vector<Calendar> banks_;
     Pool mshrs_, write_backs_;
     Prefetcher prefetcher_;
     std::unique_ptr<MissCauses> causes_; // if wanted
-    cycle quiet_ = 0;
-    CacheCounters counters_;
     Tickets& tickets_;
     Below& below_;
     const SiteAtHand& site_;
-    Attribution* attribution_;
     std::vector<Cache*> above_;
     std::uint32_t number_ = 0;
     Coming* coming_ = nullptr;
