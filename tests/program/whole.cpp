@@ -62,12 +62,12 @@ workers = int(option("--workers"))
 niagara = "niagara" in machine
 cycles = int((1000 + 4000 / lanes + 960 / window) * (2 if scene else 1) * (10 if niagara else 1))
 instructions = 2010
-half = (instructions - 450 - 60) // 2
 report = {"scene": "?" if "scene" in settings.get("odd", "") else f"{scene} {side}", "seconds": seconds, "cycles": cycles,
           "renderer": {"counters": {"rays": side * side + (settings.get("odd") == "rays"), "camera_hits": side}},
-          "core": {"instructions": instructions}, "host": {},
-          "instructions_by_class": {"load": {"scalar": 200, "vector": 100}, "store": {"scalar": 0, "vector": 150},
-                                    "branch": {"scalar": 60, "vector": 0}, "add": {"scalar": half, "vector": half}},
+          "core": {"instructions": instructions, "forwarded_loads": 50}, "host": {},
+          "traffic": [{"l1_reads": 200, "l1_writes": 50}, {"l1_reads": 50, "l1_writes": 100}],
+          "instructions_by_class": {"branch": {"scalar": 60, "vector": 0},
+                                    "add": {"scalar": 1000, "vector": instructions - 1060}},
           # Two cores of three threads, the second one done in half of the time.
           "threads": [{"tile": w % 2, "core": 0, "instructions": (w < workers) * instructions,
                        "finish": (w < workers) * cycles // (1 + w % 2)} for w in range(6)]}
