@@ -2,6 +2,7 @@
 #include "tests/sim/machines.h"
 
 #include <algorithm>
+#include <array>
 
 namespace sim::test {
 namespace {
@@ -71,6 +72,27 @@ TEST(Memory, RowHitEmptyConflict) {
     EXPECT_EQ(second(rows), other + idle_read(c) + u(c.memory.tRP));  // conflict
     c.memory.tRAS = c.memory.tRC = 200;                               // the row may not be closed before
     EXPECT_EQ(second(rows), u(200 + c.memory.tRP));
+}
+
+// All ask at once; each gets the MSHR when the line before is there, in the order in which they asked.
+TEST(Memory, WhoWaitsForAnMshrHasItInTurn) {
+    Config c = equal_clocks();
+    c.l1.mshrs = 16;
+    for (integer mshrs : {1, 2}) {
+        c.l2.mshrs = mshrs;
+        constexpr int lines = 9;
+        std::array<cycle, lines> ready{};
+        run_on(c, [&](std::byte* base, int) {
+            std::array<stamp, lines> s;
+            for (int i = 0; i < lines; ++i)
+                s[static_cast<std::size_t>(i)] = load(here, base + (lines - i) * line, 4, stamp{});
+            for (std::size_t i = 0; i < lines; ++i)
+                ready[i] = when(s[i]);
+        });
+        const cycle hit = idle_read(c) - u(c.memory.tRCD);
+        for (std::size_t i = u(mshrs); i < lines; ++i)
+            EXPECT_EQ(ready[i], ready[i - u(mshrs)] + hit) << mshrs << " MSHRs, line " << i;
+    }
 }
 
 TEST(Memory, RefreshBlocksAndClosesRows) {
