@@ -11,35 +11,50 @@
 namespace sim::test {
 namespace {
 
+/// The plain version: which values are held, last used first, and which were stored.
+struct PlainRegisters {
+    std::size_t room;
+    std::size_t pieces; // of a value that is no broadcast
+    std::deque<std::uint32_t> held{};
+    std::set<std::uint32_t> stored{};
+
+    void hold(std::uint32_t value) {
+        held.push_front(value);
+        std::size_t taken = 0;
+        const auto out = std::find_if(held.begin(), held.end(), [&](std::uint32_t v) {
+            taken += MachineRegisters::is_broadcast(v) ? 1 : pieces;
+            return taken > room;
+        });
+        held.erase(out, held.end());
+    }
+    RegisterFile::Use use(std::uint32_t value) {
+        auto where = RegisterFile::Use::resident;
+        if (const auto at = std::find(held.begin(), held.end(), value); at != held.end())
+            held.erase(at);
+        else
+            where = stored.insert(value).second ? RegisterFile::Use::unstored : RegisterFile::Use::stored;
+        hold(value);
+        return where;
+    }
+};
+
 TEST(Registers, EqualAListOfTheLastUsed) {
     std::mt19937 random(5);
     for (const std::size_t capacity : {1U, 2U, 3U, 7U, 8U, 9U, 16U, 17U, 40U}) {
         RegisterFile file(capacity);
-        std::deque<std::uint32_t> held; // last used first
-        std::set<std::uint32_t> stored;
-        const auto hold = [&](std::uint32_t value) {
-            held.push_front(value);
-            if (held.size() > capacity)
-                held.pop_back();
-        };
+        PlainRegisters plain{capacity, 1};
         std::uint32_t last = 0;
         std::array<int, 3> seen{};
         for (int i = 0; i < 20000; ++i) {
             if (last == 0 || random() % 3 == 0) {
                 last = file.make();
-                hold(last);
+                plain.hold(last);
                 continue;
             }
             // Not so old that whether it was stored is forgotten.
             const auto back = static_cast<std::uint32_t>(random() % std::min(last, std::uint32_t{60}));
             const std::uint32_t value = last - back;
-            auto expected = RegisterFile::Use::resident;
-            if (const auto at = std::find(held.begin(), held.end(), value); at != held.end())
-                held.erase(at);
-            else
-                expected =
-                    stored.insert(value).second ? RegisterFile::Use::unstored : RegisterFile::Use::stored;
-            hold(value);
+            const RegisterFile::Use expected = plain.use(value);
             const RegisterFile::Use use = file.use(value);
             ASSERT_EQ(use, expected) << "of " << capacity << ", step " << i;
             ++seen[static_cast<std::size_t>(use)];
@@ -95,18 +110,8 @@ TEST(Registers, OfTheMachineEqualAListOfTheLastUsed) {
     for (const std::size_t pieces : {1U, 2U, 4U, 8U})
         for (const std::size_t values : {1U, 2U, 3U, 6U}) {
             MachineRegisters file(values * pieces, pieces);
-            std::deque<std::uint32_t> held; // last used first
+            PlainRegisters plain{values * pieces, pieces};
             std::vector<std::uint32_t> made;
-            std::set<std::uint32_t> stored;
-            const auto hold = [&](std::uint32_t value) {
-                held.push_front(value);
-                std::size_t taken = 0;
-                const auto out = std::find_if(held.begin(), held.end(), [&](std::uint32_t v) {
-                    taken += MachineRegisters::is_broadcast(v) ? 1 : pieces;
-                    return taken > values * pieces;
-                });
-                held.erase(out, held.end());
-            };
             std::array<int, 3> seen{};
             for (int i = 0; i < 20000; ++i) {
                 if (made.empty() || random() % 3 == 0) {
@@ -114,18 +119,12 @@ TEST(Registers, OfTheMachineEqualAListOfTheLastUsed) {
                     made.push_back(file.make(broadcast));
                     ASSERT_EQ(MachineRegisters::is_broadcast(made.back()), broadcast);
                     ASSERT_EQ(MachineRegisters::number(made.back()), made.size());
-                    hold(made.back());
+                    plain.hold(made.back());
                     continue;
                 }
                 const std::uint32_t value =
                     made[made.size() - 1 - random() % std::min<std::size_t>(made.size(), 60)];
-                auto expected = RegisterFile::Use::resident;
-                if (const auto at = std::find(held.begin(), held.end(), value); at != held.end())
-                    held.erase(at);
-                else
-                    expected =
-                        stored.insert(value).second ? RegisterFile::Use::unstored : RegisterFile::Use::stored;
-                hold(value);
+                const RegisterFile::Use expected = plain.use(value);
                 const RegisterFile::Use use = file.use(value);
                 ASSERT_EQ(use, expected) << values << " values of " << pieces << ", step " << i;
                 ++seen[static_cast<std::size_t>(use)];
