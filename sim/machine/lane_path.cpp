@@ -29,7 +29,7 @@ void Engine::touch_stack(Hart& h, std::uint32_t references, bool write, Due read
         if (write)
             h.counters.assembly_stores += n;
         Data data;
-        cycle from = at.first;
+        cycle from = translated(h, h.spill_base, h.spill_base + 3, at.first);
         touch_line(h, h.spill_base >> line_shift_, write, n, n, from, data);
         if (write)
             stored(h, data);

@@ -195,6 +195,20 @@ TEST(Tlb, WhatStraddlesPagesLooksUpBoth) {
               3U);
 }
 
+// What a gather puts on the thread's stack, lane by lane, and takes from there.
+TEST(Tlb, LanesOnTheStackNeedItsPageToo) {
+    Config c = plain_tlb(8);
+    c.core.gather = "lane";
+    c.lanes.piece_instructions = c.lanes.piece_references = 2;
+    std::array<std::int32_t, width> index{};
+    const Report r = run_on(c, [&](std::byte* base, int) {
+        for (int i = 0; i < 3; ++i)
+            gather(here, base, index.data(), all_lanes, stamp{}, stamp{}, stamp{});
+    });
+    EXPECT_EQ(r.tlb[0].lookups, 3 * 3U) << "stores and loads of the stack, and the lanes";
+    EXPECT_EQ(r.tlb[0].misses, 2U);
+}
+
 /// Threads of a core that load from a page each (or all from one) at once, by so many walkers.
 Report rush(integer threads, integer walkers, bool one_page) {
     Config c = plain_tlb(64);
