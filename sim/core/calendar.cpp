@@ -34,6 +34,29 @@ void Calendar::move_on(std::uint64_t number) {
     first_ = earliest;
 }
 
+/// The first run from `from` on, when it is known that none begins before `next`. Where many wait for a unit,
+/// each passes what those before it have found taken at once.
+Calendar::Slot Calendar::find_run_after(Slot from, Slot next, std::uint32_t length) {
+    constexpr std::size_t lengths = 4;
+    barren_.resize(lengths);
+    Barren& b = barren_[length % lengths];
+    const bool known = b.length == length;
+    Slot begin = next;
+    for (;;) {
+        if (known && b.has(begin))
+            begin = b.to;
+        const Slot end = begin + length, busy = last_busy(begin, end);
+        if (busy == end)
+            break;
+        begin = busy + 1;
+    }
+    if (known && from <= b.to && b.from <= begin) // they touch
+        b = {std::min(from, b.from), std::max(begin, b.to), length};
+    else
+        b = {from, begin, length};
+    return begin;
+}
+
 /// Of several words, the first of which, `number`, has `free` slots to take.
 Calendar::Span Calendar::take_across(std::uint64_t number, std::uint64_t free, std::uint32_t count) {
     Slot first = no_slot;

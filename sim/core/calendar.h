@@ -76,16 +76,12 @@ public:
     void release(Slot slot) {
         word(slot / 64) &= ~(std::uint64_t{1} << (slot % 64));
         full_count_ = 0;
+        barren_.clear();
     }
     /// The first of `length` adjacent free slots from `from` on; takes none.
     Slot find_run(Slot from, std::uint32_t length) {
-        for (Slot end = from + length;;) {
-            Slot busy = last_busy(from, end);
-            if (busy == end)
-                return from;
-            from = busy + 1;
-            end = from + length;
-        }
+        const Slot end = from + length, busy = last_busy(from, end);
+        return busy == end ? from : find_run_after(from, busy + 1, length);
     }
     void mark_run(Slot from, std::uint32_t length) {
         for (Slot s = from; s < from + length;) {
@@ -148,6 +144,7 @@ private:
         return words_[number & mask_];
     }
     void move_on(std::uint64_t number);
+    Slot find_run_after(Slot from, Slot next, std::uint32_t length);
     /// The last taken slot in [from, end), or `end`.
     Slot last_busy(Slot from, Slot end) {
         for (std::uint64_t number = (end - 1) / 64;; --number) {
@@ -168,6 +165,13 @@ private:
     std::uint64_t first_ = 0; // the number, in unbounded time, of the ring's earliest word
     std::uint64_t full_from_ = 0,
                   full_count_ = 0; // some words in which no slot is free, to be passed at once
+    /// From `from` on until `to` no run of this length begins.
+    struct Barren {
+        Slot from = 0, to = 0;
+        std::uint32_t length = 0;
+        bool has(Slot s) const { return s - from < to - from; }
+    };
+    std::vector<Barren> barren_; // of some lengths, by their last bits; empty: nothing is known
     std::uint64_t absent_ = 0;
     const cycle* earliest_;
     unsigned shift_;

@@ -27,7 +27,10 @@ public:
     bool empty() const { return size_ == 0; }
     std::size_t size() const { return size_; }
     /// The i-th, oldest first.
-    Entry& entry(std::size_t i) { return ring_[(oldest_ + i) % ring_.size()]; }
+    Entry& entry(std::size_t i) {
+        const std::size_t at = oldest_ + i;
+        return ring_[at < ring_.size() ? at : at - ring_.size()];
+    }
     void push(const Entry& e) { entry(size_++) = e; }
     /// The oldest ended, at cycle `until` by itself; returns when it did.
     cycle pop(cycle until) {

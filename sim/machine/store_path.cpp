@@ -110,18 +110,20 @@ void Engine::buffer_indexed(Hart& h, std::uint64_t address, const std::int32_t* 
 /// there are.
 std::size_t Engine::buffered_at(Hart& h, std::uint64_t low, std::uint64_t high, cycle t) {
     StoreBuffer& b = h.store_buffer;
-    std::size_t ended = 0;
-    for (cycle last = b.ended(); ended < b.size(); ++ended) {
-        StoreBuffer::Entry& e = b.entry(ended);
+    std::size_t youngest = b.size();
+    while (youngest != 0 && !(b.entry(youngest - 1).low <= high && low <= b.entry(youngest - 1).high))
+        --youngest;
+    if (youngest == 0)
+        return b.size();
+    cycle ended = b.ended();
+    for (std::size_t i = 0; i < youngest; ++i) {
+        StoreBuffer::Entry& e = b.entry(i);
         if (Answered a; is_ticket(e.until) && h.tile->tickets.find(e.until, a))
             e.until = a.last;
-        last = std::max(last, e.until); // a ticket is later than all cycles
-        if (last > t)
-            break;
+        ended = std::max(ended, e.until); // a ticket is later than all cycles
+        if (ended > t)
+            return youngest - 1;
     }
-    for (std::size_t i = b.size(); i-- > ended;)
-        if (b.entry(i).low <= high && low <= b.entry(i).high)
-            return i;
     return b.size();
 }
 

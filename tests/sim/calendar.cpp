@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 #include <set>
 
@@ -23,24 +24,33 @@ TEST(Calendar, EqualsASetOfSlots) {
             std::uint64_t from = (earliest + random() % spread) << shift;
             std::uint64_t want = from;
             if (per_cycle == 1 && random() % 4 == 0) {
-                auto length = static_cast<std::uint32_t>(1 + random() % 100);
+                // often of the same lengths, as what has been seen for one is remembered
+                constexpr std::array<std::uint32_t, 4> usual = {4, 8, 7, 31};
+                auto length = random() % 4 == 0 ? static_cast<std::uint32_t>(1 + random() % 100)
+                                                : usual[random() % usual.size()];
                 auto busy = [&] {
                     auto next = taken.lower_bound(want);
                     return next != taken.end() && *next < want + length;
                 };
                 while (busy())
                     want = *taken.lower_bound(want) + 1;
-                ASSERT_EQ(calendar.take_run(from, length), want) << i;
-                for (std::uint32_t k = 0; k < length; ++k)
-                    taken.insert(want + k);
-            } else if (random() % 4 == 0) { // one, and one of those taken is given back now and then
+                ASSERT_EQ(calendar.find_run(from, length), want) << i;
+                if (random() % 2 == 0) {
+                    ASSERT_EQ(calendar.take_run(from, length), want) << i;
+                    for (std::uint32_t k = 0; k < length; ++k)
+                        taken.insert(want + k);
+                }
+            } else if (random() % 4 == 0) { // one, and some of those taken are given back now and then
                 while (!free(want))
                     ++want;
                 ASSERT_EQ(calendar.take(from), want) << i;
                 taken.insert(want);
-                if (auto some = taken.lower_bound(from); random() % 4 == 0) {
-                    calendar.release(*some);
-                    taken.erase(some);
+                if (random() % 4 == 0) {
+                    auto some = taken.lower_bound(from);
+                    for (std::size_t k = 1 + random() % 40; k != 0 && some != taken.end(); --k) {
+                        calendar.release(*some);
+                        some = taken.erase(some);
+                    }
                 }
             } else {
                 auto count = static_cast<std::uint32_t>(1 + random() % 64);
@@ -57,6 +67,36 @@ TEST(Calendar, EqualsASetOfSlots) {
             }
             earliest += random() % 70; // most slots are taken
         }
+    }
+}
+
+// Many ask for runs in the same crowded cycles, in which some are given back: what a calendar remembers to be
+// taken is looked at again.
+TEST(Calendar, EqualsASetOfSlotsWhereManyWait) {
+    std::mt19937 random(12);
+    cycle earliest = 0;
+    Calendar calendar("test", earliest);
+    std::set<std::uint64_t> taken;
+    for (int i = 0; i < 20000; ++i) {
+        const std::uint64_t from = earliest + random() % 300;
+        constexpr std::array<std::uint32_t, 5> lengths = {1, 3, 4, 8, 31};
+        const std::uint32_t length = lengths[random() % lengths.size()];
+        std::uint64_t want = from;
+        for (auto next = taken.lower_bound(want); next != taken.end() && *next < want + length; ++next)
+            want = *next + 1;
+        ASSERT_EQ(calendar.find_run(from, length), want) << i;
+        if (random() % 3 == 0) {
+            calendar.mark_run(want, length);
+            for (std::uint32_t k = 0; k < length; ++k)
+                taken.insert(want + k);
+        } else if (random() % 4 == 0) {
+            auto some = taken.lower_bound(from);
+            for (std::size_t k = random() % 10; k != 0 && some != taken.end(); --k) {
+                calendar.release(*some);
+                some = taken.erase(some);
+            }
+        }
+        earliest += random() % 3;
     }
 }
 
