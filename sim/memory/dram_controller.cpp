@@ -15,12 +15,9 @@ DramController::DramController(std::uint32_t number, const MemoryConfig& c, cons
       page_timeout_(static_cast<Clock>(c.page_timeout)),
       postponable_(static_cast<Clock>(c.refresh_postponed * c.tREFI)),
       entries_(static_cast<std::size_t>(c.read_queue + c.write_queue)), banks_(ranks_ * banks_per_rank_),
-      ranks_state_(ranks_), activate_from_(ranks_ * groups_), shared_(shared_kinds * ranks_ * groups_),
-      counters_(ranks_) {
+      ranks_state_(ranks_), shared_(shared_kinds * ranks_ * groups_), counters_(ranks_) {
     queue_[0].capacity = static_cast<std::size_t>(c.read_queue);
     queue_[1].capacity = static_cast<std::size_t>(c.write_queue);
-    for (auto& from : column_from_)
-        from.resize(ranks_ * groups_);
     for (Index i = 0; i < entries_.size(); ++i)
         entries_[i].next = i + 1 < entries_.size() ? i + 1 : none;
     free_ = 0;
@@ -221,7 +218,7 @@ void DramController::issue_activate(Bank& b) {
     r.activates[r.activated++ % 4] = now_;
     Clock four = r.activated < 4 ? 0 : r.activates[r.activated % 4] + t_.tFAW;
     for (Index g = 0; g < groups_; ++g) {
-        Clock& from = activate_from_[b.rank * groups_ + g];
+        Clock& from = shared_from(shared_activate)[b.rank * groups_ + g];
         from = std::max({from, four, now_ + t_.activate[at(g == b.group ? Near::group : Near::rank)]});
     }
 }
@@ -254,12 +251,17 @@ void DramController::issue_column(Bank& b) {
     last_write_ = writing_;
     last_rank_ = b.rank;
 
-    for (std::size_t next = 0; next < 2; ++next)
-        for (Index rank = 0, s = 0; rank < ranks_; ++rank)
-            for (Index g = 0; g < groups_; ++g, ++s) {
-                Near near = rank != b.rank ? Near::channel : g != b.group ? Near::rank : Near::group;
-                column_from_[next][s] = std::max(column_from_[next][s], now_ + t_.column[k][next][at(near)]);
-            }
+    for (Column next : {Column::read, Column::write}) {
+        Clock* from = shared_from(shared_column(next));
+        const auto& owed = t_.column[k][at(next)];
+        const Clock own = std::max(from[set(b)], now_ + owed[at(Near::group)]);
+        for (Index rank = 0, s = 0; rank < ranks_; ++rank) {
+            const Clock others = now_ + owed[at(rank == b.rank ? Near::rank : Near::channel)];
+            for (Index g = 0; g < groups_; ++g, ++s)
+                from[s] = std::max(from[s], others);
+        }
+        from[set(b)] = own;
+    }
     b.precharge_from = std::max(b.precharge_from, now_ + t_.precharge[k]);
     b.used = now_;
     remove(i, k);
@@ -297,6 +299,10 @@ void DramController::set_refresh(Rank& r, Index rank, Clock at) {
             banks_[first + i].refresh = at;
     for (Index i = 0; i < banks_per_rank_; ++i)
         renew(first + i);
+    // Where refreshes may be postponed, deciding that may come long before one.
+    refreshes_from_ = postponable_ != 0 ? 0 : never;
+    for (const Rank& other : ranks_state_)
+        refreshes_from_ = std::min(refreshes_from_, other.refresh - std::min(other.refresh, t_.tRP));
 }
 
 /// The next one at its time, or, where that is past, at once if the rank has nothing to do.
@@ -317,7 +323,7 @@ void DramController::refresh(Index rank) {
     if (per_bank_)
         b.activate_from = std::max(b.activate_from, now_ + t_.tRFCpb);
     for (Index g = 0; g < groups_; ++g) {
-        Clock& from = activate_from_[rank * groups_ + g];
+        Clock& from = shared_from(shared_activate)[rank * groups_ + g];
         from = std::max(from, now_ + (per_bank_ ? t_.tRREFD : t_.tRFC));
     }
     log(per_bank_ ? DramCommand::Kind::refresh_bank : DramCommand::Kind::refresh, now_, b, 0);

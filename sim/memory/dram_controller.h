@@ -125,9 +125,11 @@ private:
         Index of = none; // bank, or rank of what comes with refreshes
         bool before(const Step& s) const { return at != s.at ? at < s.at : urgency < s.urgency; }
     };
-    /// In shared_: from when a column command to a group, an activate, a precharge may come.
-    enum Shared : Index { shared_column, shared_activate, shared_precharge, shared_kinds };
-    static constexpr std::uint64_t row_command = std::uint64_t{1} << 62, idle_row = row_command << 1;
+    /// In shared_: from when a read, a write, an activate, a precharge (any time) of a group may come.
+    enum Shared : Index { shared_read, shared_write, shared_activate, shared_precharge, shared_kinds };
+    static constexpr unsigned row_command_bit = 62;
+    static constexpr std::uint64_t row_command = std::uint64_t{1} << row_command_bit,
+                                   idle_row = row_command << 1;
 
     /// The first clock at which a rank without requests may make up for a refresh, once that is decided at
     /// `t`.
@@ -137,13 +139,16 @@ private:
     /// Whether a rank has requests, or had some not long before `t`: then its refreshes may wait.
     bool busy(const Rank& r, Clock t) const { return r.queued != 0 || r.used + t_.around_refresh() > t; }
     Column direction() const { return writing_ ? Column::write : Column::read; }
-    std::size_t set(const Bank& b) const { return b.rank * groups_ + b.group; }
+    Index set(const Bank& b) const { return b.rank * groups_ + b.group; }
+    static Shared shared_column(Column c) { return c == Column::read ? shared_read : shared_write; }
+    Clock* shared_from(Shared kind) { return shared_.data() + kind * ranks_ * groups_; }
     void plan() {
         if (!planned_)
             make_plan();
     }
     void make_plan();
     void plan_urgent(const Queue& q, Clock from);
+    void plan_unasked(Clock from);
     void plan_refreshes(Clock from);
     void plan_idle_banks(Clock from);
     Wish wish(const Bank& b, Index number, std::size_t kind, bool only_oldest) const;
@@ -154,7 +159,13 @@ private:
             if (banks_[number].oldest[k] != none)
                 queue_[k].banks[banks_[number].place[k]] = wish(banks_[number], number, k, !first_ready_);
     }
-    void renew_shared();
+    /// From when all but the bank allow what it wishes; `from`: by bus, of columns and of rows.
+    Clock allowed(const Wish& w, const std::array<Clock, 2>& from) const {
+        return std::max(from[w.urgency >> row_command_bit], shared_[w.shared]);
+    }
+    std::array<Clock, 2> with_buses(Clock from) const {
+        return {std::max(from, bus_from_[column_bus_]), std::max(from, bus_from_[0])};
+    }
     /// The clock at which the oldest burst has waited too long.
     Clock patience(const Queue& q) const {
         return age_cap_ == 0 || q.size == 0 ? never : entries_[q.oldest].arrival + age_cap_;
@@ -184,10 +195,9 @@ private:
     Index free_ = none; // entries, by their `next`
     std::vector<Bank> banks_;
     std::vector<Rank> ranks_state_;
-    std::vector<Clock> activate_from_;              // by rank and group
-    std::array<std::vector<Clock>, 2> column_from_; // by Column, rank and group
-    std::array<Clock, 2> bus_from_{};               // of rows, of columns
-    std::vector<Clock> shared_; // for the direction that is served, with the bus; by Shared, rank, group
+    std::vector<Clock> shared_;       // by Shared, rank, group
+    std::array<Clock, 2> bus_from_{}; // of rows, of columns
+    Clock refreshes_from_ = never;    // nothing that has to do with refreshes comes earlier
     bool writing_ = false, draining_ = false, flushing_ = false, planned_ = false;
     Clock now_ = 0;
     Step step_;

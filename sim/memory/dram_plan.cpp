@@ -8,14 +8,14 @@ namespace sim {
 /// `only_oldest`: not for a younger burst.
 DramController::Wish DramController::wish(const Bank& b, Index number, std::size_t k,
                                           bool only_oldest) const {
-    Index oldest = b.oldest[k], hit = b.hit[k], own = static_cast<Index>(set(b)), sets = ranks_ * groups_;
+    Index oldest = b.oldest[k], hit = b.hit[k], own = set(b), sets = ranks_ * groups_;
     Wish w;
     w.bank = number;
     Clock after; // that a refresh may come
     if (b.open && hit != none && (!only_oldest || hit == oldest)) {
         w.urgency = entries_[hit].number;
         w.from = b.column_from;
-        w.shared = shared_column * sets + own;
+        w.shared = shared_column(static_cast<Column>(k)) * sets + own;
         after = t_.precharge[k] + t_.tRP;
     } else if (b.open) {
         w.urgency = entries_[oldest].number | row_command;
@@ -36,29 +36,18 @@ DramController::Wish DramController::wish(const Bank& b, Index number, std::size
     return w;
 }
 
-void DramController::renew_shared() {
-    Index sets = ranks_ * groups_;
-    const std::vector<Clock>& columns = column_from_[at(direction())];
-    for (Index i = 0; i < sets; ++i) {
-        shared_[shared_column * sets + i] = std::max(columns[i], bus_from_[column_bus_]);
-        shared_[shared_activate * sets + i] = std::max(activate_from_[i], bus_from_[0]);
-        shared_[shared_precharge * sets + i] = bus_from_[0];
-    }
-}
-
 /// Takes a wish for the next step if it comes before it and does not hold up what is urgent.
 void DramController::consider(const Wish& w, Clock from, const Step* urgent) {
-    Clock t = std::max({from, w.from, shared_[w.shared]});
+    Clock t = std::max(w.from, allowed(w, with_buses(from)));
     if (t > w.until || t > step_.at || (t == step_.at && w.urgency >= step_.urgency))
         return;
     Step s;
     s.at = t;
     s.urgency = w.urgency;
     s.of = w.bank;
-    Index kind = w.shared / (ranks_ * groups_);
-    s.kind = kind == shared_column     ? Step::column
-             : kind == shared_activate ? Step::activate
-                                       : Step::precharge;
+    s.kind = w.urgency < row_command                          ? Step::column
+             : w.shared < shared_precharge * ranks_ * groups_ ? Step::activate
+                                                              : Step::precharge;
     if (urgent == nullptr || !delays(s, *urgent))
         step_ = s;
 }
@@ -80,35 +69,35 @@ bool DramController::delays(const Step& s, const Step& urgent) const {
 void DramController::make_plan() {
     planned_ = true;
     const Queue& q = queue_[at(direction())];
-    renew_shared();
     Clock from = now_;
     for (bool again = true; again;) {
         again = false;
         step_ = {};
-        plan_refreshes(from);
-        if (timeout_page_)
-            plan_idle_banks(from);
-        if (q.size == 0)
-            return;
         // From the clock at which the oldest burst has waited too long it goes before others.
         Clock end = patience(q);
-        if (end <= from) {
-            plan_urgent(q, from);
+        if (q.size == 0 || end <= from) {
+            plan_unasked(from);
+            if (q.size != 0)
+                plan_urgent(q, from);
             return;
         }
-        Clock best = step_.at;
-        std::uint64_t urgency = step_.urgency;
-        const Wish* chosen = nullptr;
-        for (const Wish& w : q.banks) { // without branches: none of these is foreseeable
-            Clock t = std::max({from, w.from, shared_[w.shared]});
+        Clock best = never;
+        std::uint64_t urgency = never;
+        std::size_t chosen = 0;
+        const std::array<Clock, 2> bus_from = with_buses(from);
+        for (std::size_t i = 0; i < q.banks.size(); ++i) { // without branches: none of these is foreseeable
+            const Wish& w = q.banks[i];
+            Clock t = std::max(w.from, allowed(w, bus_from));
             t = t > w.until ? never : t;
-            bool better = (t < best) | ((t == best) & (w.urgency < urgency));
-            best = better ? t : best;
-            urgency = better ? w.urgency : urgency;
-            chosen = better ? &w : chosen;
+            const auto better =
+                static_cast<std::uint64_t>((t < best) | ((t == best) & (w.urgency < urgency)));
+            best ^= (best ^ t) & -better;
+            urgency ^= (urgency ^ w.urgency) & -better;
+            chosen ^= (chosen ^ i) & -better;
         }
-        if (chosen != nullptr)
-            consider(*chosen, from, nullptr);
+        if (timeout_page_ || best >= refreshes_from_)
+            plan_unasked(from);
+        consider(q.banks[chosen], from, nullptr);
         if (step_.at > end) {
             from = end;
             again = true;
@@ -129,6 +118,13 @@ void DramController::plan_urgent(const Queue& q, Clock from) {
             consider(w, from, nullptr);
         else if (w.bank != number)
             consider(w, from, &urgent);
+}
+
+/// What no request asks for.
+void DramController::plan_unasked(Clock from) {
+    plan_refreshes(from);
+    if (timeout_page_)
+        plan_idle_banks(from);
 }
 
 void DramController::plan_refreshes(Clock from) {

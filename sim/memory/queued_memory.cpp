@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -40,38 +41,50 @@ QueuedMemory::QueuedMemory(const Config& config) : MemoryLines(config) {
         channels_.emplace_back(i, c, timing_);
     for (DramController& channel : channels_)
         next_.push_back(channel.next_event());
+    soonest_ = *std::min_element(next_.begin(), next_.end());
+    places_.resize(parts_);
 }
 
-bool QueuedMemory::has_room(Column kind, std::uint64_t burst) const {
-    auto channel = [&](std::uint32_t part) { return place(burst + part).channel; };
-    for (std::uint32_t i = 0; i < parts_; ++i) {
-        std::uint32_t c = channel(i);
-        if (channels_[c].has_room(kind, parts_))
+bool QueuedMemory::has_room(Column kind, std::uint64_t burst) {
+    for (std::uint32_t i = 0; i < parts_; ++i)
+        places_[i] = place(burst + i);
+    for (const DramPlace& p : places_) {
+        if (channels_[p.channel].has_room(kind, parts_))
             continue;
         std::size_t bursts = 0; // of the line, for this channel
-        for (std::uint32_t j = 0; j < parts_; ++j)
-            bursts += channel(j) == c ? 1 : 0;
-        if (!channels_[c].has_room(kind, bursts))
+        for (const DramPlace& other : places_)
+            bursts += other.channel == p.channel ? 1 : 0;
+        if (!channels_[p.channel].has_room(kind, bursts))
             return false;
     }
     return true;
 }
 
-void QueuedMemory::send(Column kind, std::uint64_t address, std::uint64_t id, cycle t) {
-    std::uint64_t burst = first_burst(address);
-    for (std::uint32_t i = 0; i < parts_; ++i) {
-        DramPlace p = place(burst + i);
-        if (i == 0)
-            ++(kind == Column::read ? counters_of(p).reads : counters_of(p).writes);
-        channels_[p.channel].enqueue(kind, p, burst + i, id, arrival(t));
-        collect(channels_[p.channel]);
-        next_[p.channel] = channels_[p.channel].next_event();
+/// What has_room() was asked of, at clock `t`.
+void QueuedMemory::send(Column kind, std::uint64_t burst, std::uint64_t id, Clock t) {
+    MemoryCounters& n = counters_of(places_[0]);
+    ++(kind == Column::read ? n.reads : n.writes);
+    for (const DramPlace& p : places_) {
+        DramController& channel = channels_[p.channel];
+        channel.enqueue(kind, p, burst++, id, t);
+        collect(channel);
+        set_next(p.channel, channel.next_event());
     }
 }
 
+void QueuedMemory::set_next(std::size_t channel, Clock t) {
+    const Clock old = std::exchange(next_[channel], t);
+    if (t < soonest_)
+        soonest_ = t;
+    else if (old == soonest_ && t != old)
+        soonest_ = *std::min_element(next_.begin(), next_.end());
+}
+
 bool QueuedMemory::read(std::uint64_t id, std::uint64_t address, cycle t) {
-    advance_to(t);
-    if (!has_room(Column::read, first_burst(address)))
+    const Clock clock = arrival(t);
+    const std::uint64_t burst = first_burst(address);
+    advance_clock(clock);
+    if (!has_room(Column::read, burst))
         return false;
     std::uint32_t slot = free_;
     if (slot == none) {
@@ -82,16 +95,18 @@ bool QueuedMemory::read(std::uint64_t id, std::uint64_t address, cycle t) {
     }
     reading_[slot] = {id, number_++, 0, parts_, none};
     ++undecided_;
-    send(Column::read, address, slot, t);
+    send(Column::read, burst, slot, clock);
     deliver();
     return true;
 }
 
 bool QueuedMemory::write(std::uint64_t address, cycle t) {
-    advance_to(t);
-    if (!has_room(Column::write, first_burst(address)))
+    const Clock clock = arrival(t);
+    const std::uint64_t burst = first_burst(address);
+    advance_clock(clock);
+    if (!has_room(Column::write, burst))
         return false;
-    send(Column::write, address, 0, t);
+    send(Column::write, burst, 0, clock);
     return true;
 }
 
@@ -111,12 +126,17 @@ void QueuedMemory::collect(DramController& c) {
 }
 
 void QueuedMemory::advance_clock(Clock t) {
-    for (std::size_t i = 0; i < next_.size(); ++i)
+    if (soonest_ >= t)
+        return;
+    soonest_ = DramController::never;
+    for (std::size_t i = 0; i < next_.size(); ++i) {
         if (next_[i] < t) {
             channels_[i].advance_to(t);
             collect(channels_[i]);
             next_[i] = channels_[i].next_event();
         }
+        soonest_ = std::min(soonest_, next_[i]);
+    }
     deliver();
 }
 
@@ -135,16 +155,13 @@ void QueuedMemory::advance_to(cycle t) {
 }
 
 cycle QueuedMemory::next_event() {
-    Clock next = *std::min_element(next_.begin(), next_.end());
-    if (next == DramController::never)
-        return never;
-    return first_after(next);
+    return soonest_ == DramController::never ? never : first_after(soonest_);
 }
 
 void QueuedMemory::flush() {
     for (std::size_t i = 0; i < next_.size(); ++i) {
         channels_[i].flush();
-        next_[i] = channels_[i].next_event();
+        set_next(i, channels_[i].next_event());
     }
 }
 
@@ -159,7 +176,7 @@ cycle QueuedMemory::finish() {
             end = std::max(end, n.last_clock);
         }
         collect(c);
-        next_[static_cast<std::size_t>(&c - channels_.data())] = c.next_event();
+        set_next(static_cast<std::size_t>(&c - channels_.data()), c.next_event());
     }
     deliver();
     return leave(end);

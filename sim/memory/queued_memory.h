@@ -65,14 +65,17 @@ private:
         Done done;
     };
 
-    bool has_room(Column kind, std::uint64_t burst) const;
-    void send(Column kind, std::uint64_t address, std::uint64_t id, cycle t);
+    bool has_room(Column kind, std::uint64_t burst);
+    void send(Column kind, std::uint64_t burst, std::uint64_t id, Clock t);
+    void set_next(std::size_t channel, Clock t);
     void advance_clock(Clock t);
     void collect(DramController& c);
     void deliver();
 
     std::vector<DramController> channels_;
-    std::vector<Clock> next_; // their next events
+    std::vector<Clock> next_;       // their next events
+    Clock soonest_;                 // of these
+    std::vector<DramPlace> places_; // of the bursts of the line that is asked about
     std::vector<Line> reading_;
     std::uint32_t free_ = ~std::uint32_t{0};
     std::uint64_t number_ = 0;

@@ -1,10 +1,11 @@
 // Host nanoseconds (of processor time) that a request to the memory takes, by preset, traffic and requests in
 // flight a channel, for the controller that answers when a request comes (those of the generator alone are
 // taken off) and for the one with queues (with its driver). And what the memory reached.
-//   dram_speed [REQUESTS]
+//   dram_speed [REQUESTS] [PRESET]
 #include "sim/memory/dram_load.h"
 #include "tests/sim/dram_traffic.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -37,11 +38,28 @@ double generator_seconds(std::uint64_t in_flight, std::uint64_t count, const Sou
 } // namespace
 
 int main(int argc, char** argv) {
-    std::uint64_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
+    CLI::App app{"Host time a request to the memory takes, and what the memory reached"};
+    std::uint64_t count = 1000000;
+    std::vector<MemoryConfig> presets = memory_presets();
+    std::string preset_name;
+    std::vector<std::string> known;
+    for (const MemoryConfig& c : presets)
+        known.push_back(c.preset);
+    app.add_option("requests", count, "requests of each row")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000000000));
+    app.add_option("preset", preset_name, "this preset only")->check(CLI::IsMember(known));
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    }
+    if (!preset_name.empty())
+        std::erase_if(presets, [&](const MemoryConfig& c) { return c.preset != preset_name; });
     constexpr std::uint64_t lines = std::uint64_t{1} << 24;
     fmt::print("{:<14} {:<22} {:>9} {:<10} {:>11} {:>9} {:>9} {:>9}\n", "preset", "traffic", "in flight",
                "controller", "ns/request", "M req/s", "GB/s", "of peak");
-    for (const MemoryConfig& preset : memory_presets())
+    for (const MemoryConfig& preset : presets)
         for (std::uint64_t in_flight : {1U, 8U, 64U})
             for (int traffic = 0; traffic < 3; ++traffic) {
                 Config c = memory_of(preset.preset);

@@ -328,7 +328,11 @@ int main(int argc, char** argv) {
     app.add_option("--size", size);
     app.add_option("--isa", isa);
     app.add_option("--repeat", repeat);
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    }
     try {
         run(model, triangles, size, isa, repeat);
     } catch (const razor::UserError& e) {

@@ -119,6 +119,7 @@ start_benchmarks() {
         case $(basename "$program") in
         isa_cost_*) "$program" sse4 vocabulary 1 ;;
         trace_rays) "$program" build/square.obj --triangles 1000 --size 64 --repeat 1 ;;
+        dram_speed) "$program" 100 ;;
         *) "$program" --help ;;
         esac >build/benchmark.log 2>&1 || fail "$program: $(tail -n 1 build/benchmark.log)"
         count=$((count + 1))
