@@ -59,6 +59,9 @@ public:
             if (std::uint64_t free = ~word(number) & open; free != 0)
                 return number * 64 + static_cast<unsigned>(std::countr_zero(free));
     }
+    /// Where a cycle is one slot: which of the 64 around `t`, from a multiple of 64 on, are `t` or later and
+    /// free.
+    std::uint64_t free_around(Slot t) { return ~word(t / 64) & ~std::uint64_t{0} << (t % 64); }
     /// Takes the first `count` free slots, 64 at most, from `from` on, adjacent or not.
     Span take(Slot from, std::uint32_t count) {
         const Start s = start(from);
@@ -83,6 +86,8 @@ public:
         const Slot end = from + length, busy = last_busy(from, end);
         return busy == end ? from : find_run_after(from, busy + 1, length);
     }
+    /// Takes a slot that is free.
+    void mark(Slot slot) { word(slot / 64) |= std::uint64_t{1} << (slot % 64); }
     void mark_run(Slot from, std::uint32_t length) {
         for (Slot s = from; s < from + length;) {
             unsigned bit = s % 64;

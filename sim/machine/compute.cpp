@@ -22,56 +22,70 @@ cycle Engine::hold_core(Hart& h, cycle t) {
 
 /// Instructions that need more than an issue slot each: takes what they need from `t` on.
 Issued Engine::book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const {
+    if (needs_[kind] == Needs::several)
+        return book_together(core, kind, instructions, t);
     Issued at{};
-    bool together = needs_[kind] == Needs::several;
     std::uint32_t interval = interval_[kind];
     for (std::uint32_t i = 0; i < instructions; ++i) {
-        if (together) {
-            at.last = t = book_together(core, kind, t);
-        } else {
-            cycle begin = core.units[class_of(kind)]->take_run(t, interval);
-            at.last = core.issue.take(begin << issue_shift_) >> issue_shift_;
-            t = begin + interval;
-        }
+        cycle begin = core.units[class_of(kind)]->take_run(t, interval);
+        at.last = core.issue.take(begin << issue_shift_) >> issue_shift_;
+        t = begin + interval;
         at.first = i == 0 ? at.last : at.first;
     }
     return at;
 }
 
-/// The first cycle from `t` on at which an issue slot, a port and a unit for one instruction are free; takes
-/// them.
-cycle Engine::book_together(Core& core, std::size_t kind, cycle t) const {
-    std::uint32_t interval = interval_[kind];
+/// Each in the first cycle, from `t` and from that of the one before on, at which an issue slot, a port and a
+/// unit are free. Ports and unit are looked at for 64 cycles together.
+Issued Engine::book_together(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const {
+    const std::uint32_t interval = interval_[kind];
     std::optional<Calendar>& own = core.units[class_of(kind)];
     Calendar* unit = shared_[kind] ? &core.shared->calendar : own ? &*own : nullptr;
-    for (;;) {
-        t = core.issue.find(t << issue_shift_) >> issue_shift_;
-        if (unit != nullptr)
-            if (cycle free = unit->find_run(t, interval); free != t) {
-                t = free;
+    const std::vector<std::uint8_t>& ports = pairing_.of(kind);
+    std::array<std::uint64_t, Pairing::most_ports> open; // when each of them is free
+    Issued at{};
+    for (std::uint32_t left = instructions;;) {
+        const cycle block = t - t % 64;
+        for (std::size_t i = 0; i < ports.size(); ++i)
+            open[i] = core.issue_ports[ports[i]].free_around(t);
+        const auto free_from = [&](cycle from) {
+            if (from >= block + 64)
+                return std::uint64_t{0};
+            std::uint64_t any = ports.empty() ? ~std::uint64_t{0} : 0;
+            for (std::size_t i = 0; i < ports.size(); ++i)
+                any |= open[i];
+            return any & (unit != nullptr ? unit->free_around(from) : ~std::uint64_t{0} << from % 64);
+        };
+        for (std::uint64_t free = free_from(t); free != 0;) {
+            const cycle allowed = block + static_cast<cycle>(std::countr_zero(free));
+            const Calendar::Slot slot = core.issue.find(allowed << issue_shift_);
+            t = slot >> issue_shift_;
+            if (t == allowed && unit != nullptr)
+                t = unit->find_run(t, interval);
+            if (t != allowed) {
+                free = t < block + 64 ? free & ~std::uint64_t{0} << t % 64 : 0;
                 continue;
             }
-        cycle next = ~cycle{0};
-        const std::vector<std::uint8_t>& ports = pairing_.of(kind);
-        auto port = std::find_if(ports.begin(), ports.end(), [&](std::uint8_t p) {
-            cycle free = core.issue_ports[p].find(t);
-            next = std::min(next, free);
-            return free == t;
-        });
-        if (port == ports.end() && !ports.empty()) {
-            t = next;
-            continue;
+            core.issue.mark(slot);
+            if (!ports.empty()) {
+                std::size_t i = 0;
+                while ((open[i] >> t % 64 & 1) == 0)
+                    ++i;
+                open[i] ^= std::uint64_t{1} << t % 64;
+                core.issue_ports[ports[i]].mark(t);
+                ++core.port_instructions[ports[i]];
+            }
+            if (unit != nullptr)
+                unit->mark_run(t, interval);
+            if (shared_[kind])
+                core.shared->busy_cycles += interval;
+            at.first = left == instructions ? t : at.first;
+            at.last = t;
+            if (--left == 0)
+                return at;
+            free = free_from(t);
         }
-        core.issue.take(t << issue_shift_);
-        if (!ports.empty()) {
-            core.issue_ports[*port].take(t);
-            ++core.port_instructions[*port];
-        }
-        if (unit != nullptr)
-            unit->mark_run(t, interval);
-        if (shared_[kind])
-            core.shared->busy_cycles += interval;
-        return t;
+        t = std::max(t, block + 64);
     }
 }
 

@@ -195,7 +195,7 @@ private:
     Issued issue(Hart& h, std::size_t kind, Due ready);
     Issued issue_all(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
     Issued book(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
-    cycle book_together(Core& core, std::size_t kind, cycle t) const;
+    Issued book_together(Core& core, std::size_t kind, std::uint32_t instructions, cycle t) const;
     void finish_issue(Hart& h, Issued at, cycle granted, Cause held = Cause::mshrs);
     void charge_overhead(Hart& h, std::uint32_t overhead, Due ready);
     void charge(Hart& h, std::uint32_t overhead, Due ready);

@@ -111,6 +111,27 @@ TEST(Pairing, AUnitAndAPortAreTakenInTheSameCycle) {
     EXPECT_EQ(r.cycles, u((n - 1) * 8 + 16)); // the last divide ends after the adds behind it
 }
 
+// In a window a divide that could begin early does so only where the unit stays free for as long as it needs
+// it.
+TEST(Pairing, AGapOfAUnitIsTakenOnlyByWhatFitsIntoIt) {
+    Config c = simple();
+    c.core.issue_width = 2;
+    c.core.window = 64;
+    c.core.pairing = u_and_v;
+    constexpr int port_taken = 1; // by the first add, in cycle 0
+    for (int adds : {1, 2, 3}) {
+        Report r = run(c, [adds](int) {
+            stamp s;
+            for (int i = 0; i < adds; ++i)
+                s = vector_op(operation::add, s);
+            vector_op(operation::divide, s);
+            vectors(1, operation::divide);
+        });
+        int waits = 4 * adds;
+        EXPECT_EQ(r.cycles, u((waits < port_taken + 8 ? waits + 8 : waits) + 16)) << adds;
+    }
+}
+
 TEST(Pairing, MistakesAreNamed) {
     auto with = [](const char* pairing) {
         Config c = simple();
