@@ -17,8 +17,6 @@
 namespace sim {
 namespace {
 
-constinit thread_local Fibre* leaving = nullptr; // who switched last on this host thread
-
 void announce([[maybe_unused]] void** fake_stack, [[maybe_unused]] const void* stack,
               [[maybe_unused]] std::size_t bytes) {
 #if defined(SIM_ADDRESS_SANITIZER)
@@ -42,7 +40,7 @@ void landed([[maybe_unused]] void* fake_stack, [[maybe_unused]] const void** sta
 
 } // namespace
 
-Fibre::Fibre(std::size_t stack_bytes, std::function<void()> body, Fibre& home) {
+Fibre::Fibre(std::size_t stack_bytes, std::function<void()> body, Fibre& home) : home_(home) {
     // Stacks lie at multiples of large powers of two: all would use the same few sets of the host's caches.
     static std::size_t count = 0;
     const std::size_t colour = count++ * 37 % 1024 * 64;
@@ -52,31 +50,32 @@ Fibre::Fibre(std::size_t stack_bytes, std::function<void()> body, Fibre& home) {
     stack_ = static_cast<const std::byte*>(memory.sp) - memory.size;
     stack_bytes_ = memory.size;
     clean(stack_, stack_bytes_);
-    auto run = [this, body = std::move(body), &home](boost::context::fiber&& from) {
-        arrive(std::move(from), &leaving->stack_, &leaving->stack_bytes_);
+    auto run = [this, body = std::move(body)](boost::context::fiber&& from) {
+        arrive(std::move(from));
         body();
         finished_ = true;
-        leaving = this;
-        announce(nullptr, home.stack_, home.stack_bytes_);
-        return std::move(home.context_);
+        home_.left_ = this;
+        announce(nullptr, home_.stack_, home_.stack_bytes_);
+        return std::move(home_.context_);
     };
     context_ = boost::context::fiber(std::allocator_arg,
                                      boost::context::preallocated(top, memory.size - colour, memory),
                                      allocator, std::move(run));
 }
 
-void Fibre::arrive(boost::context::fiber&& left, const void** stack, std::size_t* bytes) {
-    landed(fake_stack_, stack, bytes);
-    if (left)
-        leaving->context_ = std::move(left);
+/// Of the fibre that was left for this one.
+void Fibre::arrive(boost::context::fiber&& context) {
+    Fibre& left = *home_.left_;
+    landed(fake_stack_, &left.stack_, &left.stack_bytes_);
+    if (context)
+        left.context_ = std::move(context);
 }
 
 void Fibre::switch_to(Fibre& other) {
-    leaving = this;
+    home_.left_ = this;
     left_at_ = __builtin_frame_address(0);
     announce(&fake_stack_, other.stack_, other.stack_bytes_);
-    boost::context::fiber left = std::move(other.context_).resume();
-    arrive(std::move(left), &leaving->stack_, &leaving->stack_bytes_);
+    arrive(std::move(other.context_).resume());
 }
 
 } // namespace sim

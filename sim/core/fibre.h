@@ -1,5 +1,6 @@
-// One stack of execution: the scheduler's own, or a simulated thread's. Any fibre may switch to any other.
-// Fibres never move between host threads. Address-sanitizer builds tell it about every switch.
+// One stack of execution: the scheduler's own, or a simulated thread's. Any fibre may switch to any other of
+// the same home. All of them may go on on another host thread, if the home's own stack is that thread's:
+// nothing here is thread_local. Address-sanitizer builds tell it about every switch.
 #pragma once
 
 #include <boost/context/fiber.hpp>
@@ -11,8 +12,8 @@ namespace sim {
 
 class Fibre {
 public:
-    /// The one that runs now.
-    Fibre() = default;
+    /// The home of others: the stack of whoever switches from it.
+    Fibre() : home_(*this) {}
     /// Runs `body` at the first switch to it; when `body` returns, control goes to `home`. `body` must not
     /// throw.
     Fibre(std::size_t stack_bytes, std::function<void()> body, Fibre& home);
@@ -31,8 +32,10 @@ public:
     }
 
 private:
-    void arrive(boost::context::fiber&& left, const void** stack, std::size_t* size);
+    void arrive(boost::context::fiber&& context);
 
+    Fibre& home_;
+    Fibre* left_ = nullptr; // of a home: who of its own switched last
     boost::context::fiber context_;
     bool finished_ = false;
     const void* stack_ = nullptr;   // lowest address

@@ -12,7 +12,7 @@ Answered Engine::await(Hart& h, cycle ticket) {
     Answered a;
     while (!h.tile->tickets.find(ticket, a)) {
         h.tile->parked.push_back({&h, ticket});
-        Away away;
+        Away away(h);
         h.tile->scheduler.park();
     }
     return a;
@@ -26,7 +26,7 @@ cycle Engine::await_room(Hart& h, cycle since, cycle until) {
     if (until != Answer::unknown && latest(until) > h.tile->events->now())
         h.tile->events->look_again(latest(until));
     h.tile->parked.push_back({&h, 0});
-    Away away;
+    Away away(h);
     h.tile->scheduler.park();
     return std::max(since, h.bound.at());
 }

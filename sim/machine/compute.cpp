@@ -204,9 +204,8 @@ using sim::Hart;
 enum class Shape { lanes, across, to_scalar };
 
 /// An operation of the running thread on vectors, once `need` has been asked of every operand.
-template <Shape shape, class... Stamp> inline stamp operate(operation op, const Stamp&... operands) {
-    Engine& engine = *sim::running_engine;
-    Hart& hart = *sim::running_hart;
+template <Shape shape, class... Stamp>
+inline stamp operate_on(Engine& engine, Hart& hart, operation op, const Stamp&... operands) {
     sim::Due ready = engine.begin(hart);
     const std::size_t kind = sim::vector_kind(static_cast<std::size_t>(op));
     const bool there = engine.in_registers(hart, operands...);
@@ -220,6 +219,9 @@ template <Shape shape, class... Stamp> inline stamp operate(operation op, const 
     };
     (need(operands), ...);
     return engine.compute(hart, kind, engine.vector_instructions(), ready, shape != Shape::to_scalar);
+}
+template <Shape shape, class... Stamp> inline stamp operate(operation op, const Stamp&... operands) {
+    return operate_on<shape>(*sim::running_engine, *sim::running_hart, op, operands...);
 }
 template <class... Stamp> inline stamp operate_scalar(operation op, const Stamp&... operands) {
     Engine& engine = *sim::running_engine;
@@ -241,12 +243,11 @@ stamp vector_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
     return operate<Shape::lanes>(op, a, b, c);
 }
 stamp cross_op(operation op, const stamp& a, const stamp& b) {
-    if (op == operation::shuffle && sim::running_engine->shuffles_by_lane()) [[unlikely]] {
-        Engine& engine = *sim::running_engine;
-        Hart& hart = *sim::running_hart;
+    Engine& engine = *sim::running_engine;
+    Hart& hart = *sim::running_hart;
+    if (op == operation::shuffle && engine.shuffles_by_lane()) [[unlikely]]
         engine.assemble_shuffle(hart, engine.begin(hart));
-    }
-    return operate<Shape::across>(op, a, b);
+    return operate_on<Shape::across>(engine, hart, op, a, b);
 }
 stamp cross_to_scalar(operation op, const stamp& a, const stamp& b) {
     return operate<Shape::to_scalar>(op, a, b);

@@ -14,6 +14,10 @@ namespace sim {
 Engine* running_engine = nullptr;
 constinit thread_local Hart* running_hart = nullptr;
 
+void come_back_as(Hart* h) {
+    running_hart = h;
+}
+
 void Engine::outside(const void* p) {
     fmt::print(stderr, "razor-sim: broken invariant: a kernel touched {}, which is not in frame memory\n", p);
     std::abort();
@@ -201,18 +205,28 @@ void Engine::run_tile(Tile& tile) {
         tile.events->come_to(window_end_);
 }
 
+/// What this of so many host threads does of a window: every so many-th tile, then what the others have not
+/// begun, from the end.
+void Engine::run_shared(std::size_t number, std::size_t threads) {
+    const auto run_unclaimed = [this](Tile& tile) {
+        if (tile.claimed.load(std::memory_order_relaxed) != window_end_ &&
+            tile.claimed.exchange(window_end_, std::memory_order_relaxed) != window_end_)
+            run_tile(tile);
+    };
+    for (std::size_t i = number; i < active_.size(); i += threads)
+        run_unclaimed(*active_[i]);
+    for (std::size_t i = active_.size(); i-- > 0;)
+        run_unclaimed(*active_[i]);
+}
+
 void Engine::run_tiles() {
-    if (host_threads_.count() == 1) {
+    const auto threads = std::min(static_cast<std::size_t>(host_threads_.count()), active_.size());
+    if (threads <= 1) {
         for (Tile* tile : active_)
             run_tile(*tile);
     } else {
-        busy_threads_.assign(static_cast<std::size_t>(host_threads_.count()), false);
-        for (const Tile* tile : active_)
-            busy_threads_[static_cast<std::size_t>(host_thread(*tile))] = true;
-        host_threads_.these(busy_threads_, [this](int number) {
-            for (Tile* tile : active_)
-                if (host_thread(*tile) == number)
-                    run_tile(*tile);
+        host_threads_.first(static_cast<int>(threads), [this, threads](int number) {
+            run_shared(static_cast<std::size_t>(number), threads);
         });
     }
     for (const Tile* tile : active_)
@@ -246,10 +260,8 @@ void Engine::perform_deeds() {
             }
             resume(*d.hart, window_end_);
         } else {
-            host_threads_.one(host_thread(*d.hart->tile), [&](int) {
-                running_hart = d.hart;
-                scheduler.step(d.hart->number);
-            });
+            running_hart = d.hart;
+            scheduler.step(d.hart->number);
             if (scheduler.failure()) {
                 fail(scheduler.failure());
                 return;
@@ -397,7 +409,7 @@ void Engine::run_workers() {
             fail(std::make_exception_ptr(Deadlock(describe_deadlock())));
     if (failure_) {
         for (Tile& tile : tiles_)
-            host_threads_.one(host_thread(tile), [&](int) { tile.scheduler.cancel(); });
+            tile.scheduler.cancel();
         std::rethrow_exception(failure_);
     }
 }

@@ -306,7 +306,7 @@ private:
     void set_floors(cycle arrival);
     void run_tiles();
     void run_tile(Tile& tile);
-    int host_thread(const Tile& tile) const { return static_cast<int>(tile.number) % host_threads_.count(); }
+    void run_shared(std::size_t number, std::size_t threads);
     void perform_deeds();
     void resume(Hart& h, cycle t);
     void answer_parked(Tile& tile, cycle t, const std::function<bool(const Hart&)>& has_room);
@@ -379,8 +379,7 @@ private:
     std::vector<Tile*> active_; // of these
     std::mt19937 shuffled_;
     std::deque<Hart> harts_;
-    HostThreads host_threads_;       // tile t runs on number t % count
-    std::vector<bool> busy_threads_; // of these, in the window at hand
+    HostThreads host_threads_;
     cycle window_end_ = 0;
     std::exception_ptr failure_;
     cycle cycles_ = 0; // of the whole run
@@ -392,21 +391,24 @@ private:
     int workers_;
 };
 
-/// The run and the hardware thread that the port acts for; null outside a run. Fibres never move between host
-/// threads.
+/// The run and the hardware thread that the port acts for; null outside a run. Threads of a tile that let
+/// others run may go on on another thread of the host. As compilers may keep the address of what is
+/// thread_local over a call, no function looks at `running_hart` again after it has called what does so.
 extern Engine* running_engine;
 extern constinit thread_local Hart* running_hart;
+/// Sets it; a call, whose own look at its address is fresh.
+[[gnu::noinline]] void come_back_as(Hart* h);
 
 /// While a thread lets others run: whoever comes back is the one that left, also when it is being unwound.
 class Away {
 public:
-    Away() = default;
+    explicit Away(Hart& self) : self_(self) {}
     Away(const Away&) = delete;
     Away& operator=(const Away&) = delete;
-    ~Away() { running_hart = self_; }
+    ~Away() { come_back_as(&self_); }
 
 private:
-    Hart* self_ = running_hart;
+    Hart& self_;
 };
 
 } // namespace sim

@@ -1,5 +1,7 @@
 #include "sim/machine/host_threads.h"
 
+#include <algorithm>
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -80,24 +82,13 @@ void HostThreads::await(const Other& other) const {
     wait_until(other.done, other.asked.load(std::memory_order_relaxed), patience_);
 }
 
-void HostThreads::these(const std::vector<bool>& wanted, const std::function<void(int)>& job) {
-    for (std::size_t i = 0; i < others_.size(); ++i)
-        if (wanted[i + 1])
-            ask(others_[i], &job);
-    if (wanted[0])
-        job(0);
-    for (const Other& other : others_) // those that were not asked are done
-        await(other);
-}
-
-void HostThreads::one(int i, const std::function<void(int)>& job) {
-    if (i == 0) {
-        job(0);
-        return;
-    }
-    Other& other = others_[static_cast<std::size_t>(i) - 1];
-    ask(other, &job);
-    await(other);
+void HostThreads::first(int wanted, const std::function<void(int)>& job) {
+    const auto others = static_cast<std::size_t>(std::min(wanted, count()) - 1);
+    for (std::size_t i = 0; i < others; ++i)
+        ask(others_[i], &job);
+    job(0);
+    for (std::size_t i = 0; i < others; ++i)
+        await(others_[i]);
 }
 
 } // namespace sim

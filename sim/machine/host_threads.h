@@ -1,5 +1,4 @@
-// Host threads that work in step: some do something and meet again, or one does while the others wait. Number
-// 0 is the caller's.
+// Host threads that work in step: the first of them do something and meet again. Number 0 is the caller's.
 #pragma once
 
 #include <atomic>
@@ -8,7 +7,6 @@
 #include <deque>
 #include <functional>
 #include <thread>
-#include <vector>
 
 namespace sim {
 
@@ -20,10 +18,8 @@ public:
     HostThreads& operator=(const HostThreads&) = delete;
 
     int count() const { return static_cast<int>(others_.size()) + 1; }
-    /// Calls job(i) on each thread i with wanted[i]; returns when all have returned. `job` does not throw.
-    void these(const std::vector<bool>& wanted, const std::function<void(int)>& job);
-    /// Calls job(i) on thread i alone.
-    void one(int i, const std::function<void(int)>& job);
+    /// Calls job(i) on each thread i < wanted; returns when all have returned. `job` does not throw.
+    void first(int wanted, const std::function<void(int)>& job);
 
 private:
     using Patience = std::chrono::steady_clock::duration;

@@ -10,7 +10,7 @@ namespace sim {
 inline cycle Engine::turn(Hart& h, cycle t) {
     Scheduler::Key k = Scheduler::key(t, h.number);
     if (k > h.tile->scheduler.horizon()) {
-        Away away;
+        Away away(h);
         h.tile->scheduler.yield(k);
         come_back(h, t);
     }

@@ -1,4 +1,4 @@
-// Order among the hardware threads of a tile. All are fibres on one host thread; the one that runs goes on
+// Order among the hardware threads of a tile. All are fibres, of which one runs at a time; it goes on
 // until its next operation lies behind the horizon, then the earliest other one runs. With exact order the
 // horizon is the next thread's operation; with a quantum it is the end of the quantum that the operation lies
 // in. No thread passes the end of the window that run() was given, and a quantum that is no shorter than a

@@ -50,7 +50,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     h.acting = Due(begins, Cause::synchronise);
     h.asked = begins;
     if (scheduler.exact() || writes) {
-        Away away;
+        Away away(h);
         scheduler.wait_turn(Scheduler::key(begins, h.number));
         catch_up(begins);
     }
@@ -78,7 +78,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
             there = await(h, ready_at);
         h.asked = there.last;
         h.acting = Due(there.last + behind, behind == 0 ? there.from : Cause::synchronise);
-        Away away;
+        Away away(h);
         scheduler.wait_turn(Scheduler::key(h.acting.at(), h.number));
         catch_up(h.acting.at());
     }
@@ -86,7 +86,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     if (!homes_.acts_at_once(a, h.tile->number, use)) {
         h.tile->deeds.push_back({h.acting.at(), &h, {}});
         {
-            Away away;
+            Away away(h);
             scheduler.park();
         }
         homes_.note(a, h.tile->number, use);
@@ -215,7 +215,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         r.cause = static_cast<std::uint8_t>(ready.why());
     }
     if (h.tile->scheduler.stepping()) { // the deed is done
-        Away away;
+        Away away(h);
         h.now = std::max(h.now, window_end_);
         come_back(h, window_end_);
         h.tile->scheduler.yield(Scheduler::key(window_end_, h.number));
@@ -274,7 +274,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         h.tile->sleepers.push_back(&h);
         look(h, window_end_);
         {
-            Away away;
+            Away away(h);
             h.tile->scheduler.park();
         }
         h.waits_for = nullptr;
@@ -301,7 +301,7 @@ void Engine::request_page(Hart& h, isa::page_service& service, std::int32_t spac
                           std::int32_t index) {
     ++h.counters.pages;
     auto request = [&service, space, kind, index] { service.make_page(space, kind, index); };
-    Away away;
+    Away away(h);
     if (tiles_.size() == 1) {
         h.tile->scheduler.call(request);
     } else {

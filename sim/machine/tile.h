@@ -13,6 +13,7 @@
 #include "sim/memory/jitter.h"
 #include "sim/memory/tile_exit.h"
 
+#include <atomic>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -43,7 +44,8 @@ struct Tile {
     };
 
     std::uint32_t number;
-    cycle earliest = 0; // no operation from now on acts before
+    cycle earliest = 0;            // no operation from now on acts before
+    std::atomic<cycle> claimed{0}; // the end of the window that a thread of the host has begun with, or done
     Attribution attribution;
     Tickets tickets;
     SiteAtHand site; // for prefetchers by stride

@@ -15,7 +15,7 @@ namespace sim {
 /// A thread waits for a walk of its core to end; returns from when it goes on.
 cycle Engine::await_walk(Hart& h, cycle t) {
     h.core->mmu->waiting.push_back({&h, &t});
-    Away away;
+    Away away(h);
     h.tile->scheduler.park();
     h.now = std::max(h.now, t);
     come_back(h, window_end_);
