@@ -40,11 +40,10 @@ void Beyond::connect(std::deque<Tile>& tiles) {
     if (config_.coherence.kept())
         coherence_ = std::make_unique<Coherence>(config_, ways_, tiles, [this](Request w) {
             w.at = std::max(w.at, served_);
-            if (!config_.coherence.snoops()) // else memory has it as it passes
-                w.at = ways_.write(asker(w), w.write, w.bytes, w.at);
-            if (!caches_.empty())
-                w.at = cache_of(w).cache.book({w.write, w.bytes, w.at, w.column});
-            push(w);
+            if (config_.coherence.snoops()) // memory has it as it passes
+                return push(w);
+            const Ways::Leg leg = ways_.writing(asker(w), w.write, w.bytes);
+            return caches_.empty() ? send_on(w, leg, w.at) : send_to_bank(w, leg, w.at);
         });
     const unsigned level = config_.tile_levels();
     if (level == config_.cache_levels())
@@ -79,6 +78,14 @@ void Beyond::accept(std::vector<Request>& leaving) {
     leaving.clear();
 }
 
+/// A request is at its bank of a cache here.
+void Beyond::take_bank(Request r, cycle there) {
+    const bool write = r.stage == Request::writes;
+    const std::uint32_t bytes = write ? r.bytes : r.kind == Request::upgrade ? 1 : line_bytes_;
+    r.at = cache_of(r).cache.book({write ? r.write : r.read, bytes, there, r.column});
+    push(r);
+}
+
 /// What follows is the traffic of the request's tile.
 void Beyond::charge(const Request& r) {
     cache_of(r).charge((*tiles_)[r.tile].attribution);
@@ -93,12 +100,9 @@ void Beyond::tell(Request r) {
     const std::size_t own = r.tile / tiles_sharing_;
     if (r.stage == Request::arrives) {
         r.stage = Request::writes;
-        const cycle sent = r.at;
         for (r.to = 0; r.to < caches_.size(); ++r.to)
-            if ((r.to == own) == (r.kind == Request::discard)) {
-                r.at = ways_.tell(r.tile, r.to, r.write, sent);
-                push(r);
-            }
+            if ((r.to == own) == (r.kind == Request::discard))
+                send_on(r, ways_.telling(r.tile, r.to, r.write), r.at);
         return;
     }
     SharedCache& shared = caches_[r.to];

@@ -112,6 +112,11 @@ protected:
     std::size_t port_of(const Request& r) const { return r.tile * exits_ + r.exit; }
     Ways::Asker asker(const Request& r) const { return {Ways::Asker::tile, r.tile}; }
     SharedCache& cache_of(const Request& r) { return caches_[r.tile / tiles_sharing_]; }
+    /// A request leaves at `t` for where it is served next.
+    virtual void send_on(const Request& r, const Ways::Leg& leg, cycle t) = 0;
+    /// ... for the bank of a cache here, which it takes.
+    virtual void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) = 0;
+    void take_bank(Request r, cycle there);
     void charge(const Request& r);
     Attribution& attribution_of(const Request& r);
     void tell(Request r);

@@ -61,6 +61,12 @@ void ImmediateBeyond::serve(cycle end) {
         served_ = std::max(served_, end);
 }
 
+void ImmediateBeyond::send_on(const Request& r, const Ways::Leg& leg, cycle t) {
+    Request later = r;
+    later.at = ways_.send(leg, t);
+    push(later);
+}
+
 void ImmediateBeyond::serve_from_memory(Request r) {
     if (coherence_ && serves_alone(r))
         return;
@@ -186,7 +192,6 @@ std::optional<std::size_t> ImmediateBeyond::take(OrderedPool& pool, const Reques
 
 void ImmediateBeyond::arrive(Request r) {
     Port& port = ports_[port_of(r)];
-    Cache& cache = cache_of(r).cache;
     if (r.write != Request::nothing) {
         const auto buffer = take(port.write_backs, r);
         if (!buffer)
@@ -197,8 +202,7 @@ void ImmediateBeyond::arrive(Request r) {
         w.read = Request::nothing;
         w.mshr = *buffer;
         w.stage = Request::writes;
-        w.at = cache.book({r.write, r.bytes, ways_.write(asker(r), r.write, r.bytes, r.at), r.column});
-        push(w);
+        send_to_bank(w, ways_.writing(asker(r), r.write, r.bytes), r.at);
         r.write = Request::nothing;
     }
     if (r.read == Request::nothing)
@@ -208,9 +212,7 @@ void ImmediateBeyond::arrive(Request r) {
         return;
     r.mshr = *mshr;
     r.stage = Request::reads;
-    const std::uint32_t bytes = r.kind == Request::upgrade ? 1 : line_bytes_;
-    r.at = cache.book({r.read, bytes, ways_.ask(asker(r), r.read, r.at), r.column});
-    push(r);
+    send_to_bank(r, ways_.asking(asker(r), r.read), r.at);
 }
 
 void ImmediateBeyond::write(Request r) {

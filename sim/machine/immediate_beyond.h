@@ -50,6 +50,10 @@ private:
         std::vector<Request> held{}; // until it is known when an MSHR is free
     };
     Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(memory_, ways_, cache); }
+    void send_on(const Request& r, const Ways::Leg& leg, cycle t) override;
+    void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
+        take_bank(r, ways_.send(leg, t));
+    }
     void serve_from_memory(Request r);
     void wait(Queue& queue, Request r, cycle until);
     void leave(Queue& queue, const Request& r, OrderedPool& pool);

@@ -1,11 +1,19 @@
 #include "sim/machine/queued_beyond.h"
 
+#include "sim/machine/windows.h"
+
 #include <algorithm>
 
 namespace sim {
 
 QueuedBeyond::QueuedBeyond(const Config& config, Reply reply)
-    : Beyond(config, std::move(reply)), shortest_(MemoryLines::shortest_read(config)), memory_(config) {
+    : Beyond(config, std::move(reply)),
+      unknown_(known_ahead(config) +
+               (config.network.ideal()
+                    ? 0
+                    : static_cast<std::uint64_t>(flits_of(
+                          config.network, config.network.reply_bytes + config.last_cache().line_bytes)))),
+      memory_(config), flights_(ways_.network(), known_ahead(config)) {
     const CacheConfig& last = config.cache(config.tile_levels() - 1);
     ports_.assign(
         static_cast<std::size_t>(config.chip.tiles) * exits_,
@@ -14,7 +22,7 @@ QueuedBeyond::QueuedBeyond(const Config& config, Reply reply)
 
 /// What memory decides at a cycle depends on nothing that comes at this cycle or later.
 cycle QueuedBeyond::next() {
-    cycle next = waiting_.empty() ? never : waiting_.front().at;
+    cycle next = std::min(flights_.next(), waiting_.empty() ? never : waiting_.front().at);
     if (!events_.empty())
         next = std::min(next, events_.top().at);
     if (memory_.busy())
@@ -27,19 +35,24 @@ void QueuedBeyond::serve(cycle end) {
         const cycle decision = memory_.busy() ? memory_.next_event() : never;
         const cycle event = events_.empty() ? never : events_.top().at;
         const cycle request = waiting_.empty() ? never : waiting_.front().at;
-        const cycle next = std::min({decision, event, request});
+        const cycle message = flights_.next();
+        const cycle next = std::min({decision, message, event, request});
         if (next == never || next > end || (next == end && decision != end))
             break;
         served_ = std::max(served_, next);
         if (decision == next) {
             memory_.advance_to(next);
             take_answers();
+            take_lines();
             wake();
             continue;
         }
         // All that memory has decided before this cycle is known: what it will decide is answered later.
-        tickets_.set_floors({served_ + shortest_, served_ + shortest_});
-        if (event == next) {
+        tickets_.set_floors({next + unknown_, next + unknown_});
+        if (message == next) {
+            if (const auto there = flights_.step())
+                arrive(there->id, there->at);
+        } else if (event == next) {
             const Event e = events_.top();
             events_.pop();
             act(e);
@@ -47,6 +60,7 @@ void QueuedBeyond::serve(cycle end) {
             act(pop());
         }
         take_answers();
+        take_lines();
         wake();
     }
     if (end != everything)
@@ -61,37 +75,79 @@ cycle QueuedBeyond::drain() {
     return served_;
 }
 
-/// A line is on its way to memory from `t` on.
-void QueuedBeyond::send(cycle t, Event::Kind kind, const Transfer& line) {
-    come(kind == Event::reads ? ways_.ask(line.who, line.address, t)
-                              : ways_.write(line.who, line.address, line.bytes, t),
-         kind, line);
+// --- ways
+
+std::uint64_t QueuedBeyond::keep(const Transfer& transfer) {
+    if (free_.empty()) {
+        transfers_.push_back(transfer);
+        return transfers_.size() - 1;
+    }
+    const std::uint64_t id = free_.back();
+    free_.pop_back();
+    transfers_[id] = transfer;
+    return id;
 }
 
-/// It comes there.
-void QueuedBeyond::come(cycle there, Event::Kind kind, const Transfer& line) {
-    std::uint64_t id = transfers_.size();
-    if (free_.empty()) {
-        transfers_.push_back(line);
-    } else {
-        id = free_.back();
-        free_.pop_back();
-        transfers_[id] = line;
+void QueuedBeyond::leave(std::uint64_t transfer, const Ways::Leg& leg, cycle t) {
+    if (ways_.ideal())
+        arrive(transfer, t);
+    else
+        flights_.send(transfer, leg, t);
+}
+
+/// It is known that it is there then.
+void QueuedBeyond::arrive(std::uint64_t id, cycle there) {
+    switch (transfers_[id].goes) {
+    case Transfer::to_be_read:
+        return foresee(there, Event::reads, id);
+    case Transfer::to_be_written:
+        return foresee(there, Event::writes, id);
+    case Transfer::to_a_bank:
+        return foresee(there, Event::takes_bank, id);
+    case Transfer::on: {
+        Request r = transfers_[id].request;
+        free_.push_back(id);
+        r.at = there;
+        return push(r);
     }
-    foresee(there, kind, id);
+    case Transfer::back:
+        const Transfer t = transfers_[id];
+        free_.push_back(id);
+        if (t.who.kind == Ways::Asker::tile)
+            return is_back(t.request, {there, t.from});
+        if (there < tickets_.floors().lines) // caches have counted on it
+            calendar_has_passed("lines", there, tickets_.floors().lines);
+        answer_ticket(t.ticket, {there, t.from});
+    }
+}
+
+/// A line is on its way to memory from `t` on.
+void QueuedBeyond::send(const Transfer& line, cycle t) {
+    const bool read = line.goes == Transfer::to_be_read;
+    leave(keep(line),
+          read ? ways_.asking(line.who, line.address) : ways_.writing(line.who, line.address, line.bytes), t);
+}
+
+/// ... or back to who asked for it.
+void QueuedBeyond::send_back(std::uint64_t id, cycle t) {
+    Transfer& line = transfers_[id];
+    line.goes = Transfer::back;
+    leave(id, ways_.answering(line.who, line.address, line.bytes), t);
 }
 
 /// A cache here asks for a line, or writes one. Returns its ticket.
-cycle QueuedBeyond::send_for(Ways::Asker cache, const Access& a, Event::Kind kind) {
+cycle QueuedBeyond::send_for(Ways::Asker cache, const Access& a, Transfer::Goes goes) {
     const cycle ticket = tickets_.open();
-    send(std::max(a.at, served_), kind, {cache, a.address, a.bytes, ticket});
+    send({.goes = goes, .who = cache, .address = a.address, .bytes = a.bytes, .ticket = ticket},
+         std::max(a.at, served_));
     return ticket;
 }
+
+// --- events
 
 void QueuedBeyond::act(const Event& e) {
     switch (e.kind) {
     case Event::reads:
-        transfers_[e.what].since = served_;
         return memory_.read(e.what, transfers_[e.what].address, served_);
     case Event::writes: {
         const Transfer& line = transfers_[e.what];
@@ -99,6 +155,9 @@ void QueuedBeyond::act(const Event& e) {
             coherence_->written(line.request);
         return memory_.write(e.what, line.address, served_);
     }
+    case Event::takes_bank:
+        free_.push_back(e.what);
+        return take_bank(transfers_[e.what].request, served_);
     case Event::frees_mshr:
     case Event::frees_buffer:
         return next_waiting(e.what, e.kind == Event::frees_mshr);
@@ -159,11 +218,14 @@ void QueuedBeyond::enter_buffer(Request r) {
     w.read = Request::nothing;
     w.stage = Request::writes;
     if (caches_.empty()) {
-        send(served_, Event::writes, {asker(r), r.write, r.bytes, 0, w});
+        send({.goes = Transfer::to_be_written,
+              .who = asker(r),
+              .address = r.write,
+              .bytes = r.bytes,
+              .request = w},
+             served_);
     } else {
-        w.at = cache_of(r).cache.book(
-            {r.write, r.bytes, ways_.write(asker(r), r.write, r.bytes, served_), r.column});
-        push(w);
+        send_to_bank(w, ways_.writing(asker(r), r.write, r.bytes), served_);
     }
     r.write = Request::nothing;
     if (r.read != Request::nothing)
@@ -172,12 +234,15 @@ void QueuedBeyond::enter_buffer(Request r) {
 
 void QueuedBeyond::enter_mshr(Request r) {
     if (caches_.empty() && !coherence_)
-        return send(served_, Event::reads, {asker(r), r.read, line_bytes_, 0, r});
+        return send({.goes = Transfer::to_be_read,
+                     .who = asker(r),
+                     .address = r.read,
+                     .bytes = line_bytes_,
+                     .request = r},
+                    served_);
     r.stage = Request::reads;
-    r.at = ways_.ask(asker(r), r.read, served_);
-    if (!caches_.empty())
-        r.at = cache_of(r).cache.book({r.read, r.kind == Request::upgrade ? 1 : line_bytes_, r.at, r.column});
-    push(r);
+    const Ways::Leg leg = ways_.asking(asker(r), r.read);
+    return caches_.empty() ? send_on(r, leg, served_) : send_to_bank(r, leg, served_);
 }
 
 // --- coherence
@@ -186,9 +251,8 @@ void QueuedBeyond::enter_mshr(Request r) {
 void QueuedBeyond::claim(Request r) {
     if (r.stage != Request::arrives)
         return coherence_->claim(r, r.at + coherence_->look_up());
-    r.at = ways_.answer_directory(r.tile, r.write, r.at);
     r.stage = Request::writes;
-    push(r);
+    send_on(r, ways_.telling_directory(r.tile, r.write), r.at);
 }
 
 /// An upgrade of who has the right by now needs no MSHR, nor anybody else.
@@ -215,15 +279,25 @@ void QueuedBeyond::ask_others(const Request& r) {
     if (out.from != Coherence::Outcome::below)
         return reply(r, {std::max(out.at, out.finished), Cause::coherence});
     ++attribution_of(r).cell(r.read, r.column).memory_reads;
-    Transfer line{asker(r), r.read, line_bytes_, 0, r, out.known};
+    Transfer line{.goes = Transfer::to_be_read,
+                  .who = asker(r),
+                  .address = r.read,
+                  .bytes = line_bytes_,
+                  .request = r,
+                  .known = out.known};
     line.request.finished = out.finished;
-    come(out.at, Event::reads, line);
+    arrive(keep(line), out.at);
 }
 
 /// What an owner had changed comes to memory, as others read it.
 void QueuedBeyond::write_owners(const Request& r) {
     ++attribution_of(r).cell(r.write, r.column).memory_writes;
-    come(r.at, Event::writes, {asker(r), r.write, r.bytes, 0, r});
+    arrive(keep({.goes = Transfer::to_be_written,
+                 .who = asker(r),
+                 .address = r.write,
+                 .bytes = r.bytes,
+                 .request = r}),
+           r.at);
 }
 
 /// Those go on that waited for lines of which it is known now when their owners have them.
@@ -276,13 +350,24 @@ void QueuedBeyond::look_up(Request r) {
     }
 }
 
-void QueuedBeyond::answer(const Request& r, Answer a) {
+void QueuedBeyond::answer(const Request& r, const Answer& a) {
     if (r.stage == Request::writes) {
         if (r.mshr != Request::no_entry)
             foresee(std::max(a.ready, served_), Event::frees_buffer, port_of(r));
         return;
     }
-    a.ready = ways_.answer(asker(r), r.read, line_bytes_, a.ready);
+    if (ways_.ideal())
+        return is_back(r, a);
+    send_back(keep({.goes = Transfer::back,
+                    .who = asker(r),
+                    .address = r.read,
+                    .bytes = line_bytes_,
+                    .request = r,
+                    .from = a.from}),
+              a.ready);
+}
+
+void QueuedBeyond::is_back(const Request& r, Answer a) {
     if (r.finished > a.ready)
         a = {r.finished, Cause::coherence};
     if (coherence_) {
@@ -304,23 +389,25 @@ void QueuedBeyond::take_answers() {
         return;
     for (const WaitingMemory::Done& d : memory_.reads()) {
         const Transfer& t = transfers_[d.id];
-        const cycle sent = std::max({d.at, t.since + shortest_, t.known}); // the write queue answers at once
-        if (t.who.kind == Ways::Asker::tile)
-            answer(t.request, {sent, Cause::memory});
-        else
-            tickets_.answer(t.ticket, ways_.answer(t.who, t.address, t.bytes, sent), Cause::memory);
-        free_.push_back(d.id);
+        send_back(d.id, std::max(d.at, t.known));
     }
     for (const WaitingMemory::Done& d : memory_.writes()) {
         const Transfer& t = transfers_[d.id];
         if (t.who.kind == Ways::Asker::tile)
             answer(t.request, {d.at, Cause::memory});
         else
-            tickets_.answer(t.ticket, d.at, Cause::memory);
+            answer_ticket(t.ticket, {d.at, Cause::memory});
         free_.push_back(d.id);
     }
     memory_.reads().clear();
     memory_.writes().clear();
+}
+
+/// What caches here have waited for.
+void QueuedBeyond::take_lines() {
+    if (!lines_came_)
+        return;
+    lines_came_ = false;
     std::erase_if(unanswered_, [this](const Unanswered& u) {
         Answered a{};
         if (!tickets_.find(u.ticket, a))

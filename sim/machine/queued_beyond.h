@@ -1,14 +1,16 @@
 // Beyond the tiles, with a memory whose controller has queues: a discrete-event simulation in time order. A
 // request holds its MSHR or its place in the write-back buffer until memory has decided its answer and the
 // answer is there, which may be windows later; those that find none free wait for them, and lines for room in
-// memory's queues, each in the order in which they came. At the same cycle memory acts before what lies here,
-// and that before new requests. On a coherent machine a request acts when the directory, or the hub of the
+// memory's queues, each in the order in which they came. Messages take links of the network when they come
+// there (flights.h). At the same cycle memory acts before messages, these before what lies here, and that
+// before new requests. On a coherent machine a request acts when the directory, or the hub of the
 // buses, has it; one for a line whose owner is still being answered waits until that is decided, and then
 // goes on in the order in which it came.
 #pragma once
 
 #include "sim/machine/beyond.h"
 #include "sim/memory/waiting_memory.h"
+#include "sim/network/flights.h"
 
 #include <queue>
 #include <unordered_map>
@@ -34,24 +36,26 @@ private:
         std::size_t mshrs, buffers;        // that are free
         std::deque<Request> reads, writes; // that wait for one
     };
-    /// What happens here by itself: an MSHR or buffer of an exit is free, a line comes to memory.
+    /// What happens here by itself: an MSHR or buffer of an exit is free, a line comes to memory, or a
+    /// request to a bank.
     struct Event {
-        enum Kind : std::uint8_t { frees_mshr, frees_buffer, reads, writes };
+        enum Kind : std::uint8_t { frees_mshr, frees_buffer, reads, writes, takes_bank };
         cycle at;
         std::uint64_t number; // in the order in which they were foreseen
         Kind kind;
         std::uint64_t what; // the exit, or the transfer
         bool operator>(const Event& e) const { return at != e.at ? at > e.at : number > e.number; }
     };
-    /// A line that memory is asked for, or given.
+    /// What is on its way over the network, or in memory.
     struct Transfer {
-        Ways::Asker who;
-        std::uint64_t address;
-        std::uint32_t bytes; // that come back, or go there
-        cycle ticket = 0;    // of a cache here, among tickets_
-        Request request{};   // of a tile
-        cycle known = 0;     // where caches are coherent: no answer leaves earlier
-        cycle since = 0;     // when memory was asked
+        enum Goes : std::uint8_t { to_be_read, to_be_written, to_a_bank, on, back } goes;
+        Ways::Asker who{};
+        std::uint64_t address = 0;
+        std::uint32_t bytes = 0; // that come back, or go there
+        cycle ticket = 0;        // of a cache here, among tickets_
+        Request request{};       // of a tile
+        Cause from = Cause::memory;
+        cycle known = 0; // where caches are coherent: no answer leaves earlier
     };
     /// What a cache here has answered with a ticket.
     struct Unanswered {
@@ -61,22 +65,31 @@ private:
     struct MemoryBelow final : Below {
         MemoryBelow(QueuedBeyond& b, std::uint32_t cache) : beyond(b), who{Ways::Asker::cache, cache} {}
         Answer read(const Access& a) override {
-            return {beyond.send_for(who, a, Event::reads), Cause::memory};
+            return {beyond.send_for(who, a, Transfer::to_be_read), Cause::memory};
         }
         Answer write(const Access& a) override {
-            return {beyond.send_for(who, a, Event::writes), Cause::memory};
+            return {beyond.send_for(who, a, Transfer::to_be_written), Cause::memory};
         }
         QueuedBeyond& beyond;
         Ways::Asker who;
     };
 
     Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(*this, cache); }
+    void send_on(const Request& r, const Ways::Leg& leg, cycle t) override {
+        leave(keep({.goes = Transfer::on, .request = r}), leg, t);
+    }
+    void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
+        leave(keep({.goes = Transfer::to_a_bank, .request = r}), leg, t);
+    }
     void foresee(cycle at, Event::Kind kind, std::uint64_t what) {
         events_.push({at, foreseen_++, kind, what});
     }
-    cycle send_for(Ways::Asker cache, const Access& a, Event::Kind kind);
-    void send(cycle t, Event::Kind kind, const Transfer& line);
-    void come(cycle there, Event::Kind kind, const Transfer& line);
+    std::uint64_t keep(const Transfer& transfer);
+    void leave(std::uint64_t transfer, const Ways::Leg& leg, cycle t);
+    void arrive(std::uint64_t transfer, cycle there);
+    cycle send_for(Ways::Asker cache, const Access& a, Transfer::Goes goes);
+    void send(const Transfer& line, cycle t);
+    void send_back(std::uint64_t transfer, cycle t);
     void act(const Event& e);
     void act(const Request& r);
     void claim(Request r);
@@ -91,12 +104,19 @@ private:
     void enter_buffer(Request r);
     void enter_mshr(Request r);
     void look_up(Request r);
-    void answer(const Request& r, Answer a);
+    void answer(const Request& r, const Answer& a);
+    void is_back(const Request& r, Answer a);
     void reply(const Request& r, Answer a);
     void take_answers();
+    void answer_ticket(cycle ticket, const Answer& a) {
+        tickets_.answer(ticket, a.ready, a.from);
+        lines_came_ = true;
+    }
+    void take_lines();
 
-    std::uint64_t shortest_; // core cycles of a read of memory
+    std::uint64_t unknown_; // core cycles until a line may be here of which it is not known when
     WaitingMemory memory_;
+    Flights flights_;
     std::deque<MemoryBelow> below_; // by cache
     std::vector<Port> ports_;       // by tile and exit
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
@@ -104,6 +124,7 @@ private:
     std::vector<Transfer> transfers_;
     std::vector<std::uint64_t> free_; // of these
     std::vector<Unanswered> unanswered_;
+    bool lines_came_ = false; // some of these are answered
     // Of a coherent machine, by line: what waits until it is known when the line's owner has it, and the
     // lines of which that is known now.
     std::unordered_map<std::uint64_t, std::vector<Request>> blocked_;

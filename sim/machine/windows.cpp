@@ -22,18 +22,25 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
     return (core_cycles * wide(c.chip.clock_ps) + wide(c.memory.clock_ps) - 1) / wide(c.memory.clock_ps);
 }
 
+std::uint64_t known_ahead(const Config& c) {
+    const unsigned last = c.cache_levels() - 1;
+    const std::uint64_t memory = MemoryLines::shortest_read(c);
+    return c.beyond_tiles(last) ? std::min(memory, wide(c.cache(last).latency)) : memory;
+}
+
 namespace {
 
 std::uint64_t line_from_below(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
     const Ways::Shortest way = Ways::shortest(c);
-    const std::uint64_t memory = MemoryLines::shortest_read(c) + way.back;
-    const bool queued = c.memory.controller == "queued";
-    if (!c.beyond_tiles(last)) // what has waited for queues is decided when it has long been there
-        return queued ? memory : way.there + memory;
+    // What has waited for queues is decided when it has long been there, and when a line is there is known
+    // when it has come to its last link.
+    if (c.memory.controller == "queued")
+        return known_ahead(c) + way.last_link;
+    if (!c.beyond_tiles(last))
+        return way.there + MemoryLines::shortest_read(c) + way.back;
     // A cache's bank takes its turn when the request is there: only what follows can be counted on.
-    const std::uint64_t cache = wide(c.cache(last).latency) + way.back;
-    return queued ? std::min(cache, memory) : cache;
+    return wide(c.cache(last).latency) + way.back;
 }
 
 /// Until a directory has looked up what a tile asks for; where a bank takes its turn, or requests act when

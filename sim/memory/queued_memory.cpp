@@ -32,7 +32,7 @@ std::string QueuedMemory::mistake(const Config& config) {
     return "";
 }
 
-QueuedMemory::QueuedMemory(const Config& config) : MemoryLines(config) {
+QueuedMemory::QueuedMemory(const Config& config) : MemoryLines(config), shortest_(shortest_read(config)) {
     if (const std::string what = mistake(config); !what.empty())
         throw ConfigError(what);
     const MemoryConfig& c = config.memory;
@@ -93,7 +93,7 @@ bool QueuedMemory::read(std::uint64_t id, std::uint64_t address, cycle t) {
     } else {
         free_ = reading_[slot].next_free;
     }
-    reading_[slot] = {id, number_++, 0, parts_, none};
+    reading_[slot] = {id, number_++, t + shortest_, 0, parts_, none};
     ++undecided_;
     send(Column::read, burst, slot, clock);
     deliver();
@@ -117,7 +117,7 @@ void QueuedMemory::collect(DramController& c) {
         line.last = std::max(line.last, d.at);
         if (--line.left != 0)
             continue;
-        answers_.push_back({line.number, {line.id, leave(line.last) + back_}});
+        answers_.push_back({line.number, {line.id, std::max(leave(line.last) + back_, line.least)}});
         --undecided_;
         line.next_free = free_;
         free_ = slot;

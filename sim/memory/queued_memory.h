@@ -57,7 +57,8 @@ public:
 private:
     struct Line { // that is being read
         std::uint64_t id = 0, number = 0;
-        Clock last = 0; // data of the bursts that have come
+        cycle least = 0; // no answer is earlier
+        Clock last = 0;  // data of the bursts that have come
         std::uint32_t left = 0, next_free = 0;
     };
     struct Answer {
@@ -76,6 +77,7 @@ private:
     std::vector<Clock> next_;       // their next events
     Clock soonest_;                 // of these
     std::vector<DramPlace> places_; // of the bursts of the line that is asked about
+    cycle shortest_;
     std::vector<Line> reading_;
     std::uint32_t free_ = ~std::uint32_t{0};
     std::uint64_t number_ = 0;

@@ -14,8 +14,20 @@ Network::Network(const Config& c, const cycle& earliest)
               static_cast<std::uint32_t>(c.network.request_bytes)},
       links_(c.network.ideal() ? 0 : topology_.links(), Link{Calendar("network link", earliest)}) {}
 
-/// Takes the first free cycles from `t` on, one a flit.
-Calendar::Span Network::book(Link& link, cycle t, std::uint32_t flits) {
+std::uint32_t Network::flits(const Leg& leg) const {
+    const std::uint32_t bytes = header_[static_cast<std::size_t>(leg.kind)] + leg.data;
+    return std::max(1U, (bytes + link_bytes_ - 1) / link_bytes_);
+}
+
+void Network::route(const Leg& leg, std::vector<std::uint32_t>& links) const {
+    links.assign(1, static_cast<std::uint32_t>(topology_.link_from(leg.from)));
+    topology_.walk(leg.from, leg.to,
+                   [&](std::size_t link) { links.push_back(static_cast<std::uint32_t>(link)); });
+    links.push_back(static_cast<std::uint32_t>(topology_.link_to(leg.to)));
+}
+
+Calendar::Span Network::book(std::size_t number, cycle t, std::uint32_t flits) {
+    Link& link = links_[number];
     const bool within = t >= link.full_from && t <= link.full_to;
     const cycle from = within ? link.full_to : t; // a backlog in one step
     constexpr std::uint32_t at_once = 64;
@@ -30,31 +42,54 @@ Calendar::Span Network::book(Link& link, cycle t, std::uint32_t flits) {
     return s;
 }
 
-cycle Network::send(Message kind, std::size_t from, std::size_t to, std::uint32_t data, cycle t) {
-    const std::uint32_t bytes = header_[static_cast<std::size_t>(kind)] + data;
-    const std::uint32_t flits = std::max(1U, (bytes + link_bytes_ - 1) / link_bytes_);
-    const std::uint64_t hops = topology_.hops(from, to);
-    std::uint64_t links = 2;
+std::uint32_t Network::book_before(std::size_t number, cycle t, std::uint32_t flits, cycle end,
+                                   Calendar::Span& span) {
+    Link& link = links_[number];
+    std::uint32_t taken = 0;
+    for (; taken < flits; ++taken) {
+        const cycle slot = link.calendar.find(t);
+        if (slot >= end)
+            break;
+        link.calendar.mark(slot);
+        span = {taken == 0 ? slot : span.first, slot};
+        t = slot + 1;
+        quiet_ = std::max(quiet_, t);
+    }
+    link.flits += taken;
+    return taken;
+}
+
+cycle Network::next(Calendar::Span taken, std::uint32_t flits, std::size_t hop, std::size_t links) const {
     // No flit goes on before it has come: as the last one does not, none does.
-    const auto next = [flits](Calendar::Span s, cycle later) {
-        return std::max(s.first, s.last - (flits - 1)) + later;
-    };
-    cycle head = next(book(links_[topology_.link_from(from)], t, flits), through_port_);
-    topology_.walk(from, to, [&](std::size_t link) {
-        head = next(book(links_[link], head, flits), hop_cycles_);
-        ++links;
-    });
-    const cycle there = book(links_[topology_.link_to(to)], head, flits).last + 1;
-    ++(counters_.*network_counters[static_cast<std::size_t>(kind)].count);
+    const cycle head = std::max(taken.first, taken.last - (flits - 1));
+    return head + (hop == 0 ? through_port_ : hop + 1 < links ? hop_cycles_ : 0);
+}
+
+void Network::count(const Leg& leg, std::size_t links, cycle sent, cycle there) {
+    const std::uint32_t bytes = header_[static_cast<std::size_t>(leg.kind)] + leg.data;
+    const std::uint64_t hops = topology_.hops(leg.from, leg.to), flits = this->flits(leg);
+    ++(counters_.*network_counters[static_cast<std::size_t>(leg.kind)].count);
     counters_.bytes += bytes;
-    counters_.data_bytes += data;
+    counters_.data_bytes += leg.data;
     counters_.flits += flits;
     counters_.hops += hops;
     counters_.byte_hops += bytes * hops;
     counters_.link_flits += flits * links;
-    counters_.latency_cycles += there - t;
-    counters_.queue_cycles += there - t - hops * hop_cycles_ - flits;
-    return there;
+    counters_.latency_cycles += there - sent;
+    counters_.queue_cycles += there - sent - hops * hop_cycles_ - flits;
+}
+
+cycle Network::send(const Leg& leg, cycle t) {
+    const std::uint32_t flits = this->flits(leg);
+    route(leg, route_);
+    cycle head = t;
+    Calendar::Span taken{};
+    for (std::size_t hop = 0; hop < route_.size(); ++hop) {
+        taken = book(route_[hop], head, flits);
+        head = next(taken, flits, hop, route_.size());
+    }
+    count(leg, route_.size(), t, taken.last + 1);
+    return taken.last + 1;
 }
 
 NetworkReport Network::report() const {

@@ -41,12 +41,11 @@ std::size_t Ways::home(std::uint64_t address) const {
     return banks_ ? (address >> line_shift_) % homes_ : mapping_.locate(address & ~line_mask_).channel;
 }
 
-cycle Ways::reach(Network::Message kind, Asker who, std::uint64_t address, std::uint32_t bytes, cycle t) {
-    const std::size_t to = target(who, address);
-    cycle there = network_.send(kind, source(who, address), to, bytes, t);
-    if (to < network_.topology().channel(0))
-        return there;
-    return in_order(there);
+cycle Ways::reach(const Leg& leg, cycle t) {
+    if (ideal_)
+        return t;
+    const cycle there = network_.send(leg, t);
+    return leg.to < network_.topology().channel(0) ? there : in_order(there);
 }
 
 Ways::Shortest Ways::shortest(const Config& c) {
@@ -61,8 +60,8 @@ Ways::Shortest Ways::shortest(const Config& c) {
             hops = std::min(hops, t.hops(tile, to));
     const std::uint64_t way = hops * static_cast<std::uint64_t>(c.network.hop_cycles);
     const integer line = c.cache(c.tile_levels() - 1).line_bytes;
-    return {way + flits(c.network, c.network.request_bytes),
-            way + flits(c.network, c.network.reply_bytes + line)};
+    const std::uint64_t last_link = flits(c.network, c.network.reply_bytes + line);
+    return {way + flits(c.network, c.network.request_bytes), way + last_link, last_link};
 }
 
 } // namespace sim

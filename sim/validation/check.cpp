@@ -6,6 +6,7 @@
 #include "sim/validation/coherence_forms.h"
 #include "sim/validation/core_forms.h"
 #include "sim/validation/network_forms.h"
+#include "sim/validation/network_order.h"
 #include "sim/validation/reference_forms.h"
 #include "sim/validation/tlb_forms.h"
 
@@ -83,6 +84,17 @@ std::vector<ValidationRow> check_tlb() {
     return check_forms("TLB", tlb_forms());
 }
 
+namespace {
+
+double mean_way(const NetworkOrder& o, const std::vector<cycle>& there) {
+    double sum = 0;
+    for (std::size_t i = 0; i < there.size(); ++i)
+        sum += static_cast<double>(there[i] - o.messages[i].sent);
+    return sum / static_cast<double>(there.size());
+}
+
+} // namespace
+
 std::vector<ValidationRow> check_network() {
     std::vector<ValidationRow> rows;
     for (const NetworkPing& p : network_pings()) {
@@ -97,6 +109,26 @@ std::vector<ValidationRow> check_network() {
     for (const NetworkLoad& l : network_loads())
         rows.push_back(compare("network: " + l.name, "closed form: " + l.by, static_cast<double>(l.run()),
                                static_cast<double>(l.expected), 0.02, "cycles"));
+    constexpr cycle ahead = 100;
+    for (const NetworkOrder& o : network_orders()) {
+        const std::vector<cycle> expected = arrivals_by_lists(o.config, o.messages),
+                                 measured = arrivals_of_flights(o.config, o.messages, ahead);
+        std::size_t wrong = 0;
+        std::string first;
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            if (measured[i] != expected[i] && wrong++ == 0)
+                first = fmt::format("message {}: at {} for {}", i, measured[i], expected[i]);
+        rows.push_back(exact("network: link by link, " + o.name, "lists of taken cycles", expected.size(),
+                             wrong, first));
+    }
+    for (const NetworkOrder& o : network_orders()) {
+        const double exact = mean_way(o, arrivals_by_lists(o.config, o.messages)),
+                     measured = mean_way(o, arrivals_at_once(o.config, o.messages, ahead));
+        rows.push_back({"network: all links at once (fast mode), " + o.name, "lists of taken cycles", "none",
+                        fmt::format("{:.4g} cycles for {:.4g}: {:+.1f} %", measured, exact,
+                                    100 * (measured / exact - 1)),
+                        ValidationRow::State::reported});
+    }
     return rows;
 }
 

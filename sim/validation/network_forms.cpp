@@ -24,7 +24,7 @@ cycle last_arrival(const Config& c, const std::vector<std::pair<std::size_t, std
     for (int i = 0; i < each; ++i)
         for (const auto& [from, to] : pairs)
             last = std::max(
-                last, network.send(Network::Message::write, from, to, static_cast<std::uint32_t>(line), 0));
+                last, network.send({Network::Message::write, from, to, static_cast<std::uint32_t>(line)}, 0));
     return last;
 }
 

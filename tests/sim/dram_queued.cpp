@@ -2,7 +2,7 @@
 // its effect.
 #include "sim/memory/dram_bounds.h"
 #include "sim/memory/dram_load.h"
-#include "sim/memory/queued_memory.h"
+#include "sim/memory/waiting_memory.h"
 #include "tests/sim/dram_traffic.h"
 #include "tests/sim/machines.h"
 
@@ -248,12 +248,31 @@ TEST(DramQueued, QueuedWritesAnswerReadsAndTakeOthersIn) {
     EXPECT_TRUE(bench.memory.write(640, 0));
     EXPECT_TRUE(bench.memory.write(640, 5));
     EXPECT_TRUE(bench.memory.read(7, 640, 10));
-    EXPECT_EQ(bench.answers(10), (std::map<std::uint64_t, cycle>{{7, 10}}));
+    // No sooner than the shortest.
+    EXPECT_EQ(bench.answers(10), (std::map<std::uint64_t, cycle>{{7, 10 + QueuedMemory::shortest_read(c)}}));
     EXPECT_EQ(bench.memory.counters().forwarded, 1U);
     EXPECT_EQ(bench.memory.counters().merged, 1U);
     bench.memory.finish();
     EXPECT_EQ(bench.memory.counters().write_bursts, 1U);
     EXPECT_EQ(bench.memory.counters().read_bursts, 0U);
+}
+
+// One that the full queue has refused is held back from when it goes in.
+TEST(DramQueued, AReadThatWaitedIsNoSoonerThanTheShortest) {
+    Config c = ddr4();
+    c.memory.read_queue = 1;
+    WaitingMemory memory(c);
+    memory.write(0, 640, 0);
+    memory.read(1, 4 * gibibyte / 8, 1);
+    memory.read(2, 640, 2);
+    EXPECT_TRUE(memory.busy());
+    cycle decided = 0;
+    while (memory.reads().size() < 2)
+        memory.advance_to(++decided);
+    EXPECT_EQ(memory.queues().counters().forwarded, 1U);
+    for (const WaitingMemory::Done& d : memory.reads())
+        EXPECT_GE(d.at + 1, d.id == 2 ? decided + QueuedMemory::shortest_read(c) : 0);
+    EXPECT_GT(decided, 2U);
 }
 
 // Two reads of a bank, far apart: of one row and of two, by page policy.

@@ -77,7 +77,7 @@ TEST(Network, WithoutOthersAMessageTakesItsHopsAndFlits) {
                     for (const integer data : {0, 8, 9, 64, 128}) {
                         Network n(c, none);
                         EXPECT_EQ(
-                            n.send(Message::write, u(from), u(to), static_cast<std::uint32_t>(data), 100),
+                            n.send({Message::write, u(from), u(to), static_cast<std::uint32_t>(data)}, 100),
                             100 + u(hops_between(c, from, to) * c.network.hop_cycles) +
                                 flits(c, data + c.network.write_bytes));
                         EXPECT_EQ(n.counters().queue_cycles, 0U);
@@ -90,14 +90,14 @@ TEST(Network, MessagesShareLinksByHand) {
     const Config c = network_machine("ring", 4);
     Network n(c, none);
     // Link from 0 in 0..4, 0 to 1 in 0..4, 1 to 2 in 3..7, to 2 in 6..10.
-    EXPECT_EQ(n.send(Message::write, 0, 2, 64, 0), 11U);
+    EXPECT_EQ(n.send({Message::write, 0, 2, 64}, 0), 11U);
     // 1 to 2 in 1, 2, 8, 9, 10, so that its last flit is at 2 in 13; the link to 2 in 11..15, in order of
     // call.
-    EXPECT_EQ(n.send(Message::write, 1, 2, 64, 1), 16U);
+    EXPECT_EQ(n.send({Message::write, 1, 2, 64}, 1), 16U);
     EXPECT_EQ(n.counters().queue_cycles, 16U - 1 - 3 - 5);
     // One flit from 3: nobody was on 3 to 2, the link to 2 is taken in 6..15.
-    EXPECT_EQ(n.send(Message::request, 3, 2, 0, 4), 17U);
-    EXPECT_EQ(n.send(Message::request, 3, 2, 0, 1), 5U); // before all of them
+    EXPECT_EQ(n.send({Message::request, 3, 2, 0}, 4), 17U);
+    EXPECT_EQ(n.send({Message::request, 3, 2, 0}, 1), 5U); // before all of them
     EXPECT_EQ(n.counters().link_flits, 4 * 5U + 3 * 5U + 3 + 3);
     EXPECT_EQ(n.counters().hops, 2 + 1 + 1 + 1U);
     EXPECT_EQ(n.report().busiest().link, "to tile 2");
@@ -115,12 +115,12 @@ TEST(Network, BusesTakeTurnsByHand) {
     EXPECT_EQ(n.topology().hops(0, 2), 2U);
     EXPECT_EQ(n.topology().hops(3, hub), 1U);
     EXPECT_EQ(n.topology().hops(hub, hub), 0U);
-    EXPECT_EQ(n.send(Message::write, 0, hub, 64, 0), 3 + 5U);  // bus 0 in 0..4
-    EXPECT_EQ(n.send(Message::request, 1, hub, 0, 0), 5 + 4U); // bus 0 in 5
-    EXPECT_EQ(n.send(Message::request, 2, hub, 0, 0), 9 + 1U); // bus 1 in 0, the hub's port in 3..8
+    EXPECT_EQ(n.send({Message::write, 0, hub, 64}, 0), 3 + 5U);  // bus 0 in 0..4
+    EXPECT_EQ(n.send({Message::request, 1, hub, 0}, 0), 5 + 4U); // bus 0 in 5
+    EXPECT_EQ(n.send({Message::request, 2, hub, 0}, 0), 9 + 1U); // bus 1 in 0, the hub's port in 3..8
     // Bus 0 in 6..10, bus 1 in 9..13.
-    EXPECT_EQ(n.send(Message::write, 1, 3, 64, 1), 12 + 5U);
-    EXPECT_EQ(n.send(Message::write, 0, 1, 64, 5), 11 + 3 + 5U); // bus 0 in 11..15
+    EXPECT_EQ(n.send({Message::write, 1, 3, 64}, 1), 12 + 5U);
+    EXPECT_EQ(n.send({Message::write, 0, 1, 64}, 5), 11 + 3 + 5U); // bus 0 in 11..15
     const NetworkReport r = n.report();
     EXPECT_EQ(r.links[r.links.size() - 2].link, "bus 0");
     EXPECT_EQ(r.links[r.links.size() - 2].flits, 5 + 1 + 5 + 5U);
@@ -132,7 +132,7 @@ TEST(Network, ASenderWaitsForItsOwnMessages) {
     for (const char* topology : topologies) {
         Network n(network_machine(topology, 4), none);
         for (cycle i = 0; i < 10; ++i)
-            EXPECT_EQ(n.send(Message::write, 0, 1, 64, 0), 3 + 5 * (i + 1)) << topology;
+            EXPECT_EQ(n.send({Message::write, 0, 1, 64}, 0), 3 + 5 * (i + 1)) << topology;
     }
 }
 
@@ -159,7 +159,7 @@ TEST(Network, BacklogsAreTheSameAsSlotBySlot) {
         const cycle length = flits(c, data + c.network.write_bytes);
         const auto [first, last] = take(port, t, length);
         const auto there = take(end, std::max(first, last - (length - 1)) + u(c.network.hop_cycles), length);
-        ASSERT_EQ(n.send(Message::write, 0, 1, data, t), there.second + 1) << i;
+        ASSERT_EQ(n.send({Message::write, 0, 1, data}, t), there.second + 1) << i;
     }
 }
 

@@ -53,7 +53,8 @@ TEST(Validation, ClosedFormsPass) {
     for (const std::vector<ValidationRow>& rows : {check_core(), check_network(), check_dram()}) {
         EXPECT_GT(rows.size(), 13U);
         for (const ValidationRow& row : rows)
-            EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured << ", bar " << row.bar;
+            EXPECT_EQ(row.state, row.bar == "none" ? State::reported : State::passed)
+                << row.what << ": " << row.measured << ", bar " << row.bar;
     }
 }
 
