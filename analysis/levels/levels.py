@@ -70,7 +70,7 @@ def measure(options):
         times, last = {}, {}
         for _ in range(options.repeat):
             for scheme in options.schemes:
-                lod = [*level_of_detail(scheme, edge), "--frames", str(options.frames + 1)]
+                lod = [*level_of_detail(scheme, edge), "--repeat", str(options.frames + 1)]
                 camera = view.render(options, scene, folder, "camera", *lod, *dark)[1]
                 whole = view.render(options, scene, folder, "whole", *lod)[1]
                 times.setdefault(scheme, []).append((frame_seconds(camera), frame_seconds(whole)))

@@ -58,7 +58,7 @@ def native(razor, scene, options, workers, isa, frames, folder):
     """Statistics of one run, with "frame_seconds" of `frames` frames after a first one, which analyses the topology:
     processor time where one worker is alone, else until the last worker is done."""
     stats = os.path.join(folder, "stats.json")
-    output_of([razor, "render", *([scene] if scene else []), *options, "--threads", str(workers), "--isa", isa, "--frames",
+    output_of([razor, "render", *([scene] if scene else []), *options, "--threads", str(workers), "--isa", isa, "--repeat",
                str(frames + 1), "--quiet", "--stats", stats, "-o", os.path.join(folder, "native.exr")], "native")
     with open(stats, encoding="utf-8") as file:
         out = json.load(file)

@@ -38,7 +38,6 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     for (const Mesh& mesh : meshes)
         topologies.push_back(analyse_topology(mesh));
     trees = count_trees(options);
-    std::vector<bool> drawn;
     for (const Topology& t : topologies)
         drawn.push_back(!t.patches.empty());
     geometry = locate_scene(scene, drawn);
@@ -64,7 +63,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         static_cast<std::uint64_t>(options.workers + trees) * 64 * isa::address_space::granule);
     place_scene(scene);
     place_graph();
-    place_points();
+    place_points(scene);
     place_topology();
     place_blend_table();
     place_workers();
@@ -120,6 +119,22 @@ Frame::Frame(const Scene& scene, const FrameOptions& options) {
     }
 }
 Frame::~Frame() = default;
+
+void Frame::pose(const Scene& scene) {
+    Impl& f = *impl_;
+    const auto alike = [](const Mesh& a, const Mesh& b) {
+        return a.points.size() == b.points.size() && a.face_vertices == b.face_vertices;
+    };
+    if (!f.options.moves ||
+        !std::equal(scene.meshes.begin(), scene.meshes.end(), f.meshes.begin(), f.meshes.end(), alike))
+        throw std::invalid_argument("a frame can be posed with the meshes it was made with, if it may move");
+    const double unit = frame_unit(scene);
+    if (unit == 1)
+        f.pose(scene);
+    else
+        f.pose(scaled(scene, 1 / unit));
+    f.unit = unit;
+}
 
 void Frame::reset() {
     impl_->reset();

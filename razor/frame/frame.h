@@ -22,6 +22,8 @@ struct FrameOptions {
     std::vector<int> tree_of_worker = {};
     /// Each worker's arenas; 0: as large as 32-bit references allow.
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
+    /// The frame may be posed anew.
+    bool moves = false;
     /// Room for topology pages; 0: 64 GiB of addresses, which take memory as pages are made.
     std::uint64_t page_bytes = 0;
 };
@@ -64,6 +66,10 @@ public:
 
     /// Empties everything a frame builds, so that it can be rendered again. Topology pages stay.
     void reset();
+    /// reset(), for the same meshes in other places (also other instances, if their number stays), before
+    /// another camera or under another light; settings stay. What is rendered then is, bit for bit, what a
+    /// new frame would. Throws UserError as the constructor does; nothing may be rendered then.
+    void pose(const Scene& scene);
     /// Until the next reset() workers take the screen tiles from `first` up to, not including, `end` alone.
     /// They are numbered row by row. After the workers have returned they may run again on other tiles, and
     /// find what is built; the statistics go on.

@@ -11,6 +11,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 namespace razor {
 namespace {
@@ -86,10 +88,14 @@ void Frame::Impl::size_arenas() {
 void Frame::Impl::place_scene(const Scene& scene) {
     header = region<FrameHeader>("scene graph", -1, 1);
     new (header) FrameHeader{};
-    auto* record = region<InstanceRecord>("scene graph", -1, geometry.instances.size());
-    auto* cluster_instance = region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters));
-    header->instances.set(record);
-    header->cluster_instance.set(cluster_instance);
+    header->instances.set(region<InstanceRecord>("scene graph", -1, geometry.instances.size()));
+    header->cluster_instance.set(region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters)));
+    fill_instances(scene);
+}
+
+void Frame::Impl::fill_instances(const Scene& scene) {
+    InstanceRecord* record = header->instances.get();
+    std::int32_t* cluster_instance = header->cluster_instance.get();
     std::int32_t first_patch = 0;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
         const Instance& i = geometry.instances[n];
@@ -129,16 +135,12 @@ void Frame::Impl::place_scene(const Scene& scene) {
 }
 
 void Frame::Impl::place_graph() {
-    const std::vector<GraphNodeRecord> nodes = pack(geometry.graph, geometry.origin);
-    auto* graph = region<GraphNodeRecord>("scene graph", -1, nodes.size());
-    std::copy(nodes.begin(), nodes.end(), graph);
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-        if (graph[n].instance >= 0)
-            graph[n].child_count = header->instances.get()[graph[n].instance].cluster_count;
-    header->graph.set(graph);
-    header->graph_count = static_cast<std::int32_t>(nodes.size());
+    // Nodes have two children at least: of what moves there may be as many as that leaves room for.
+    const std::size_t most = options.moves ? 2 * geometry.instances.size() : geometry.graph.size();
+    header->graph.set(region<GraphNodeRecord>("scene graph", -1, most));
+    fill_graph();
     for (int t = 0; t < trees; ++t)
-        opened.push_back(std::make_unique<isa::mark_set>(static_cast<std::int64_t>(nodes.size()) + clusters));
+        opened.push_back(std::make_unique<isa::mark_set>(static_cast<std::int64_t>(most) + clusters));
     // Boxes of clusters: a frame's refit writes them.
     header->cluster_count = static_cast<std::int32_t>(total.clusters);
     header->clusters_stride = (header->cluster_count + 15) & -16;
@@ -154,11 +156,25 @@ void Frame::Impl::place_graph() {
         }
 }
 
-void Frame::Impl::place_points() {
-    auto* xyz = region<float>("control points", -1, total.points * 3);
-    header->points.set(xyz);
-    for (std::size_t m = 0; m < meshes.size(); ++m)
-        for (const glm::dvec3& point : meshes[m].points) {
+void Frame::Impl::fill_graph() {
+    const std::vector<GraphNodeRecord> nodes = pack(geometry.graph, geometry.origin);
+    GraphNodeRecord* graph = header->graph.get();
+    std::copy(nodes.begin(), nodes.end(), graph);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (graph[n].instance >= 0)
+            graph[n].child_count = header->instances.get()[graph[n].instance].cluster_count;
+    header->graph_count = static_cast<std::int32_t>(nodes.size());
+}
+
+void Frame::Impl::place_points(const Scene& scene) {
+    header->points.set(region<float>("control points", -1, total.points * 3));
+    fill_points(scene);
+}
+
+void Frame::Impl::fill_points(const Scene& scene) {
+    float* xyz = header->points.get();
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        for (const glm::dvec3& point : scene.meshes[m].points) {
             const glm::dvec3 p = point - geometry.mesh_origins[m];
             for (int k = 0; k < 3; ++k)
                 *xyz++ = static_cast<float>(p[k]);
@@ -277,8 +293,19 @@ void Frame::Impl::place_workers() {
 }
 
 void Frame::Impl::place_view(const Scene& scene) {
+    fill_view(scene);
+    const Settings& s = scene.settings;
+    const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
+    header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
+}
+
+void Frame::Impl::fill_view(const Scene& scene) {
     const Settings& s = scene.settings;
     FrameHeader& h = *header;
+    h.light_samples = h.sky_samples = 0;
+    h.focus = 0;
+    put(h.lens_x, glm::dvec3(0));
+    put(h.lens_y, glm::dvec3(0));
     h.width = s.width;
     h.height = s.height;
     h.samples = s.samples;
@@ -333,8 +360,18 @@ void Frame::Impl::place_view(const Scene& scene) {
     }
     h.sky_spacing = spacing(3.14159265358979323846, s.sky_samples);
     h.reach = static_cast<float>(geometry.reach);
-    auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
-    h.film.set(region<float>("frame buffer", -1, pixels * film_planes));
+}
+
+void Frame::Impl::pose(const Scene& scene) {
+    SceneGeometry posed = locate_scene(scene, drawn);
+    if (posed.instances.size() != geometry.instances.size())
+        throw std::invalid_argument("a frame is posed with as many instances as it was made with");
+    geometry = std::move(posed);
+    fill_instances(scene);
+    fill_graph();
+    fill_points(scene);
+    fill_view(scene);
+    reset();
 }
 
 } // namespace razor

@@ -45,6 +45,7 @@ struct Frame::Impl {
     double unit = 1; // see frame_unit()
     std::vector<Mesh> meshes;
     std::vector<Topology> topologies;
+    std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
     FrameOptions options;
     SceneGeometry geometry;
     std::unique_ptr<PageStore> pages;
@@ -94,13 +95,20 @@ struct Frame::Impl {
     }
     void count_records(const Scene& scene);
     void size_arenas();
+    // Each takes room, and has what a pose changes filled in.
     void place_scene(const Scene& scene);
     void place_graph();
-    void place_points();
+    void place_points(const Scene& scene);
     void place_topology();
     void place_blend_table();
     void place_workers();
     void place_view(const Scene& scene);
+    void fill_instances(const Scene& scene);
+    void fill_graph();
+    void fill_points(const Scene& scene);
+    void fill_view(const Scene& scene);
+    /// In the frame's unit, which `unit` is to be.
+    void pose(const Scene& scene);
     void reset();
     WorkerArguments arguments(int worker) {
         const auto w = static_cast<std::size_t>(worker);

@@ -88,34 +88,54 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
 
 } // namespace
 
-RenderResult render_native(const Scene& scene, const RenderOptions& options) {
-    const KernelTable& kernels = native_target(options.isa);
-    RenderResult r;
-    r.statistics.isa = kernels.name;
-    r.statistics.width_lanes = kernels.width;
-    int threads =
-        options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-    r.statistics.threads = std::max(threads, 1);
-    auto begin = Clock::now();
-    Frame frame(scene, {.workers = r.statistics.threads,
-                        .tree_of_worker = tree_groups(r.statistics.threads, options.share)});
-    r.statistics.load_seconds = seconds_since(begin);
-    if (options.eager && frame.statistics().trees > 1)
+NativeRenderer::NativeRenderer(const Scene& scene, const RenderOptions& options, bool moves)
+    : options_(options), kernels_(native_target(options.isa)), camera_(scene.camera),
+      settings_(scene.settings) {
+    if (options_.threads <= 0)
+        options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const auto begin = Clock::now();
+    frame_ = std::make_unique<Frame>(
+        scene, FrameOptions{.workers = options_.threads,
+                            .tree_of_worker = tree_groups(options_.threads, options_.share),
+                            .moves = moves});
+    load_seconds_ = seconds_since(begin);
+    if (options_.eager && frame_->statistics().trees > 1)
         throw UserError("--eager builds one kd-tree; leave --share out");
-    for (int n = 0; n < options.frames; ++n) {
-        if (n > 0)
-            frame.reset();
-        if (options.tiles > 0)
-            frame.take_tiles(0, options.tiles);
-        std::function<void(double)> progress;
-        if (options.progress)
-            progress = [&](double fraction) { options.progress((n + fraction) / options.frames); };
-        r.statistics.times.push_back(render_frame(frame, kernels, options, progress));
+}
+
+void NativeRenderer::pose(const Scene& scene) {
+    camera_ = scene.camera;
+    const auto begin = Clock::now();
+    frame_->pose(scene);
+    load_seconds_ = seconds_since(begin);
+    fresh_ = true;
+}
+
+RenderResult NativeRenderer::render(const std::function<void(double)>& progress) {
+    RenderResult r;
+    r.statistics.isa = kernels_.name;
+    r.statistics.width_lanes = kernels_.width;
+    r.statistics.threads = options_.threads;
+    r.statistics.load_seconds = load_seconds_;
+    for (int n = 0; n < options_.frames; ++n) {
+        if (!fresh_)
+            frame_->reset();
+        fresh_ = false;
+        if (options_.tiles > 0)
+            frame_->take_tiles(0, options_.tiles);
+        std::function<void(double)> part;
+        if (progress)
+            part = [&](double fraction) { progress((n + fraction) / options_.frames); };
+        r.statistics.times.push_back(render_frame(*frame_, kernels_, options_, part));
     }
-    r.statistics.frame = frame.statistics();
-    r.film = frame.film();
-    r.statistics.visible = visible_surface(r.film, scene.camera, scene.settings);
+    r.statistics.frame = frame_->statistics();
+    r.film = frame_->film();
+    r.statistics.visible = visible_surface(r.film, camera_, settings_);
     return r;
+}
+
+RenderResult render_native(const Scene& scene, const RenderOptions& options) {
+    return NativeRenderer(scene, options, false).render(options.progress);
 }
 
 } // namespace razor

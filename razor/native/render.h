@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,26 @@ struct RenderResult {
 
 struct Cancelled {};
 
-/// Throws UserError for scenes and options that cannot be rendered.
+/// Renders a scene, and if it `moves` the same scene in other poses, whose topology is analysed once.
+class NativeRenderer {
+public:
+    /// Throws UserError for scenes and options that cannot be rendered.
+    NativeRenderer(const Scene& scene, const RenderOptions& options, bool moves);
+    /// See Frame::pose().
+    void pose(const Scene& scene);
+    /// options.frames times. `progress` as of the options, whose own is not called.
+    RenderResult render(const std::function<void(double fraction)>& progress = {});
+
+private:
+    RenderOptions options_;
+    const KernelTable& kernels_;
+    Camera camera_;
+    Settings settings_;
+    std::unique_ptr<Frame> frame_;
+    bool fresh_ = true; // nothing has been rendered since
+    double load_seconds_ = 0;
+};
+
 RenderResult render_native(const Scene& scene, const RenderOptions& options);
 
 /// Runs all workers of a frame to the end; throws what the first failing worker threw.

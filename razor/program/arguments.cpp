@@ -99,18 +99,19 @@ std::pair<int, int> parse_size(std::string_view option, std::string_view text, R
             parse_whole(fmt::format("the height of {}", option), text.substr(cross + 1), range)};
 }
 
-std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range) {
-    const std::size_t dots = text.find("..");
-    if (dots == std::string_view::npos) {
-        throw UserError(fmt::format("{} '{}' is not possible; give FIRST..LAST, for example 0..9", option,
-                                    printable(text)));
+std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range,
+                               std::string_view between) {
+    const std::size_t at = text.find(between);
+    if (at == std::string_view::npos) {
+        throw UserError(fmt::format("{0} '{1}' is not possible; give FIRST{2}LAST, for example 0{2}9", option,
+                                    printable(text), between));
     }
     const std::pair<int, int> span{
-        parse_whole(fmt::format("the first of {}", option), text.substr(0, dots), range),
-        parse_whole(fmt::format("the last of {}", option), text.substr(dots + 2), range)};
+        parse_whole(fmt::format("the first of {}", option), text.substr(0, at), range),
+        parse_whole(fmt::format("the last of {}", option), text.substr(at + between.size()), range)};
     if (span.first > span.second)
         throw UserError(
-            fmt::format("{} '{}' ends before it begins; give FIRST..LAST", option, printable(text)));
+            fmt::format("{} '{}' ends before it begins; give FIRST{}LAST", option, printable(text), between));
     return span;
 }
 

@@ -21,8 +21,9 @@ int parse_whole(std::string_view option, std::string_view text, Range range);
 double parse_number(std::string_view option, std::string_view text, Range range);
 /// "640x480" as width and height, each in the range.
 std::pair<int, int> parse_size(std::string_view option, std::string_view text, Range range);
-/// "3..17" as first and last, each in the range, in order.
-std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range);
+/// "3..17" (or with another word between) as first and last, each in the range, in order.
+std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range,
+                               std::string_view between = "..");
 /// The index of `text` in `words`.
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words);

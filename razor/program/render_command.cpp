@@ -2,10 +2,10 @@
 
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
-#include "razor/native/render.h"
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
-#include "razor/program/progress.h"
+#include "razor/program/sequence.h"
+#include "razor/scene/animation/pose.h"
 #include "razor/scene/error.h"
 
 #include <fmt/format.h>
@@ -14,13 +14,15 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdio>
+#include <filesystem>
 #include <thread>
 
 namespace razor {
 namespace {
 
 constexpr Range threads_range{1, 1024};
-constexpr Range frames_range{1, 1000000};
+constexpr Range repeat_range{1, 1000000};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
 
 } // namespace
@@ -44,6 +46,12 @@ void RenderCommand::add_to(CLI::App& app) {
                     "build all that rays could ask for, but normals, before the first one; to compare with");
     render
         .add_option("--frames", frames_,
+                    "render a sequence: these frames of what moves, each to its own files, whose names have "
+                    "%d or %04d where the number comes; with a line of figures for each")
+        ->type_name("FIRST:LAST");
+    render.add_flag("--resume", resume_, "of --frames, leave out those whose files are there");
+    render
+        .add_option("--repeat", repeat_,
                     "render the frame N times and tell the time of each; all but the first find the topology "
                     "analysed, as in an animation")
         ->type_name("N");
@@ -60,33 +68,80 @@ int RenderCommand::run() const {
     options.isa = isa_words[parse_choice("--isa", isa_, isa_words)];
     options.share = parse_share(share_);
     options.eager = eager_;
-    options.frames = parse_whole("--frames", frames_, frames_range);
+    options.frames = parse_whole("--repeat", repeat_, repeat_range);
+    const bool sequence = !frames_.empty();
+    if (sequence && scene_.frame_given()) {
+        throw UserError("--frame and --frames together; give one of them");
+    }
+    if (resume_ && !sequence) {
+        throw UserError("--resume without --frames; leave it out");
+    }
+    const FrameRange frames = sequence ? parse_frames(frames_) : FrameRange{scene_.frame(), scene_.frame()};
     if (!print_config_ && outputs_.empty() && statistics_.empty()) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
     }
     options.cancel = &watch_interrupts();
-    const SceneDescription description = scene_.describe();
-    const std::string config = to_toml(description);
     if (print_config_) {
-        fmt::print("{}", config);
+        fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
         return 0;
     }
+    const SceneDescription moving = sequence ? scene_.describe_moving() : scene_.describe();
     for (const std::string& output : outputs_) {
-        check_output(output);
+        check_numbered("-o", output, frames);
+        check_output(numbered(output, frames.first));
     }
     if (!statistics_.empty()) {
-        check_writable(statistics_);
+        check_numbered("--stats", statistics_, frames);
+        check_writable(numbered(statistics_, frames.first));
     }
 
     Progress progress(!quiet_);
-    options.progress = [&](double fraction) { progress.show(fraction); };
+    const auto is_there = [this](int frame) {
+        const auto exists = [&](const std::string& name) {
+            return std::filesystem::exists(numbered(name, frame));
+        };
+        return std::all_of(outputs_.begin(), outputs_.end(), exists) &&
+               (statistics_.empty() || exists(statistics_));
+    };
+    std::unique_ptr<NativeRenderer> renderer;
+    for (int frame = frames.first; frame <= frames.last; ++frame) {
+        if (resume_ && is_there(frame)) {
+            continue;
+        }
+        options.progress = [&](double fraction) {
+            progress.show((frame - frames.first + fraction) / frames.count());
+        };
+        if (!render(renderer, pose_of_frame(moving, frame), frame, options, progress)) {
+            fmt::print(stderr, "{}razor: interrupted; {}\n", progress.shown() ? "\r\x1b[K" : "",
+                       sequence ? fmt::format(
+                                      "frame {} and what follows are not written; go on with --resume", frame)
+                                : "nothing written");
+            return interrupted_exit;
+        }
+    }
+    return 0;
+}
+
+bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& scene,
+                           int frame, const RenderOptions& options, const Progress& progress) const {
+    const std::string config = to_toml(scene);
     const auto start = std::chrono::steady_clock::now();
     RenderResult result;
     try {
-        result = render_native(build_scene(description), options);
+        const Scene built = build_scene(scene);
+        if (renderer) {
+            renderer->pose(built);
+        } else {
+            renderer = std::make_unique<NativeRenderer>(built, options, !frames_.empty());
+        }
+        result = renderer->render(options.progress);
     } catch (const Cancelled&) {
-        fmt::print(stderr, "{}razor: interrupted; nothing written\n", progress.shown() ? "\r\x1b[K" : "");
-        return interrupted_exit;
+        return false;
+    } catch (const UserError& error) {
+        if (frames_.empty()) {
+            throw;
+        }
+        throw UserError(fmt::format("frame {}: {}", frame, error.what()));
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -95,7 +150,7 @@ int RenderCommand::run() const {
                                      {"razor.scene", config},
                                      {"razor.isa", result.statistics.isa}};
     for (const std::string& output : outputs_) {
-        write_image(output, result.film, attributes);
+        write_image(numbered(output, frame), result.film, attributes);
     }
     if (!statistics_.empty()) {
         const nlohmann::ordered_json report{{"program", "razor"},
@@ -105,19 +160,27 @@ int RenderCommand::run() const {
                                               {"isa", result.statistics.isa},
                                               {"workers_a_tree", options.share},
                                               {"eager", options.eager},
-                                              {"frames", options.frames}}},
+                                              {"repeat", options.frames},
+                                              {"frame", frame}}},
                                             {"scene", config},
                                             {"seconds", seconds},
                                             {"statistics", nlohmann::ordered_json(result.statistics)}};
-        write_text_file(statistics_, report.dump(2) + "\n");
+        write_text_file(numbered(statistics_, frame), report.dump(2) + "\n");
     }
-    if (progress.shown()) {
-        const FrameStatistics& frame = result.statistics.frame;
+    const FrameStatistics& built = result.statistics.frame;
+    if (!frames_.empty() && !quiet_) {
+        fmt::print(stderr, "{}", progress.shown() ? "\r\x1b[K" : "");
+        fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {:.2f} million rays, {:.1f} MB built\n",
+                   frame, seconds, result.statistics.load_seconds,
+                   static_cast<double>(built.counters.rays) / 1e6,
+                   static_cast<double>(built.grid_bytes + built.node_bytes + built.list_bytes) / 1e6);
+        std::fflush(stdout);
+    } else if (progress.shown()) {
         fmt::print(
             stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
-            result.film.width, result.film.height, seconds, frame.first_packet_seconds, frame.refit_seconds);
+            result.film.width, result.film.height, seconds, built.first_packet_seconds, built.refit_seconds);
     }
-    return 0;
+    return true;
 }
 
 } // namespace razor

@@ -1,10 +1,13 @@
 // razor render: a scene or a model to pictures and statistics.
 #pragma once
 
+#include "razor/native/render.h"
+#include "razor/program/progress.h"
 #include "razor/program/scene_options.h"
 
 #include <CLI/CLI.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,10 +22,14 @@ public:
     int run() const;
 
 private:
+    /// One frame to its files; false: interrupted, none is written. `renderer` is made by the first.
+    bool render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& scene, int frame,
+                const RenderOptions& options, const Progress& progress) const;
+
     SceneOptions scene_;
     std::vector<std::string> outputs_;
-    std::string threads_, isa_ = "auto", share_ = "chip", frames_ = "1", statistics_;
-    bool print_config_ = false, quiet_ = false, eager_ = false;
+    std::string threads_, isa_ = "auto", share_ = "chip", repeat_ = "1", frames_, statistics_;
+    bool print_config_ = false, quiet_ = false, eager_ = false, resume_ = false;
 };
 
 } // namespace razor

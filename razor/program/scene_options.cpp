@@ -1,6 +1,7 @@
 #include "razor/program/scene_options.h"
 
 #include "razor/program/arguments.h"
+#include "razor/scene/animation/pose.h"
 #include "razor/scene/default_scene.h"
 #include "razor/scene/scene_file.h"
 #include "razor/scene/words.h"
@@ -52,12 +53,23 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
            "finest "
            "of its instances'), object:K or fixed:K (K levels coarser)")
         ->type_name("NAME");
+    app.add_option("--frame", frame_, "of what moves, this moment, counted from 0; without it, 0")
+        ->type_name("N");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");
     app.add_flag("--no-floor", no_floor_, "put no floor under a model file");
 }
 
 SceneDescription SceneOptions::describe() const {
+    const int asked = frame(); // a wrong one is found before any file is read
+    return pose_of_frame(describe_moving(), asked);
+}
+
+int SceneOptions::frame() const {
+    return frame_.empty() ? 0 : parse_whole("--frame", frame_, frame_range);
+}
+
+SceneDescription SceneOptions::describe_moving() const {
     // Wrong values are found before any file is read.
     const auto override_settings = [this](Settings& settings) {
         if (!size_.empty()) {

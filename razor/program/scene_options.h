@@ -15,14 +15,20 @@ public:
     /// or "--scene". The object must outlive the parsing.
     void add_to(CLI::App& app, const std::string& scene_name);
 
-    /// The scene that the parsed options ask for; the built-in one where none is named. Throws UserError.
+    /// The scene that the parsed options ask for, in the frame that they ask for; the built-in one where none
+    /// is named. Throws UserError.
     SceneDescription describe() const;
+    /// ... with all that moves.
+    SceneDescription describe_moving() const;
+    /// Of --frame, and whether it was given.
+    int frame() const;
+    bool frame_given() const { return !frame_.empty(); }
     /// Whether --lod was.
     bool lod_given() const { return !lod_.empty(); }
 
 private:
     std::string scene_, size_, samples_, light_samples_, sky_samples_, seed_, edge_pixels_, lod_, scheme_,
-        up_ = "y";
+        frame_, up_ = "y";
     bool no_floor_ = false;
 };
 

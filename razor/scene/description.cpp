@@ -4,7 +4,6 @@
 #include "razor/scene/obj_reader.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
-#include "razor/scene/words.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -27,44 +26,6 @@ glm::dvec3 rotated(glm::dvec3 p, int axis, double degrees) {
     p[u] = c * pu - s * pv;
     p[v] = s * pu + c * pv;
     return p;
-}
-
-std::string toml_text(std::string_view text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            result += '\\';
-            result += c;
-        } else if (byte < 0x20 || byte == 0x7f) {
-            result += fmt::format("\\u{:04x}", byte);
-        } else {
-            result += c;
-        }
-    }
-    return result + '"';
-}
-
-/// TOML wants a point or an exponent in a real number; the shortest digits that read back as the same value.
-template <typename Real> std::string number(Real value) {
-    std::string text = fmt::format("{}", value + Real{0}); // + 0: no negative zero
-    if (text.find_first_of(".e") == std::string::npos) {
-        text += ".0";
-    }
-    return text;
-}
-
-template <typename Vector> std::string vector3(const Vector& v) {
-    return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z));
-}
-
-bool is_whole(std::string_view shape, std::string_view parameter) {
-    for (const ShapeParameter& known : find_shape_kind(shape)->parameters) {
-        if (known.name == parameter) {
-            return known.whole;
-        }
-    }
-    return false;
 }
 
 int material_index(const SceneDescription& description, std::string_view name) {
@@ -177,45 +138,6 @@ private:
     std::vector<bool> placed_;
 };
 
-void print_camera(std::string& text, const Camera& camera, std::string_view header) {
-    const auto out = std::back_inserter(text);
-    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n", header,
-                   vector3(camera.position), vector3(camera.target), vector3(camera.up),
-                   number(camera.fov_degrees));
-    fmt::format_to(out, "aperture_radius = {}\nfocus_distance = {}\n", number(camera.aperture_radius),
-                   number(focus_distance(camera)));
-}
-
-void print_object(std::string& text, const ObjectDescription& object, std::string_view header) {
-    const auto out = std::back_inserter(text);
-    fmt::format_to(out, "\n[[{}]]\nname = {}\n", header, toml_text(object.name));
-    if (!object.instances.empty()) {
-        fmt::format_to(out, "instances = {}\n", toml_text(object.instances));
-    } else if (!object.group.empty()) {
-        fmt::format_to(out, "group = {}\n", toml_text(object.group));
-    } else {
-        fmt::format_to(out, "mesh = {}\n", toml_text(object.mesh));
-    }
-    if (!object.material.empty()) {
-        fmt::format_to(out, "material = {}\n", toml_text(object.material));
-    }
-    const Transform& t = object.transform;
-    if (t.matrix) {
-        const auto row = [&](int i) {
-            const glm::dmat3& m = t.matrix->linear;
-            return fmt::format("[{}, {}, {}, {}]", number(m[0][i]), number(m[1][i]), number(m[2][i]),
-                               number(t.matrix->translation[i]));
-        };
-        fmt::format_to(out, "matrix = [{}, {}, {}]\n", row(0), row(1), row(2));
-    } else {
-        fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\n", vector3(t.scale), vector3(t.rotate),
-                       vector3(t.translate));
-    }
-    fmt::format_to(out, "array = [{}, {}, {}]\nspacing = {}\nlevel_offset = {}\nrate = {}\n", object.copies.x,
-                   object.copies.y, object.copies.z, vector3(object.spacing), object.level_offset,
-                   number(object.rate));
-}
-
 } // namespace
 
 void load_cage(MeshDescription& mesh) {
@@ -282,63 +204,6 @@ Scene build_scene(const SceneDescription& description) {
     }
     scene.graph = build_graph(description);
     return scene;
-}
-
-std::string to_toml(const SceneDescription& description) {
-    std::string text;
-    const auto out = std::back_inserter(text);
-    const Settings& settings = description.settings;
-    fmt::format_to(out,
-                   "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples "
-                   "= {}\nseed = {}\n",
-                   toml_text(description.name), settings.width, settings.height, settings.samples,
-                   settings.light_samples, settings.sky_samples, settings.seed);
-    fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", number(settings.edge_pixels),
-                   toml_text(word_of(lod_words, settings.lod)));
-    print_camera(text, description.camera, "camera");
-    if (description.dicing_camera) {
-        print_camera(text, *description.dicing_camera, "dicing_camera");
-    }
-    fmt::format_to(out, "\n[sky]\nradiance = {}\n", vector3(description.sky));
-    for (const RectangleLight& light : description.lights) {
-        fmt::format_to(out, "\n[[light]]\ncorner = {}\nedge_u = {}\nedge_v = {}\nradiance = {}\n",
-                       vector3(light.corner), vector3(light.edge_u), vector3(light.edge_v),
-                       vector3(light.radiance));
-    }
-    for (const Material& material : description.materials) {
-        fmt::format_to(out, "\n[[material]]\nname = {}\nalbedo = {}\n", toml_text(material.name),
-                       vector3(material.albedo));
-    }
-    for (const MeshDescription& mesh : description.meshes) {
-        fmt::format_to(out, "\n[[mesh]]\nname = {}\n", toml_text(mesh.name));
-        if (mesh.file.empty()) {
-            fmt::format_to(out, "shape = {}\n", toml_text(mesh.shape));
-        } else {
-            fmt::format_to(out, "file = {}\n", toml_text(mesh.file));
-        }
-        fmt::format_to(out, "scheme = {}\nmaterial = {}\n", toml_text(word_of(scheme_words, mesh.scheme)),
-                       toml_text(mesh.material));
-        fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
-                       vector3(mesh.scale), vector3(mesh.rotate), vector3(mesh.translate),
-                       number(mesh.edge_length));
-        if (!mesh.parameters.empty()) {
-            text += "[mesh.parameters]\n";
-            for (const auto& [name, value] : mesh.parameters) {
-                fmt::format_to(out, "{} = {}\n", name,
-                               is_whole(mesh.shape, name) ? fmt::format("{:.0f}", value) : number(value));
-            }
-        }
-    }
-    for (const GroupDescription& group : description.groups) {
-        fmt::format_to(out, "\n[[group]]\nname = {}\n", toml_text(group.name));
-        for (const ObjectDescription& object : group.objects) {
-            print_object(text, object, "group.object");
-        }
-    }
-    for (const ObjectDescription& object : description.objects) {
-        print_object(text, object, "object");
-    }
-    return text;
 }
 
 } // namespace razor

@@ -1,7 +1,9 @@
 // A scene as its author states it: what a scene file holds, every default filled in. It is what
-// --print-config prints and what outputs embed; build_scene() makes the renderer's Scene from it.
+// --print-config prints and what outputs embed; build_scene() makes the renderer's Scene from it, once
+// animation/pose.h has put what moves where it is at one moment.
 #pragma once
 
+#include "razor/scene/animation/keys.h"
 #include "razor/scene/graph/flatten.h"
 #include "razor/scene/instance_table.h"
 #include "razor/scene/scene.h"
@@ -38,6 +40,7 @@ struct ObjectDescription {
     std::shared_ptr<const InstanceTable> table; // as read from there
     std::string material;                       // of all below that states none itself; empty: as it has
     Transform transform;
+    TransformKeys keys;          // of the transform, which is no matrix then
     glm::ivec3 copies{1, 1, 1};  // see Placement
     glm::dvec3 spacing{0, 0, 0}; // units of the group that holds the object
     int level_offset = 0;
@@ -59,6 +62,9 @@ struct SceneDescription {
     std::optional<Camera> dicing_camera;
     glm::vec3 sky{0};
     std::vector<RectangleLight> lights;
+    double frame_rate = 24; // frames a second
+    CameraKeys camera_keys;
+    std::vector<LightKeys> light_keys; // of each light, or none
     std::vector<Material> materials;
     std::vector<MeshDescription> meshes;
     std::vector<GroupDescription> groups;
@@ -82,6 +88,7 @@ std::vector<Box> mesh_bounds(const SceneDescription& description);
 /// are neither objects nor groups. Throws UserError for names that are not there.
 SceneGraph build_graph(const SceneDescription& description);
 
+/// What keys say is left out: see animation/pose.h.
 Scene build_scene(const SceneDescription& description);
 
 /// A complete scene file: loading it gives the same scene.

@@ -13,6 +13,11 @@ inline constexpr Range shadow_samples_range{0, 4096}; // a hit, to the light or 
 inline constexpr Range seed_range{0, 2147483647};
 inline constexpr Range edge_pixels_range{0.01, 1e4};
 inline constexpr Range coordinate_range{-1e30, 1e30};
+inline constexpr Range fov_range{1e-3, 179}; // degrees
+inline constexpr Range radiance_range{0, 1e9};
+inline constexpr Range signed_scale_range{-1e30, 1e30};
+inline constexpr Range frame_rate_range{1e-3, 1e6}; // frames a second
+inline constexpr Range frame_range{0, 9999999};
 inline constexpr Range aperture_range{0, 1e30};
 inline constexpr Range focus_range{0, 1e30};     // 0: at the camera's target
 inline constexpr Range angle_range{-1e6, 1e6};   // degrees

@@ -1,5 +1,7 @@
 #include "razor/scene/scene_file.h"
 
+#include "razor/scene/animation/pose.h"
+#include "razor/scene/animation/read_keys.h"
 #include "razor/scene/error.h"
 #include "razor/scene/framing.h"
 #include "razor/scene/nearest.h"
@@ -18,8 +20,6 @@
 
 namespace razor {
 namespace {
-
-constexpr Range radiances{0, 1e9};
 
 void check_names(const std::vector<std::string>& names, std::string_view name, const TomlTable& table) {
     if (std::find(names.begin(), names.end(), name) != names.end()) {
@@ -53,40 +53,30 @@ Settings read_settings(TomlTable table) {
     return settings;
 }
 
-Camera read_camera(TomlTable table) {
+void check(const TomlTable& table, const std::optional<Mistake>& mistake) {
+    if (mistake) {
+        table.fail(mistake->key, mistake->message);
+    }
+}
+
+Camera read_camera(TomlTable& table) {
     Camera camera;
     camera.position = table.vector("position", camera.position, coordinate_range);
     camera.target = table.vector("target", camera.target, coordinate_range);
     camera.up = table.vector("up", camera.up, coordinate_range);
-    camera.fov_degrees = table.number("fov", camera.fov_degrees, {1e-3, 179});
+    camera.fov_degrees = table.number("fov", camera.fov_degrees, fov_range);
     camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
     camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
-    table.finish();
-    const std::string name = table.name();
-    if (camera.position == camera.target) {
-        table.fail("position", fmt::format("{0}.position equals {0}.target; move one of them", name));
-    }
-    const glm::dvec3 view = glm::normalize(camera.target - camera.position);
-    if (camera.up == glm::dvec3(0) || glm::length(glm::cross(view, glm::normalize(camera.up))) < 1e-9) {
-        table.fail("up", fmt::format("{}.up is zero or along the line of sight; turn it", name));
-    }
     return camera;
 }
 
-RectangleLight read_light(TomlTable table) {
+RectangleLight read_light(TomlTable& table) {
     RectangleLight light;
     light.corner = table.vector("corner", light.corner, coordinate_range);
     light.edge_u = table.vector("edge_u", light.edge_u, coordinate_range);
     light.edge_v = table.vector("edge_v", light.edge_v, coordinate_range);
-    light.radiance = glm::vec3(table.vector_or_number("radiance", glm::dvec3(light.radiance), radiances));
-    table.finish();
-    if (light.edge_u == glm::dvec3(0) || light.edge_v == glm::dvec3(0) ||
-        glm::length(glm::cross(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) < 1e-9) {
-        table.fail("edge_u", "light.edge_u and light.edge_v span no rectangle; make both long and turn one");
-    }
-    if (std::abs(glm::dot(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) > 1e-6) {
-        table.fail("edge_v", "light.edge_u and light.edge_v are not at right angles; turn one");
-    }
+    light.radiance =
+        glm::vec3(table.vector_or_number("radiance", glm::dvec3(light.radiance), radiance_range));
     return light;
 }
 
@@ -166,13 +156,19 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     TomlTable camera = root.table("camera");
     TomlTable dicing_camera = root.table("dicing_camera");
     TomlTable sky = root.table("sky");
-    scene.sky = glm::vec3(sky.vector_or_number("radiance", glm::dvec3(scene.sky), radiances));
+    scene.sky = glm::vec3(sky.vector_or_number("radiance", glm::dvec3(scene.sky), radiance_range));
     sky.finish();
+    TomlTable animation = root.table("animation");
+    scene.frame_rate = animation.number("rate", scene.frame_rate, frame_rate_range);
+    animation.finish();
     for (TomlTable& light : root.tables("light")) {
         if (!scene.lights.empty()) {
             light.fail("", "a second light; one rectangle is possible for now, remove the others");
         }
-        scene.lights.push_back(read_light(std::move(light)));
+        scene.lights.push_back(read_light(light));
+        scene.light_keys.push_back(read_light_keys(light));
+        light.finish();
+        check(light, mistake_of(scene.lights.back()));
     }
     std::vector<std::string> names;
     for (TomlTable& table : root.tables("material")) {
@@ -193,12 +189,17 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         root.fail("mesh", "no meshes; write at least one [[mesh]]");
     }
     if (camera.stated()) {
-        scene.camera = read_camera(std::move(camera));
+        scene.camera = read_camera(camera);
+        scene.camera_keys = read_camera_keys(camera);
+        camera.finish();
+        check(camera, mistake_of(scene.camera, camera.name()));
     } else {
         place_camera(scene);
     }
     if (dicing_camera.stated()) {
-        scene.dicing_camera = read_camera(std::move(dicing_camera));
+        scene.dicing_camera = read_camera(dicing_camera);
+        dicing_camera.finish();
+        check(dicing_camera, mistake_of(*scene.dicing_camera, dicing_camera.name()));
     }
     if (scene.lights.empty() && !sky.stated()) {
         place_light_and_sky(scene);
@@ -252,7 +253,7 @@ SceneDescription describe(const std::filesystem::path& path, const FramingOption
 }
 
 Scene load_scene(const std::filesystem::path& path) {
-    return build_scene(describe(path, {}));
+    return build_scene(pose_at(describe(path, {}), 0));
 }
 
 } // namespace razor

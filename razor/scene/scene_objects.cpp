@@ -1,5 +1,6 @@
 #include "razor/scene/scene_objects.h"
 
+#include "razor/scene/animation/read_keys.h"
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/words.h"
@@ -13,8 +14,6 @@
 
 namespace razor {
 namespace {
-
-constexpr Range signed_scale_range{-1e30, 1e30};
 
 class ObjectsReader {
 public:
@@ -98,6 +97,11 @@ private:
         object.mesh = reference(table, "mesh", mesh_names_);
         object.group = reference(table, "group", group_names_);
         object.transform = read_transform(table);
+        object.keys = read_transform_keys(table);
+        if (object.keys.any() && object.transform.matrix) {
+            table.fail("matrix",
+                       "an object with a matrix and keys; write scale, rotate and translate instead");
+        }
         object.copies = table.whole_vector("array", object.copies, copies_range);
         object.spacing = table.vector("spacing", object.spacing, coordinate_range);
         object.level_offset = table.whole("level_offset", object.level_offset, level_offset_range);

@@ -1,6 +1,7 @@
 // The words for choices in scene files and on the command line.
 #pragma once
 
+#include "razor/scene/animation/track.h"
 #include "razor/scene/scene.h"
 
 #include <array>
@@ -26,6 +27,12 @@ inline constexpr std::array<Word<LevelOfDetail>, 23> lod_words{{
     {"fixed:1", {Lod::fixed, 1}},    {"fixed:2", {Lod::fixed, 2}},   {"fixed:3", {Lod::fixed, 3}},
     {"fixed:4", {Lod::fixed, 4}},    {"fixed:5", {Lod::fixed, 5}},   {"fixed:6", {Lod::fixed, 6}},
     {"fixed:7", {Lod::fixed, 7}},    {"fixed:8", {Lod::fixed, 8}},
+}};
+
+inline constexpr std::array<Word<Interpolation>, 3> interpolation_words{{
+    {"step", Interpolation::step},
+    {"linear", Interpolation::linear},
+    {"smooth", Interpolation::smooth},
 }};
 
 /// The word for `value`, which must be in the table.

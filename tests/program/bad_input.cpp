@@ -208,7 +208,7 @@ TEST_F(Razor, EagerFramesAreTheSamePicture) {
 TEST_F(Razor, LaterFramesFindTheTopologyAnalysed) {
     const std::string rest = " --size 20x10 --spp 1 --threads 1 ";
     ASSERT_EQ(razor("render" + rest + "-o once.exr --stats once.json").code, 0);
-    const Outcome thrice = razor("render" + rest + "-o thrice.exr --stats thrice.json --frames 3");
+    const Outcome thrice = razor("render" + rest + "-o thrice.exr --stats thrice.json --repeat 3");
     ASSERT_EQ(thrice.code, 0) << thrice.err;
     const Film expected = read_exr(folder_ / "once.exr"), film = read_exr(folder_ / "thrice.exr");
     for (const Plane& plane : expected.planes)

@@ -35,13 +35,13 @@ assert not reference or edge == 0.5
 open(option("-o"), "w").write(str(seed_noise + (0 if reference else 0.01 * 2**level)))
 host = [4, 2, 1] # a host that gets faster, turn by turn, where `recursive`, the first of each, gets slower
 try:
-    turn = int(open("turn").read()) + (lod == "recursive" and "--light-samples" in words and "--frames" in words)
+    turn = int(open("turn").read()) + (lod == "recursive" and "--light-samples" in words and "--repeat" in words)
     open("turn", "w").write(str(turn))
     host = host[turn % 3] * ([1, 1.1, 3][turn % 3] if lod == "recursive" else 1)
 except FileNotFoundError:
     host = 1
 seconds = 8 / 2**level + (0 if "--light-samples" in words else 16 / 3**level)
-frames = [2 * seconds * host] + [seconds * host * part for part in (1.1, 1, 0.9)][:int(option("--frames", 1)) - 1]
+frames = [2 * seconds * host] + [seconds * host * part for part in (1.1, 1, 0.9)][:int(option("--repeat", 1)) - 1]
 json.dump({"statistics": {"host": {"frames": [{"render_processor_seconds": s} for s in frames]},
                           "visible": {"squares": 400.0},
                           "counters": {"triangles_made": 900, "blended_tests": 1, "block_tests": 4},

@@ -1,6 +1,7 @@
 // The options that choose and override a scene.
 #include "razor/program/arguments.h"
 #include "razor/program/scene_options.h"
+#include "razor/program/sequence.h"
 
 #include "razor/scene/default_scene.h"
 #include "razor/scene/error.h"
@@ -41,9 +42,46 @@ TEST(Arguments, ParseOrRefuse) {
     for (const char* bad : {"", "3", "3..", "..3", "3...5", "5..3", "0..18", "-1..3", "3..4..5", "3-5"}) {
         EXPECT_THROW(parse_span("--tiles", bad, {0, 17}), UserError) << bad;
     }
+    EXPECT_EQ(parse_span("--frames", "3:17", {0, 17}, ":"), std::pair(3, 17));
     constexpr std::array<std::string_view, 2> words{"y", "z"};
     EXPECT_EQ(parse_choice("--up", "z", words), 1U);
     EXPECT_THROW(parse_choice("--up", "x", words), UserError);
+}
+
+TEST(Sequence, FramesAndTheirFiles) {
+    EXPECT_EQ(parse_frames("3:17").first, 3);
+    EXPECT_EQ(parse_frames("3:17").last, 17);
+    EXPECT_EQ(parse_frames("3:17").count(), 15);
+    EXPECT_EQ(parse_frames("5").first, 5);
+    EXPECT_EQ(parse_frames("5").count(), 1);
+    for (const char* bad : {"", ":", "3:", ":3", "5:3", "-1:3", "3..5", "1:2:3", "x"}) {
+        EXPECT_THROW(parse_frames(bad), UserError) << bad;
+    }
+    EXPECT_EQ(numbered("a/%04d.exr", 12), "a/0012.exr");
+    EXPECT_EQ(numbered("%d.png", 12345), "12345.png");
+    EXPECT_EQ(numbered("50%_%02d.png", 123), "50%_123.png");
+    EXPECT_EQ(numbered("%s%0d%.png", 1), "%s%0d%.png") << "no number";
+    EXPECT_NO_THROW(check_numbered("-o", "one.png", {4, 4}));
+    EXPECT_NO_THROW(check_numbered("-o", "%d.png", {4, 9}));
+    try {
+        check_numbered("-o", "a/one.png", {4, 9});
+        FAIL();
+    } catch (const UserError& error) {
+        EXPECT_STREQ(error.what(),
+                     "-o a/one.png: one name for 6 frames; write their number into it: a/one_%04d.png");
+    }
+}
+
+TEST(SceneOptions, AFrameOfWhatMoves) {
+    const TemporaryFolder folder;
+    folder.file("s.toml",
+                "[[mesh]]\nname = \"a\"\nshape = \"box\"\n[[object]]\nmesh = \"a\"\n[[object.key]]\n"
+                "time = 0\ntranslate = [1, 0, 0]\n[[object.key]]\ntime = 1\ntranslate = [2, 0, 0]\n");
+    const std::string path = (folder.path() / "s.toml").string();
+    EXPECT_EQ(described({path}).objects[0].transform.translate, glm::dvec3(1, 0, 0));
+    EXPECT_EQ(described({path, "--frame", "12"}).objects[0].transform.translate, glm::dvec3(1.5, 0, 0));
+    EXPECT_FALSE(described({path, "--frame", "12"}).objects[0].keys.any());
+    EXPECT_THROW(described({path, "--frame", "-1"}), UserError);
 }
 
 TEST(SceneOptions, BuiltInSceneWithoutAName) {

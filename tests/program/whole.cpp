@@ -29,7 +29,7 @@ turns[key] = turns.get(key, -1) + 1
 json.dump(turns, open("turns.json", "w"))
 processor = (side + 10 * bool(scene)) / 1000 * [1, 1.1, 0.9][turns[key] % 3]
 wall = processor * (0.6 if workers > 1 else 7)
-parts = [10] + [1.02, 1, 0.8][:int(option("--frames")) - 1]
+parts = [10] + [1.02, 1, 0.8][:int(option("--repeat")) - 1]
 json.dump({"scene": f"{scene} {side}",
            "statistics": {"target": {"isa": option("--isa")}, "counters": {"rays": side * side, "camera_hits": side},
                           "host": {"frames": [{"render_processor_seconds": processor * p, "render_seconds": wall * p}

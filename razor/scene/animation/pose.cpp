@@ -1,0 +1,110 @@
+#include "razor/scene/animation/pose.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/ranges.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace razor {
+namespace {
+
+template <class Value> void follow(Value& value, const Track<Value>& track, const Timing& timing, double t) {
+    if (!track.empty())
+        value = track.at(t, timing);
+}
+
+void pose(ObjectDescription& object, double t) {
+    const TransformKeys& keys = object.keys;
+    follow(object.transform.scale, keys.scale, keys.timing, t);
+    follow(object.transform.rotate, keys.rotate, keys.timing, t);
+    follow(object.transform.translate, keys.translate, keys.timing, t);
+    object.keys = {};
+}
+
+void pose(Camera& camera, const CameraKeys& keys, double t) {
+    follow(camera.position, keys.position, keys.timing, t);
+    follow(camera.target, keys.target, keys.timing, t);
+    follow(camera.up, keys.up, keys.timing, t);
+    follow(camera.fov_degrees, keys.fov, keys.timing, t);
+    follow(camera.aperture_radius, keys.aperture_radius, keys.timing, t);
+    follow(camera.focus_distance, keys.focus_distance, keys.timing, t);
+    // Cubics pass beyond their keys.
+    camera.fov_degrees = std::clamp(camera.fov_degrees, fov_range.least, fov_range.most);
+    camera.aperture_radius = std::max(camera.aperture_radius, 0.0);
+    camera.focus_distance = std::max(camera.focus_distance, 0.0);
+}
+
+void pose(RectangleLight& light, const LightKeys& keys, double t) {
+    follow(light.corner, keys.corner, keys.timing, t);
+    follow(light.edge_u, keys.edge_u, keys.timing, t);
+    follow(light.edge_v, keys.edge_v, keys.timing, t);
+    if (!keys.radiance.empty())
+        light.radiance = glm::max(glm::vec3(keys.radiance.at(t, keys.timing)), glm::vec3(0));
+}
+
+void check(const std::optional<Mistake>& mistake, const SceneDescription& scene, double seconds) {
+    if (mistake)
+        throw UserError(
+            fmt::format("{}: {} s after the beginning {}", scene.name, seconds, mistake->message));
+}
+
+} // namespace
+
+bool is_animated(const SceneDescription& d) {
+    const auto moves = [](const ObjectDescription& o) { return o.keys.any(); };
+    return d.camera_keys.any() || std::any_of(d.objects.begin(), d.objects.end(), moves) ||
+           std::any_of(d.light_keys.begin(), d.light_keys.end(),
+                       [](const LightKeys& k) { return k.any(); }) ||
+           std::any_of(d.groups.begin(), d.groups.end(), [&](const GroupDescription& g) {
+               return std::any_of(g.objects.begin(), g.objects.end(), moves);
+           });
+}
+
+SceneDescription pose_at(const SceneDescription& description, double t) {
+    SceneDescription d = description;
+    for (ObjectDescription& o : d.objects)
+        pose(o, t);
+    for (GroupDescription& g : d.groups)
+        for (ObjectDescription& o : g.objects)
+            pose(o, t);
+    if (d.camera_keys.any()) {
+        pose(d.camera, d.camera_keys, t);
+        check(mistake_of(d.camera, "camera"), d, t);
+    }
+    d.camera_keys = {};
+    for (std::size_t l = 0; l < d.light_keys.size(); ++l) {
+        pose(d.lights[l], d.light_keys[l], t);
+        check(mistake_of(d.lights[l]), d, t);
+    }
+    d.light_keys.clear();
+    return d;
+}
+
+SceneDescription pose_of_frame(const SceneDescription& description, int frame) {
+    return pose_at(description, frame / description.frame_rate);
+}
+
+std::optional<Mistake> mistake_of(const Camera& camera, const std::string& name) {
+    if (camera.position == camera.target)
+        return Mistake{"position", fmt::format("{0}.position equals {0}.target; move one of them", name)};
+    const glm::dvec3 view = glm::normalize(camera.target - camera.position);
+    if (camera.up == glm::dvec3(0) || glm::length(glm::cross(view, glm::normalize(camera.up))) < 1e-9)
+        return Mistake{"up", fmt::format("{}.up is zero or along the line of sight; turn it", name)};
+    return std::nullopt;
+}
+
+std::optional<Mistake> mistake_of(const RectangleLight& light) {
+    if (light.edge_u == glm::dvec3(0) || light.edge_v == glm::dvec3(0) ||
+        glm::length(glm::cross(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) < 1e-9)
+        return Mistake{"edge_u",
+                       "light.edge_u and light.edge_v span no rectangle; make both long and turn one"};
+    if (std::abs(glm::dot(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) > 1e-6)
+        return Mistake{"edge_v", "light.edge_u and light.edge_v are not at right angles; turn one"};
+    return std::nullopt;
+}
+
+} // namespace razor

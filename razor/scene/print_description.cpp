@@ -1,0 +1,149 @@
+#include "razor/scene/animation/pose.h"
+#include "razor/scene/animation/read_keys.h"
+#include "razor/scene/description.h"
+#include "razor/scene/shapes/shapes.h"
+#include "razor/scene/toml_text.h"
+#include "razor/scene/words.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace razor {
+namespace {
+
+bool is_whole(std::string_view shape, std::string_view parameter) {
+    for (const ShapeParameter& known : find_shape_kind(shape)->parameters) {
+        if (known.name == parameter) {
+            return known.whole;
+        }
+    }
+    return false;
+}
+
+void print_camera(std::string& text, const Camera& camera, const CameraKeys& keys, std::string_view header) {
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n", header,
+                   toml_value(camera.position), toml_value(camera.target), toml_value(camera.up),
+                   toml_number(camera.fov_degrees));
+    fmt::format_to(
+        out, "aperture_radius = {}\nfocus_distance = {}\n", toml_number(camera.aperture_radius),
+        toml_number(keys.any() ? camera.focus_distance : focus_distance(camera))); // follows the target
+    text += to_toml(keys, header);
+}
+
+void print_object(std::string& text, const ObjectDescription& object, std::string_view header) {
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "\n[[{}]]\nname = {}\n", header, toml_text(object.name));
+    if (!object.instances.empty()) {
+        fmt::format_to(out, "instances = {}\n", toml_text(object.instances));
+    } else if (!object.group.empty()) {
+        fmt::format_to(out, "group = {}\n", toml_text(object.group));
+    } else {
+        fmt::format_to(out, "mesh = {}\n", toml_text(object.mesh));
+    }
+    if (!object.material.empty()) {
+        fmt::format_to(out, "material = {}\n", toml_text(object.material));
+    }
+    const Transform& t = object.transform;
+    if (t.matrix) {
+        const auto row = [&](int i) {
+            const glm::dmat3& m = t.matrix->linear;
+            return fmt::format("[{}, {}, {}, {}]", toml_number(m[0][i]), toml_number(m[1][i]),
+                               toml_number(m[2][i]), toml_number(t.matrix->translation[i]));
+        };
+        fmt::format_to(out, "matrix = [{}, {}, {}]\n", row(0), row(1), row(2));
+    } else {
+        fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\n", toml_value(t.scale),
+                       toml_value(t.rotate), toml_value(t.translate));
+    }
+    fmt::format_to(out, "array = [{}, {}, {}]\nspacing = {}\nlevel_offset = {}\nrate = {}\n", object.copies.x,
+                   object.copies.y, object.copies.z, toml_value(object.spacing), object.level_offset,
+                   toml_number(object.rate));
+    text += to_toml(object.keys, header);
+}
+
+} // namespace
+
+std::string toml_text(std::string_view text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            result += '\\';
+            result += c;
+        } else if (byte < 0x20 || byte == 0x7f) {
+            result += fmt::format("\\u{:04x}", byte);
+        } else {
+            result += c;
+        }
+    }
+    return result + '"';
+}
+
+std::string to_toml(const SceneDescription& description) {
+    std::string text;
+    const auto out = std::back_inserter(text);
+    const Settings& settings = description.settings;
+    fmt::format_to(out,
+                   "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples "
+                   "= {}\nseed = {}\n",
+                   toml_text(description.name), settings.width, settings.height, settings.samples,
+                   settings.light_samples, settings.sky_samples, settings.seed);
+    fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
+                   toml_text(word_of(lod_words, settings.lod)));
+    print_camera(text, description.camera, description.camera_keys, "camera");
+    if (description.dicing_camera) {
+        print_camera(text, *description.dicing_camera, {}, "dicing_camera");
+    }
+    fmt::format_to(out, "\n[sky]\nradiance = {}\n", toml_value(description.sky));
+    if (is_animated(description)) {
+        fmt::format_to(out, "\n[animation]\nrate = {}\n", toml_number(description.frame_rate));
+    }
+    for (std::size_t l = 0; l < description.lights.size(); ++l) {
+        const RectangleLight& light = description.lights[l];
+        fmt::format_to(out, "\n[[light]]\ncorner = {}\nedge_u = {}\nedge_v = {}\nradiance = {}\n",
+                       toml_value(light.corner), toml_value(light.edge_u), toml_value(light.edge_v),
+                       toml_value(light.radiance));
+        if (l < description.light_keys.size()) {
+            text += to_toml(description.light_keys[l], "light");
+        }
+    }
+    for (const Material& material : description.materials) {
+        fmt::format_to(out, "\n[[material]]\nname = {}\nalbedo = {}\n", toml_text(material.name),
+                       toml_value(material.albedo));
+    }
+    for (const MeshDescription& mesh : description.meshes) {
+        fmt::format_to(out, "\n[[mesh]]\nname = {}\n", toml_text(mesh.name));
+        if (mesh.file.empty()) {
+            fmt::format_to(out, "shape = {}\n", toml_text(mesh.shape));
+        } else {
+            fmt::format_to(out, "file = {}\n", toml_text(mesh.file));
+        }
+        fmt::format_to(out, "scheme = {}\nmaterial = {}\n", toml_text(word_of(scheme_words, mesh.scheme)),
+                       toml_text(mesh.material));
+        fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
+                       toml_value(mesh.scale), toml_value(mesh.rotate), toml_value(mesh.translate),
+                       toml_number(mesh.edge_length));
+        if (!mesh.parameters.empty()) {
+            text += "[mesh.parameters]\n";
+            for (const auto& [name, value] : mesh.parameters) {
+                fmt::format_to(out, "{} = {}\n", name,
+                               is_whole(mesh.shape, name) ? fmt::format("{:.0f}", value)
+                                                          : toml_number(value));
+            }
+        }
+    }
+    for (const GroupDescription& group : description.groups) {
+        fmt::format_to(out, "\n[[group]]\nname = {}\n", toml_text(group.name));
+        for (const ObjectDescription& object : group.objects) {
+            print_object(text, object, "group.object");
+        }
+    }
+    for (const ObjectDescription& object : description.objects) {
+        print_object(text, object, "object");
+    }
+    return text;
+}
+
+} // namespace razor
