@@ -111,7 +111,7 @@ Frame::Frame(const Scene& scene, const FrameOptions& options) {
         const double unit = frame_unit(scene);
         impl_ = unit == 1 ? std::make_unique<Impl>(scene, options)
                           : std::make_unique<Impl>(scaled(scene, 1 / unit), options);
-        impl_->unit = unit;
+        impl_->unit = impl_->topology_unit = unit;
     } catch (const UserError&) {
         throw;
     } catch (const std::runtime_error& e) { // no address space
@@ -120,20 +120,20 @@ Frame::Frame(const Scene& scene, const FrameOptions& options) {
 }
 Frame::~Frame() = default;
 
-void Frame::pose(const Scene& scene) {
+bool Frame::pose(const Scene& scene) {
     Impl& f = *impl_;
-    const auto alike = [](const Mesh& a, const Mesh& b) {
-        return a.points.size() == b.points.size() && a.face_vertices == b.face_vertices;
-    };
-    if (!f.options.moves ||
-        !std::equal(scene.meshes.begin(), scene.meshes.end(), f.meshes.begin(), f.meshes.end(), alike))
-        throw std::invalid_argument("a frame can be posed with the meshes it was made with, if it may move");
+    if (!f.options.moves)
+        throw std::invalid_argument("the frame was not made to move");
+    for (const Mesh& mesh : scene.meshes)
+        validate_mesh(mesh);
     const double unit = frame_unit(scene);
-    if (unit == 1)
-        f.pose(scene);
-    else
-        f.pose(scaled(scene, 1 / unit));
+    if (!std::equal(f.meshes.begin(), f.meshes.end(), scene.meshes.begin(), scene.meshes.end(),
+                    [&f](const Mesh& mine, const Mesh& posed) {
+                        return same_topology(posed, mine, 1 / f.topology_unit);
+                    }))
+        return false;
     f.unit = unit;
+    return unit == 1 ? f.pose(scene) : f.pose(scaled(scene, 1 / unit));
 }
 
 void Frame::reset() {

@@ -66,10 +66,11 @@ public:
 
     /// Empties everything a frame builds, so that it can be rendered again. Topology pages stay.
     void reset();
-    /// reset(), for the same meshes in other places (also other instances, if their number stays), before
-    /// another camera or under another light; settings stay. What is rendered then is, bit for bit, what a
-    /// new frame would. Throws UserError as the constructor does; nothing may be rendered then.
-    void pose(const Scene& scene);
+    /// reset(), for the same meshes in other shapes and places (also other instances, if their number stays),
+    /// before another camera or under another light; settings stay. What is rendered then is, bit for bit,
+    /// what a new frame would. False where meshes or number of instances are others, and then, as where it
+    /// throws UserError as the constructor does, nothing may be rendered.
+    bool pose(const Scene& scene);
     /// Until the next reset() workers take the screen tiles from `first` up to, not including, `end` alone.
     /// They are numbered row by row. After the workers have returned they may run again on other tiles, and
     /// find what is built; the statistics go on.

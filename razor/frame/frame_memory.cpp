@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 namespace razor {
@@ -362,16 +361,17 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.reach = static_cast<float>(geometry.reach);
 }
 
-void Frame::Impl::pose(const Scene& scene) {
+bool Frame::Impl::pose(const Scene& scene) {
     SceneGeometry posed = locate_scene(scene, drawn);
     if (posed.instances.size() != geometry.instances.size())
-        throw std::invalid_argument("a frame is posed with as many instances as it was made with");
+        return false;
     geometry = std::move(posed);
     fill_instances(scene);
     fill_graph();
     fill_points(scene);
     fill_view(scene);
     reset();
+    return true;
 }
 
 } // namespace razor

@@ -42,7 +42,8 @@ struct Frame::Impl {
     /// Of valid meshes, in the frame's unit.
     Impl(const Scene& scene, const FrameOptions& options);
 
-    double unit = 1; // see frame_unit()
+    double unit = 1;          // see frame_unit()
+    double topology_unit = 1; // that of `meshes`
     std::vector<Mesh> meshes;
     std::vector<Topology> topologies;
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
@@ -107,8 +108,8 @@ struct Frame::Impl {
     void fill_graph();
     void fill_points(const Scene& scene);
     void fill_view(const Scene& scene);
-    /// In the frame's unit, which `unit` is to be.
-    void pose(const Scene& scene);
+    /// In the frame's unit, which `unit` is to be. False: with another number of instances.
+    bool pose(const Scene& scene);
     void reset();
     WorkerArguments arguments(int worker) {
         const auto w = static_cast<std::size_t>(worker);

@@ -67,6 +67,8 @@ Scene scaled(Scene scene, double factor) {
     for (Mesh& mesh : scene.meshes) {
         for (glm::dvec3& p : mesh.points)
             p *= factor;
+        for (glm::dvec3& p : mesh.rest)
+            p *= factor;
         mesh.edge_length *= factor;
     }
     for (Group& group : scene.graph.groups)

@@ -89,24 +89,29 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
 } // namespace
 
 NativeRenderer::NativeRenderer(const Scene& scene, const RenderOptions& options, bool moves)
-    : options_(options), kernels_(native_target(options.isa)), camera_(scene.camera),
-      settings_(scene.settings) {
+    : options_(options), moves_(moves), kernels_(native_target(options.isa)) {
     if (options_.threads <= 0)
         options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    const auto begin = Clock::now();
-    frame_ = std::make_unique<Frame>(
-        scene, FrameOptions{.workers = options_.threads,
-                            .tree_of_worker = tree_groups(options_.threads, options_.share),
-                            .moves = moves});
-    load_seconds_ = seconds_since(begin);
+    load(scene);
     if (options_.eager && frame_->statistics().trees > 1)
         throw UserError("--eager builds one kd-tree; leave --share out");
 }
 
 void NativeRenderer::pose(const Scene& scene) {
+    load(scene);
+}
+
+void NativeRenderer::load(const Scene& scene) {
     camera_ = scene.camera;
+    settings_ = scene.settings;
     const auto begin = Clock::now();
-    frame_->pose(scene);
+    if (!frame_ || !frame_->pose(scene)) {
+        frame_.reset(); // its memory goes before the next one's comes
+        frame_ = std::make_unique<Frame>(
+            scene, FrameOptions{.workers = options_.threads,
+                                .tree_of_worker = tree_groups(options_.threads, options_.share),
+                                .moves = moves_});
+    }
     load_seconds_ = seconds_since(begin);
     fresh_ = true;
 }

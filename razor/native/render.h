@@ -68,13 +68,17 @@ class NativeRenderer {
 public:
     /// Throws UserError for scenes and options that cannot be rendered.
     NativeRenderer(const Scene& scene, const RenderOptions& options, bool moves);
-    /// See Frame::pose().
+    /// The same scene in another pose; a scene with other meshes or instances is analysed anew. Throws
+    /// UserError for scenes that cannot be rendered.
     void pose(const Scene& scene);
     /// options.frames times. `progress` as of the options, whose own is not called.
     RenderResult render(const std::function<void(double fraction)>& progress = {});
 
 private:
+    void load(const Scene& scene);
+
     RenderOptions options_;
+    bool moves_;
     const KernelTable& kernels_;
     Camera camera_;
     Settings settings_;

@@ -36,10 +36,14 @@ inline constexpr float infinite_sharpness = 10.0F;
 struct Crease {
     int v0 = 0, v1 = 0;
     float sharpness = 0;
+
+    bool operator==(const Crease&) const = default;
 };
 struct Corner {
     int vertex = 0;
     float sharpness = 0;
+
+    bool operator==(const Corner&) const = default;
 };
 
 struct Material {
@@ -48,11 +52,14 @@ struct Material {
 };
 
 /// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face
-/// has 3 or more distinct corners; every index in range; points finite.
+/// has 3 or more distinct corners; every index in range; points finite; as many in rest, if any.
 struct Mesh {
     std::string name;
     Scheme scheme = Scheme::catmull_clark;
     std::vector<glm::dvec3> points;
+    /// Of a cage that changes its shape: points by which polygons are cut into triangles, and none is taken
+    /// as planar, so that all its shapes consist of the same patches. Empty: `points` stay as they are.
+    std::vector<glm::dvec3> rest;
     std::vector<int> face_sizes; // corners of each face
     std::vector<int>
         face_vertices; // point indices, concatenated over faces, counter-clockwise seen from outside

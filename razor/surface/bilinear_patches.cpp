@@ -48,9 +48,11 @@ void append_triangle(const Adjacency& adjacency, int face, int sub, const std::a
 
 void append_face(const Mesh& mesh, const Adjacency& adjacency, int face, Topology& topology) {
     const int first = adjacency.first(face), size = adjacency.size(face);
+    const bool deforms = !mesh.rest.empty();
+    const std::vector<glm::dvec3>& points = deforms ? mesh.rest : mesh.points;
     std::vector<glm::dvec3> polygon;
     for (int i = 0; i < size; ++i) {
-        polygon.push_back(mesh.points[static_cast<std::size_t>(adjacency.point(first + i))]);
+        polygon.push_back(points[static_cast<std::size_t>(adjacency.point(first + i))]);
     }
     const std::vector<glm::dvec2> flat = project_if_planar(polygon);
     if (flat.empty()) {
@@ -60,7 +62,7 @@ void append_face(const Mesh& mesh, const Adjacency& adjacency, int face, Topolog
             append_sub_faces(adjacency, face, PatchKind::bilinear, topology);
         }
     } else if (size == 4 && is_convex(flat)) {
-        append_quad(adjacency, face, PatchKind::flat_quad, topology);
+        append_quad(adjacency, face, deforms ? PatchKind::bilinear : PatchKind::flat_quad, topology);
     } else {
         int sub = 0;
         for (const std::array<int, 3>& triangle : clip_ears(flat)) {

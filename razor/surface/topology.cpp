@@ -12,6 +12,19 @@
 
 namespace razor {
 
+bool same_topology(const Mesh& a, const Mesh& b, double factor) {
+    const auto alike = [factor](const std::vector<glm::dvec3>& x, const std::vector<glm::dvec3>& y) {
+        return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                          [factor](const glm::dvec3& p, const glm::dvec3& q) { return p * factor == q; });
+    };
+    const bool cuts = a.scheme == Scheme::bilinear; // by points
+    return a.scheme == b.scheme && a.points.size() == b.points.size() && a.face_sizes == b.face_sizes &&
+           a.face_vertices == b.face_vertices && a.creases == b.creases && a.corners == b.corners &&
+           a.holes == b.holes && a.boundary == b.boundary && a.crease_method == b.crease_method &&
+           a.triangles == b.triangles &&
+           (!cuts || (alike(a.rest, b.rest) && (!a.rest.empty() || alike(a.points, b.points))));
+}
+
 Topology analyse_topology(const Mesh& mesh) {
     const Adjacency adjacency = build_adjacency(mesh);
     const std::vector<bool> drawn = faces_with_limit_surface(mesh);

@@ -1,6 +1,6 @@
 // One linear pass over a cage: patches, curves, owners, face classes. No limit surface is evaluated and no
 // irregular patch is built here. Everything depends on topology and tags alone, never on point positions
-// (except which bilinear polygons are planar, and how concave ones are cut).
+// (except which bilinear polygons are planar, and how concave ones are cut: of Mesh::rest, if it has points).
 #pragma once
 
 #include "razor/frame/layout.h"
@@ -39,6 +39,9 @@ struct Topology {
 /// Throws UserError naming the mesh and face where the cage cannot be used (see razor/scene/scene.h for the
 /// invariants).
 void validate_mesh(const Mesh& mesh);
+
+/// Whether both meshes have one Topology. `factor`, a power of two, takes lengths of a to those of b.
+bool same_topology(const Mesh& a, const Mesh& b, double factor);
 
 /// `mesh` must be valid. Throws UserError for cages that cannot be rendered (naming the face and the cause).
 /// A flat triangle's sides 0, 1 and 3 are its sides from corner 0 to 1, 1 to 2 and 0 to 2; side 2 has no

@@ -22,10 +22,10 @@ bool in_range(int index, std::size_t count) {
     return index >= 0 && static_cast<std::size_t>(index) < count;
 }
 
-void check_points(const Mesh& mesh) {
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+void check_points(const Mesh& mesh, const std::vector<glm::dvec3>& points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) {
-            const double x = mesh.points[i][axis];
+            const double x = points[i][axis];
             if (!std::isfinite(x)) {
                 fail(mesh, "point {} (counted from 0) has a coordinate that is not finite; give it a number",
                      i);
@@ -179,7 +179,11 @@ void check_tags(const Mesh& mesh) {
 } // namespace
 
 void validate_mesh(const Mesh& mesh) {
-    check_points(mesh);
+    check_points(mesh, mesh.points);
+    check_points(mesh, mesh.rest);
+    if (!mesh.rest.empty() && mesh.rest.size() != mesh.points.size()) {
+        fail(mesh, "it has {} points, and {} at rest; give as many", mesh.points.size(), mesh.rest.size());
+    }
     check_sizes(mesh);
     std::vector<std::size_t> last_face(mesh.points.size(), 0);
     std::size_t first = 0;
