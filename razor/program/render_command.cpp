@@ -7,6 +7,7 @@
 #include "razor/program/sequence.h"
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/error.h"
+#include "razor/scene/numbered_name.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -111,7 +112,7 @@ int RenderCommand::run() const {
         options.progress = [&](double fraction) {
             progress.show((frame - frames.first + fraction) / frames.count());
         };
-        if (!render(renderer, pose_of_frame(moving, frame), frame, options, progress)) {
+        if (!render(renderer, moving, frame, options, progress)) {
             fmt::print(stderr, "{}razor: interrupted; {}\n", progress.shown() ? "\r\x1b[K" : "",
                        sequence ? fmt::format(
                                       "frame {} and what follows are not written; go on with --resume", frame)
@@ -122,12 +123,14 @@ int RenderCommand::run() const {
     return 0;
 }
 
-bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& scene,
+bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& moving,
                            int frame, const RenderOptions& options, const Progress& progress) const {
-    const std::string config = to_toml(scene);
     const auto start = std::chrono::steady_clock::now();
+    std::string config;
     RenderResult result;
     try {
+        const SceneDescription scene = pose_of_frame(moving, frame);
+        config = to_toml(scene);
         const Scene built = build_scene(scene);
         if (renderer) {
             renderer->pose(built);

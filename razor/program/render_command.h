@@ -23,7 +23,7 @@ public:
 
 private:
     /// One frame to its files; false: interrupted, none is written. `renderer` is made by the first.
-    bool render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& scene, int frame,
+    bool render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& moving, int frame,
                 const RenderOptions& options, const Progress& progress) const;
 
     SceneOptions scene_;

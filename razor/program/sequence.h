@@ -1,7 +1,6 @@
-// The frames of a sequence, and the names of what is written of each.
+// The frames of a sequence.
 #pragma once
 
-#include <string>
 #include <string_view>
 
 namespace razor {
@@ -15,9 +14,7 @@ struct FrameRange {
 /// "3:17", or "3" alone. Throws UserError.
 FrameRange parse_frames(std::string_view text);
 
-/// A name with the number of the frame in place of %d, or of %04d with zeros before it, where it has one.
-std::string numbered(std::string_view name, int frame);
-/// Throws UserError unless each frame has a name of its own.
+/// Throws UserError unless each frame has a name of its own (razor/scene/numbered_name.h).
 void check_numbered(std::string_view option, std::string_view name, const FrameRange& frames);
 
 } // namespace razor

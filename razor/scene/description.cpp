@@ -1,8 +1,6 @@
 #include "razor/scene/description.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/obj_reader.h"
-#include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -32,6 +30,21 @@ int material_index(const SceneDescription& description, std::string_view name) {
     const auto material = std::find_if(description.materials.begin(), description.materials.end(),
                                        [&](const Material& m) { return m.name == name; });
     return static_cast<int>(std::distance(description.materials.begin(), material));
+}
+
+std::vector<glm::dvec3> placed(const MeshDescription& mesh, const std::vector<glm::dvec3>& points) {
+    std::vector<glm::dvec3> result;
+    result.reserve(points.size());
+    for (const glm::dvec3& point : points) {
+        glm::dvec3 p = mesh.scale * point;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (mesh.rotate[axis] != 0) {
+                p = rotated(p, axis, mesh.rotate[axis]);
+            }
+        }
+        result.push_back(mesh.translate + p);
+    }
+    return result;
 }
 
 class GraphBuilder {
@@ -140,36 +153,14 @@ private:
 
 } // namespace
 
-void load_cage(MeshDescription& mesh) {
-    CageCache none;
-    load_cage(mesh, none);
-}
-
-void load_cage(MeshDescription& mesh, CageCache& cages) {
-    if (mesh.file.empty()) {
-        mesh.cage = std::make_shared<const Mesh>(make_shape(mesh.shape, mesh.parameters));
-        return;
-    }
-    std::shared_ptr<const Mesh>& cage = cages[mesh.file];
-    if (!cage) {
-        cage = std::make_shared<const Mesh>(read_obj(mesh.file));
-    }
-    mesh.cage = cage;
+bool changes_shape(const MeshDescription& mesh) {
+    return !mesh.playback.moment &&
+           (mesh.motion != nullptr || std::any_of(mesh.deformers.begin(), mesh.deformers.end(),
+                                                  [](const Deformer& d) { return d.period > 0; }));
 }
 
 std::vector<glm::dvec3> placed_points(const MeshDescription& mesh) {
-    std::vector<glm::dvec3> points;
-    points.reserve(mesh.cage->points.size());
-    for (const glm::dvec3& point : mesh.cage->points) {
-        glm::dvec3 p = mesh.scale * point;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (mesh.rotate[axis] != 0) {
-                p = rotated(p, axis, mesh.rotate[axis]);
-            }
-        }
-        points.push_back(mesh.translate + p);
-    }
-    return points;
+    return placed(mesh, mesh.cage->points);
 }
 
 std::vector<Box> mesh_bounds(const SceneDescription& description) {
@@ -199,6 +190,7 @@ Scene build_scene(const SceneDescription& description) {
         mesh.scheme = source.scheme;
         mesh.edge_length = source.edge_length;
         mesh.points = placed_points(source);
+        mesh.rest = placed(source, source.cage->rest);
         mesh.material = material_index(description, source.material);
         scene.meshes.push_back(std::move(mesh));
     }

@@ -3,7 +3,10 @@
 // animation/pose.h has put what moves where it is at one moment.
 #pragma once
 
+#include "razor/scene/animation/deformer.h"
 #include "razor/scene/animation/keys.h"
+#include "razor/scene/animation/moving_cage.h"
+#include "razor/scene/animation/playback.h"
 #include "razor/scene/graph/flatten.h"
 #include "razor/scene/instance_table.h"
 #include "razor/scene/scene.h"
@@ -20,17 +23,26 @@ namespace razor {
 /// double precision; objects place what has so become of it.
 struct MeshDescription {
     std::string name;
-    std::string file;                                       // absolute path of an OBJ file, or empty: a shape
+    std::string file;                                       // absolute path of a model, or empty: a shape
     std::string shape;                                      // see razor/scene/shapes/shapes.h
     std::vector<std::pair<std::string, double>> parameters; // of the shape, all of them
     Scheme scheme = Scheme::catmull_clark;
     std::string material;
-    glm::dvec3 scale{1, 1, 1};        // positive
-    glm::dvec3 rotate{0, 0, 0};       // degrees, about x, then y, then z; quarter turns are exact
-    glm::dvec3 translate{0, 0, 0};    // world units
-    double edge_length = 0;           // see Mesh::edge_length
-    std::shared_ptr<const Mesh> cage; // as read or generated, before scale, rotate and translate
+    glm::dvec3 scale{1, 1, 1};       // positive
+    glm::dvec3 rotate{0, 0, 0};      // degrees, about x, then y, then z; quarter turns are exact
+    glm::dvec3 translate{0, 0, 0};   // world units
+    double edge_length = 0;          // see Mesh::edge_length
+    Playback playback;               // of the file's motion, and when the deformers are at work
+    std::vector<Deformer> deformers; // one after the other
+    // As read or generated, before deformers, scale, rotate and translate: at the beginning, and its motion,
+    // if any.
+    std::shared_ptr<const Mesh> source;
+    std::shared_ptr<const MovingCage> motion;
+    std::shared_ptr<const Mesh> cage; // when the scene begins, or at playback.moment; before scale and so on
 };
+
+/// Whether the cage has other shapes at other moments.
+bool changes_shape(const MeshDescription& mesh);
 
 /// Puts a mesh, a group, or all rows of a table of instances somewhere, once or as a regular array.
 struct ObjectDescription {
@@ -70,13 +82,6 @@ struct SceneDescription {
     std::vector<GroupDescription> groups;
     std::vector<ObjectDescription> objects;
 };
-
-/// Cages by the file they were read from: no file is read twice.
-using CageCache = std::unordered_map<std::string, std::shared_ptr<const Mesh>>;
-
-/// Reads or generates the cage of a mesh whose file or shape and parameters are set. Throws UserError.
-void load_cage(MeshDescription& mesh);
-void load_cage(MeshDescription& mesh, CageCache& cages);
 
 /// The cage's points where the scene has them.
 std::vector<glm::dvec3> placed_points(const MeshDescription& mesh);

@@ -1,7 +1,7 @@
 #include "razor/scene/framing.h"
 
+#include "razor/scene/cage_source.h"
 #include "razor/scene/error.h"
-#include "razor/scene/obj_reader.h"
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/text_file.h"
 
@@ -30,24 +30,37 @@ struct Extent {
     double lowest = 0;
 };
 
-/// The points of a mesh that faces use, before objects place it.
-std::vector<glm::dvec3> used_points(const MeshDescription& mesh) {
+/// Adds the points of a mesh that faces use, before objects place it.
+void add_used_points(const MeshDescription& mesh, std::vector<glm::dvec3>& points) {
     std::vector<bool> used(mesh.cage->points.size());
     for (const int corner : mesh.cage->face_vertices) {
         used[static_cast<std::size_t>(corner)] = true;
     }
     const std::vector<glm::dvec3> placed = placed_points(mesh);
-    std::vector<glm::dvec3> points;
     for (std::size_t i = 0; i < placed.size(); ++i) {
         if (used[i]) {
             points.push_back(placed[i]);
         }
     }
+}
+
+/// ... of one that changes its shape at so many moments of its motion.
+std::vector<glm::dvec3> used_points(MeshDescription mesh) {
+    constexpr int moments = 8;
+    std::vector<glm::dvec3> points;
+    add_used_points(mesh, points);
+    if (changes_shape(mesh)) {
+        for (int n = 0; n <= moments; ++n) {
+            mesh.playback.moment = motion_length(mesh) * n / moments;
+            shape_cage(mesh, 0);
+            add_used_points(mesh, points);
+        }
+    }
     return points;
 }
 
-/// The points that faces use, where the scene has them. Those of instances are made when visited: there may
-/// be too many to keep.
+/// The points that faces use, where the scene has them when it begins. Those of instances are made when
+/// visited: there may be too many to keep.
 class PointCloud {
 public:
     explicit PointCloud(const SceneDescription& scene) {
@@ -198,8 +211,8 @@ SceneDescription frame_model(const std::filesystem::path& path, const FramingOpt
     SceneDescription scene = empty_scene(options);
     MeshDescription& model = scene.meshes.emplace_back();
     model.file = std::filesystem::absolute(path).lexically_normal().string();
-    model.cage = std::make_shared<const Mesh>(read_obj(path));
-    model.name = model.cage->name;
+    load_cage(model);
+    model.name = cage_name(model.file);
     model.scheme = options.scheme;
     model.material = "model";
     scene.name = model.name;

@@ -17,7 +17,7 @@ struct FramingOptions {
     Settings settings; // the picture's shape decides how far the camera stands away
 };
 
-/// A scene of one OBJ model: turned y up, seen from slightly above and from the right, lit by a rectangle at
+/// A scene of one model: turned y up, seen from slightly above and from the right, lit by a rectangle at
 /// the upper left and a constant sky, on a floor; all in the model's own units. Throws UserError where the
 /// file cannot be read or it reaches beyond 1e24: what is placed about it reaches further, and must stay
 /// below 1e30.

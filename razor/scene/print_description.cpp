@@ -1,5 +1,6 @@
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/animation/read_keys.h"
+#include "razor/scene/animation/read_playback.h"
 #include "razor/scene/description.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
@@ -125,6 +126,7 @@ std::string to_toml(const SceneDescription& description) {
         fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
                        toml_value(mesh.scale), toml_value(mesh.rotate), toml_value(mesh.translate),
                        toml_number(mesh.edge_length));
+        text += playback_to_toml(mesh);
         if (!mesh.parameters.empty()) {
             text += "[mesh.parameters]\n";
             for (const auto& [name, value] : mesh.parameters) {
@@ -133,6 +135,7 @@ std::string to_toml(const SceneDescription& description) {
                                                           : toml_number(value));
             }
         }
+        text += deformers_to_toml(mesh);
     }
     for (const GroupDescription& group : description.groups) {
         fmt::format_to(out, "\n[[group]]\nname = {}\n", toml_text(group.name));

@@ -16,6 +16,7 @@ inline constexpr Range coordinate_range{-1e30, 1e30};
 inline constexpr Range fov_range{1e-3, 179}; // degrees
 inline constexpr Range radiance_range{0, 1e9};
 inline constexpr Range signed_scale_range{-1e30, 1e30};
+inline constexpr Range time_range{0, 1e6};          // seconds, of keys
 inline constexpr Range frame_rate_range{1e-3, 1e6}; // frames a second
 inline constexpr Range frame_range{0, 9999999};
 inline constexpr Range aperture_range{0, 1e30};

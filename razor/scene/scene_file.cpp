@@ -2,6 +2,8 @@
 
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/animation/read_keys.h"
+#include "razor/scene/animation/read_playback.h"
+#include "razor/scene/cage_source.h"
 #include "razor/scene/error.h"
 #include "razor/scene/framing.h"
 #include "razor/scene/nearest.h"
@@ -9,8 +11,7 @@
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
-#include "razor/scene/toml_table.h"
-#include "razor/scene/words.h"
+#include "razor/scene/toml_words.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -27,17 +28,6 @@ void check_names(const std::vector<std::string>& names, std::string_view name, c
     }
 }
 
-template <class Value, std::size_t Count>
-Value read_word(TomlTable& table, std::string_view key, Value preset,
-                const std::array<Word<Value>, Count>& choices) {
-    std::array<std::string_view, Count> words;
-    std::transform(choices.begin(), choices.end(), words.begin(),
-                   [](const auto& word) { return word.first; });
-    const auto* at =
-        std::find_if(choices.begin(), choices.end(), [&](const auto& word) { return word.second == preset; });
-    return choices[table.choice(key, static_cast<std::size_t>(at - choices.begin()), words)].second;
-}
-
 Settings read_settings(TomlTable table) {
     Settings settings;
     const auto [width, height] = table.whole_pair("size", {settings.width, settings.height}, size_range);
@@ -48,7 +38,7 @@ Settings read_settings(TomlTable table) {
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
     settings.seed = table.whole("seed", settings.seed, seed_range);
     settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
-    settings.lod = read_word(table, "lod", settings.lod, lod_words);
+    settings.lod = choose(table, "lod", settings.lod, lod_words);
     table.finish();
     return settings;
 }
@@ -110,7 +100,7 @@ void read_shape(TomlTable& table, MeshDescription& mesh) {
 }
 
 MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
-                          const std::filesystem::path& folder, CageCache& cages) {
+                          const std::filesystem::path& folder, double frame_rate, CageCache& cages) {
     MeshDescription mesh;
     mesh.name = table.text("name", "");
     const std::string file = table.text("file", "");
@@ -123,7 +113,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         table.may_have("shape");
         mesh.file = std::filesystem::absolute(folder / file).lexically_normal().string();
     }
-    mesh.scheme = read_word(table, "scheme", mesh.scheme, scheme_words);
+    mesh.scheme = choose(table, "scheme", mesh.scheme, scheme_words);
     mesh.scale = table.vector_or_number("scale", mesh.scale, scale_range);
     mesh.rotate = table.vector("rotate", mesh.rotate, angle_range);
     mesh.translate = table.vector("translate", mesh.translate, coordinate_range);
@@ -134,6 +124,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         names.push_back(material.name);
     }
     mesh.material = std::string(names[table.choice("material", 0, names)]);
+    read_playback(table, mesh, frame_rate);
     table.finish();
     try {
         if (table.has("file") && file.empty()) {
@@ -144,7 +135,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         table.fail(table.has("file") ? "file" : "shape", error.what());
     }
     if (mesh.name.empty()) {
-        mesh.name = mesh.file.empty() ? mesh.shape : mesh.cage->name;
+        mesh.name = mesh.file.empty() ? mesh.shape : cage_name(mesh.file);
     }
     return mesh;
 }
@@ -181,7 +172,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     }
     CageCache cages;
     for (TomlTable& mesh : root.tables("mesh")) {
-        scene.meshes.push_back(read_mesh(std::move(mesh), scene.materials, folder, cages));
+        scene.meshes.push_back(read_mesh(std::move(mesh), scene.materials, folder, scene.frame_rate, cages));
     }
     read_objects(root, scene, folder, cages);
     root.finish();
@@ -233,7 +224,7 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
 }
 
 bool is_model_file(const std::filesystem::path& path) {
-    return extension_of(path) == ".obj" || extension_of(path) == ".instances";
+    return model_file(path) != ModelFile::none || extension_of(path) == ".instances";
 }
 
 SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing) {
@@ -241,7 +232,8 @@ SceneDescription describe(const std::filesystem::path& path, const FramingOption
         return read_scene_file(path);
     }
     if (is_model_file(path)) {
-        return extension_of(path) == ".obj" ? frame_model(path, framing) : frame_instances(path, framing);
+        return model_file(path) != ModelFile::none ? frame_model(path, framing)
+                                                   : frame_instances(path, framing);
     }
     if (std::filesystem::is_directory(path)) {
         throw UserError(fmt::format("{}: is a directory; give a file ending in .toml, .obj or .instances",

@@ -3,7 +3,7 @@
 #include "razor/scene/animation/read_keys.h"
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"
-#include "razor/scene/words.h"
+#include "razor/scene/toml_words.h"
 
 #include <fmt/format.h>
 
@@ -164,10 +164,7 @@ private:
 
     void read_instances(TomlTable& table, ObjectDescription& object) {
         const std::string file = table.text("instances", "");
-        std::array<std::string_view, scheme_words.size()> words;
-        std::transform(scheme_words.begin(), scheme_words.end(), words.begin(),
-                       [](const auto& word) { return word.first; });
-        const Scheme scheme = scheme_words[table.choice("scheme", 0, words)].second;
+        const Scheme scheme = choose(table, "scheme", Scheme::catmull_clark, scheme_words);
         if (!table.has("instances")) {
             if (table.has("scheme")) {
                 table.fail("scheme", "an object of a mesh or group has no scheme; state it in the [[mesh]]");
@@ -240,7 +237,7 @@ void add_table_meshes(SceneDescription& scene, const InstanceTable& table, const
             });
             throw UserError(fmt::format("{}:{}: {}", printable(path, 1000), row->line, error.what()));
         }
-        mesh.name = mesh.cage->name;
+        mesh.name = cage_name(mesh.file);
         scene.meshes.push_back(std::move(mesh));
     }
 }

@@ -1,6 +1,7 @@
 // The words for choices in scene files and on the command line.
 #pragma once
 
+#include "razor/scene/animation/deformer.h"
 #include "razor/scene/animation/track.h"
 #include "razor/scene/scene.h"
 
@@ -33,6 +34,12 @@ inline constexpr std::array<Word<Interpolation>, 3> interpolation_words{{
     {"step", Interpolation::step},
     {"linear", Interpolation::linear},
     {"smooth", Interpolation::smooth},
+}};
+
+inline constexpr std::array<Word<DeformerKind>, 3> deformer_words{{
+    {"wave", DeformerKind::wave},
+    {"twist", DeformerKind::twist},
+    {"bend", DeformerKind::bend},
 }};
 
 /// The word for `value`, which must be in the table.

@@ -11,6 +11,7 @@ inline void expect_same(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.name, b.name);
     EXPECT_EQ(a.scheme, b.scheme);
     EXPECT_EQ(a.points, b.points) << a.name;
+    EXPECT_EQ(a.rest, b.rest) << a.name;
     EXPECT_EQ(a.face_sizes, b.face_sizes);
     EXPECT_EQ(a.face_vertices, b.face_vertices);
     EXPECT_EQ(a.texcoords, b.texcoords);

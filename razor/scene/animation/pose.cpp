@@ -1,7 +1,9 @@
 #include "razor/scene/animation/pose.h"
 
+#include "razor/scene/cage_source.h"
 #include "razor/scene/error.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -56,7 +58,8 @@ void check(const std::optional<Mistake>& mistake, const SceneDescription& scene,
 
 bool is_animated(const SceneDescription& d) {
     const auto moves = [](const ObjectDescription& o) { return o.keys.any(); };
-    return d.camera_keys.any() || std::any_of(d.objects.begin(), d.objects.end(), moves) ||
+    return d.camera_keys.any() || std::any_of(d.meshes.begin(), d.meshes.end(), changes_shape) ||
+           std::any_of(d.objects.begin(), d.objects.end(), moves) ||
            std::any_of(d.light_keys.begin(), d.light_keys.end(),
                        [](const LightKeys& k) { return k.any(); }) ||
            std::any_of(d.groups.begin(), d.groups.end(), [&](const GroupDescription& g) {
@@ -66,6 +69,14 @@ bool is_animated(const SceneDescription& d) {
 
 SceneDescription pose_at(const SceneDescription& description, double t) {
     SceneDescription d = description;
+    for (MeshDescription& m : d.meshes)
+        if (changes_shape(m)) {
+            try {
+                pose_cage(m, t);
+            } catch (const UserError& error) {
+                throw UserError(fmt::format("{}: mesh '{}': {}", d.name, printable(m.name), error.what()));
+            }
+        }
     for (ObjectDescription& o : d.objects)
         pose(o, t);
     for (GroupDescription& g : d.groups)

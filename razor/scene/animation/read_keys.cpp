@@ -2,7 +2,7 @@
 
 #include "razor/scene/ranges.h"
 #include "razor/scene/toml_text.h"
-#include "razor/scene/words.h"
+#include "razor/scene/toml_words.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,6 @@
 
 namespace razor {
 namespace {
-
-constexpr Range time_range{0, 1e6};
 
 // One of them for each kind of keys: visit(name, track, range, whether one number stands for all three).
 template <class Keys, class Visit>
@@ -55,14 +53,11 @@ void read_value(TomlTable& key, std::string_view name, double time, Track<glm::d
 
 Timing read_timing(TomlTable& table, bool keys) {
     Timing timing;
-    std::array<std::string_view, interpolation_words.size()> words;
-    std::transform(interpolation_words.begin(), interpolation_words.end(), words.begin(),
-                   [](const auto& word) { return word.first; });
     for (const std::string_view key : {"interpolation", "cycle"})
         if (!keys && table.has(key))
             table.fail(key, fmt::format("{} without keys; write [[{}.key]] with a time and what moves", key,
                                         table.name()));
-    timing.interpolation = interpolation_words[table.choice("interpolation", 1, words)].second;
+    timing.interpolation = choose(table, "interpolation", timing.interpolation, interpolation_words);
     timing.cycle = table.number("cycle", 0, time_range);
     return timing;
 }

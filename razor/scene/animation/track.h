@@ -1,12 +1,10 @@
 // A value that changes in time, given by keys.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
-#include <utility>
 #include <vector>
 
 namespace razor {
@@ -24,6 +22,23 @@ struct Timing {
     bool operator==(const Timing&) const = default;
 };
 
+/// What keys have to do with a moment: v[base] + the sum of factor (v[key] - v[base]). Keys whose values are
+/// equal so give just that; factors are not 0.
+struct Blend {
+    struct Part {
+        std::size_t key = 0;
+        double factor = 0;
+    };
+
+    std::size_t base = 0;
+    std::array<Part, 3> parts{};
+    std::size_t count = 0; // of parts
+};
+
+/// At `t` seconds, of keys at these times: in order, none twice; of a cycle: from 0 up to it. There must be
+/// one.
+Blend blend_at(const std::vector<double>& times, const Timing& timing, double t);
+
 template <class Value> class Track {
 public:
     struct Key {
@@ -33,49 +48,22 @@ public:
         bool operator==(const Key&) const = default;
     };
 
-    /// In order of time, none twice; of a cycle: from 0 up to it.
-    std::vector<Key> keys;
+    std::vector<Key> keys; // see blend_at()
 
     bool empty() const { return keys.empty(); }
     /// At `t` seconds; there must be a key.
     Value at(double t, const Timing& timing) const {
-        if (timing.cycle > 0)
-            t -= timing.cycle * std::floor(t / timing.cycle);
-        const auto after = static_cast<std::ptrdiff_t>(std::distance(
-            keys.begin(), std::upper_bound(keys.begin(), keys.end(), t,
-                                           [](double time, const Key& key) { return time < key.time; })));
-        const auto count = static_cast<std::ptrdiff_t>(keys.size());
-        if (timing.cycle == 0 && (after == 0 || after == count))
-            return keys[static_cast<std::size_t>(after == 0 ? 0 : count - 1)].value;
-        const Key a = key(after - 1, timing), b = key(after, timing);
-        if (timing.interpolation == Interpolation::step || !(b.time > a.time))
-            return a.value;
-        const double length = b.time - a.time, x = (t - a.time) / length;
-        if (timing.interpolation == Interpolation::linear)
-            return a.value + (b.value - a.value) * x;
-        const double y = 1 - x;
-        return a.value * (y * y * (1 + 2 * x)) + b.value * (x * x * (1 + 2 * y)) +
-               (slope(after - 1, timing) * (x * y * y) - slope(after, timing) * (x * x * y)) * length;
+        std::vector<double> times;
+        for (const Key& key : keys)
+            times.push_back(key.time);
+        const Blend blend = blend_at(times, timing, t);
+        Value value = keys[blend.base].value;
+        for (std::size_t i = 0; i < blend.count; ++i)
+            value += (keys[blend.parts[i].key].value - keys[blend.base].value) * blend.parts[i].factor;
+        return value;
     }
 
     bool operator==(const Track&) const = default;
-
-private:
-    /// Also before the first and after the last, of a cycle.
-    Key key(std::ptrdiff_t i, const Timing& timing) const {
-        const auto count = static_cast<std::ptrdiff_t>(keys.size());
-        const std::ptrdiff_t turns = i < 0 ? -1 : i / count;
-        Key k = keys[static_cast<std::size_t>(i - turns * count)];
-        k.time += static_cast<double>(turns) * timing.cycle;
-        return k;
-    }
-    Value slope(std::ptrdiff_t i, const Timing& timing) const {
-        const bool cyclic = timing.cycle > 0;
-        const auto last = static_cast<std::ptrdiff_t>(keys.size()) - 1;
-        const Key a = key(cyclic ? i - 1 : std::max<std::ptrdiff_t>(i - 1, 0), timing),
-                  b = key(cyclic ? i + 1 : std::min(i + 1, last), timing);
-        return b.time > a.time ? (b.value - a.value) * (1 / (b.time - a.time)) : a.value * 0.0;
-    }
 };
 
 } // namespace razor

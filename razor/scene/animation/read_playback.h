@@ -1,0 +1,17 @@
+// Moving cages in scene files: what [[mesh]] says of how its file is played, and [[mesh.deform]].
+#pragma once
+
+#include "razor/scene/description.h"
+#include "razor/scene/toml_table.h"
+
+namespace razor {
+
+/// Sets playback and deformers of a mesh whose file is set. `frame_rate` where none is stated. Throws
+/// UserError naming the place.
+void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate);
+
+/// As they are read; nothing of a mesh that neither moves nor is deformed.
+std::string playback_to_toml(const MeshDescription& mesh);
+std::string deformers_to_toml(const MeshDescription& mesh);
+
+} // namespace razor

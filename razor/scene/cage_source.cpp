@@ -1,0 +1,109 @@
+#include "razor/scene/cage_source.h"
+
+#include "razor/scene/animation/cage_frames.h"
+#include "razor/scene/error.h"
+#include "razor/scene/numbered_name.h"
+#include "razor/scene/obj_reader.h"
+#include "razor/scene/shapes/shapes.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace razor {
+namespace {
+
+std::pair<int, int> all_frames(const std::string& file) {
+    const auto numbers = numbers_there(file);
+    if (!numbers)
+        throw UserError(
+            fmt::format("{}: there is no such file of any number; check the path", printable(file, 1000)));
+    return *numbers;
+}
+
+/// All that what is read depends on.
+std::string key_of(const MeshDescription& mesh) {
+    const Playback& p = mesh.playback;
+    const auto [first, last] = p.frames.value_or(std::pair(-1, -1));
+    return fmt::format("{}\n{} {} {} {} {} {}", mesh.file, first, last, p.frame_rate,
+                       static_cast<int>(p.timing.interpolation), p.timing.cycle, p.clip);
+}
+
+CageCache::Entry read(const MeshDescription& mesh) {
+    const Playback& p = mesh.playback;
+    CageCache::Entry entry;
+    switch (model_file(mesh.file)) {
+    case ModelFile::obj_sequence: {
+        entry.motion = std::make_shared<const ObjSequence>(mesh.file, p.frames->first, p.frames->second,
+                                                           p.frame_rate, p.timing);
+        entry.source = entry.motion->at(0);
+        break;
+    }
+    default:
+        entry.source = std::make_shared<const Mesh>(read_obj(mesh.file));
+    }
+    return entry;
+}
+
+} // namespace
+
+ModelFile model_file(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (extension == ".obj")
+        return has_number(path.filename().string()) ? ModelFile::obj_sequence : ModelFile::obj;
+    return ModelFile::none;
+}
+
+void load_cage(MeshDescription& mesh) {
+    CageCache none;
+    load_cage(mesh, none);
+}
+
+void load_cage(MeshDescription& mesh, CageCache& cages) {
+    if (mesh.file.empty()) {
+        mesh.source = std::make_shared<const Mesh>(make_shape(mesh.shape, mesh.parameters));
+    } else {
+        if (model_file(mesh.file) == ModelFile::obj_sequence && !mesh.playback.frames)
+            mesh.playback.frames = all_frames(mesh.file);
+        CageCache::Entry& entry = cages.entries[key_of(mesh)];
+        if (!entry.source)
+            entry = read(mesh);
+        mesh.source = entry.source;
+        mesh.motion = entry.motion;
+    }
+    shape_cage(mesh, 0);
+}
+
+void shape_cage(MeshDescription& mesh, double scene_seconds) {
+    const double seconds = mesh.playback.seconds(scene_seconds);
+    mesh.cage = mesh.motion ? mesh.motion->at(seconds) : mesh.source;
+    if (mesh.deformers.empty())
+        return;
+    std::vector<glm::dvec3> points = mesh.cage->points;
+    for (const Deformer& d : mesh.deformers)
+        deform(d, seconds, points);
+    mesh.cage = moved(*mesh.cage, std::move(points));
+}
+
+void pose_cage(MeshDescription& mesh, double scene_seconds) {
+    shape_cage(mesh, scene_seconds);
+    mesh.playback.moment = mesh.playback.seconds(scene_seconds);
+}
+
+double motion_length(const MeshDescription& mesh) {
+    double length = mesh.motion ? mesh.motion->length() : 0;
+    for (const Deformer& d : mesh.deformers)
+        length = std::max(length, d.period);
+    return length;
+}
+
+std::string cage_name(const std::filesystem::path& path) {
+    const std::string stem = path.stem().string();
+    std::string name = without_number(stem);
+    return name.empty() ? stem : name;
+}
+
+} // namespace razor

@@ -1,0 +1,42 @@
+// Cages from where a scene says they come: shapes, OBJ files and sequences of them.
+#pragma once
+
+#include "razor/scene/description.h"
+
+#include <filesystem>
+#include <string_view>
+#include <unordered_map>
+
+namespace razor {
+
+/// What was read, by the file and how it is played: no file is read twice.
+struct CageCache {
+    struct Entry {
+        std::shared_ptr<const Mesh> source;
+        std::shared_ptr<const MovingCage> motion;
+    };
+    std::unordered_map<std::string, Entry> entries;
+};
+
+/// What files hold by their names' extensions, in any case.
+enum class ModelFile { none, obj, obj_sequence };
+ModelFile model_file(const std::filesystem::path& path);
+
+/// Reads or generates the cage of a mesh whose file or shape, parameters, playback and deformers are set;
+/// fills in playback.frames where they are all that there are. Throws UserError.
+void load_cage(MeshDescription& mesh);
+void load_cage(MeshDescription& mesh, CageCache& cages);
+
+/// Sets `cage` to what it is so many seconds after the scene's beginning, or at its moment. Throws UserError
+/// where a frame cannot be read.
+void shape_cage(MeshDescription& mesh, double scene_seconds);
+/// ... and lets it stand at that moment.
+void pose_cage(MeshDescription& mesh, double scene_seconds);
+
+/// Until when its own motion has shown all: the last key, or the longest period. Seconds.
+double motion_length(const MeshDescription& mesh);
+
+/// What a file's cage is called: the stem of its name, without the place of a number.
+std::string cage_name(const std::filesystem::path& path);
+
+} // namespace razor
