@@ -85,10 +85,14 @@ protected:
     TemporaryFolder folder_;
 };
 
+// The top is planar in the first frame alone; sides of all others are saddles.
 TEST_F(Deforming, FilesAndFormulas) {
     for (int n = 0; n < 4; ++n)
-        folder_.file(fmt::format("box_{}.obj", n),
-                     box([&](const glm::dvec3& p) { return turned(p, 0.4 * n * p.y) * (1 - 0.1 * n); }));
+        folder_.file(fmt::format("box_{}.obj", n), box([&](const glm::dvec3& p) {
+                         const bool notch = p.x == 0.2;
+                         return turned(p, 0.4 * n * p.y) * (1 - 0.1 * n) +
+                                glm::dvec3(0, notch ? 0.2 * n : 0, 0);
+                     }));
     scene("s.toml", R"(
         [[mesh]]
         file = "box_%d.obj"
@@ -160,6 +164,25 @@ TEST_F(Deforming, NoShapeOfOneFrameHarmsAnother) {
     // Bilinear frames: quadrilaterals may be flat or not in one that stands still, so against each alone.
     scene("b.toml", "[[mesh]]\nfile = \"%d.obj\"\ninterpolation = \"step\"\nscheme = \"bilinear\"\n");
     expect_each_alone("b.toml", frames);
+}
+
+// A box at rest whose sides become saddles, against one that never was a box.
+TEST_F(Deforming, NothingStaysFlat) {
+    for (int n = 0; n < 2; ++n)
+        folder_.file(fmt::format("box_{}.obj", n),
+                     box([&](const glm::dvec3& p) { return turned(p, 0.8 * n * p.y); }));
+    scene("s.toml", "[[mesh]]\nfile = \"box_%d.obj\"\nframe_rate = 2\nscheme = \"bilinear\"\n");
+    scene("still.toml", "[[mesh]]\nfile = \"box_1.obj\"\nscheme = \"bilinear\"\n");
+    ASSERT_EQ(razor("s.toml --frame 1 -o posed.exr").code, 0);
+    ASSERT_EQ(razor("still.toml -o still.exr").code, 0);
+    for (const char* plane : {"depth.Z", "normal.X", "normal.Z"}) {
+        const std::vector<float> posed = read_exr(folder_ / "posed.exr").find(plane)->values,
+                                 still = read_exr(folder_ / "still.exr").find(plane)->values;
+        int apart = 0;
+        for (std::size_t i = 0; i < posed.size(); ++i)
+            apart += std::abs(posed[i] - still[i]) > 1e-3F ? 1 : 0;
+        EXPECT_LT(apart, 20) << plane << " of " << posed.size();
+    }
 }
 
 TEST_F(Deforming, TopologyIsAnalysedOnce) {
