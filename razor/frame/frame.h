@@ -5,6 +5,7 @@
 #include "isa/address_space.h"
 #include "isa/services.h"
 #include "razor/frame/counters.h"
+#include "razor/frame/duplicates.h"
 #include "razor/frame/kernel_table.h"
 #include "razor/frame/layout.h"
 #include "razor/image/image.h"
@@ -99,6 +100,8 @@ public:
     FrameHeader& header();
     /// Counters and plan are those of the render so far.
     FrameStatistics statistics() const;
+    /// Of the trees so far; call it when no worker runs.
+    Duplicates duplicates() const;
     Plan plan() const;
     int workers() const;
     /// How many: header().instances.

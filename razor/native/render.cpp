@@ -134,6 +134,7 @@ RenderResult NativeRenderer::render(const std::function<void(double)>& progress)
         r.statistics.times.push_back(render_frame(*frame_, kernels_, options_, part));
     }
     r.statistics.frame = frame_->statistics();
+    r.statistics.duplicates = frame_->duplicates();
     r.film = frame_->film();
     r.statistics.visible = visible_surface(r.film, camera_, settings_);
     return r;

@@ -43,6 +43,7 @@ struct FrameTime {
 
 struct RenderStatistics {
     FrameStatistics frame; // the last one
+    Duplicates duplicates; // in it
     std::string isa;
     int width_lanes = 0, threads = 0;
     double load_seconds = 0; // topology and frame memory

@@ -44,6 +44,10 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                      {"list_bytes", f.list_bytes},
                      {"patch_table_bytes", f.patch_table_bytes},
                      {"topology_page_bytes", f.page_bytes}};
+    json["duplicates"] = {{"kd_nodes", s.duplicates.nodes},
+                          {"patches", s.duplicates.patches},
+                          {"blocks", s.duplicates.blocks},
+                          {"normals", s.duplicates.normals}};
     json["scene_bytes"] = {{"scene_graph", f.scene_graph_bytes},
                            {"topology", f.topology_bytes},
                            {"control_points", f.control_point_bytes}};

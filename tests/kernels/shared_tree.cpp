@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <stdexcept>
 
@@ -104,6 +105,50 @@ TEST(SharedTree, EveryTreeIsCountedByItself) {
         if (first.empty())
             first = picture;
         EXPECT_EQ(std::memcmp(first.data(), picture.data(), first.size() * sizeof(float)), 0);
+    }
+}
+
+// Three workers, each of whom renders all into a tree of its own: two trees' worth is duplicate. And of
+// workers that divide the picture what is left without duplicates is what one shared tree has.
+TEST(SharedTree, DuplicatesAreWhatOneTreeWouldSave) {
+    for (const char* name : {"urchin_stretched", "torus_bilinear"}) {
+        Scene scene = named_scene(name)->scene;
+        scene.settings.width = scene.settings.height = 96;
+        const KernelTable& kernels = *native_targets().back();
+        const auto built = [](const FrameStatistics& s) {
+            return std::array{s.inner_nodes + s.leaves, s.counters.patches_opened, s.counters.blocks_made,
+                              s.counters.normal_blocks};
+        };
+        const auto duplicates = [](const Frame& frame) {
+            const Duplicates d = frame.duplicates();
+            return std::array{d.nodes, d.patches, d.blocks, d.normals};
+        };
+        Frame one(scene, {});
+        one.render(kernels, 0);
+        EXPECT_EQ(duplicates(one), (std::array<std::int64_t, 4>{}));
+        const auto once = built(one.statistics());
+        Frame three(scene, {.workers = 3, .tree_of_worker = {0, 1, 2}});
+        for (int w = 0; w < 3; ++w) {
+            three.take_tiles(0, screen_tiles(scene.settings));
+            three.render(kernels, w);
+        }
+        Frame halves(scene, {.workers = 3, .tree_of_worker = {0, 1, 2}});
+        for (int w = 0; w < 2; ++w) { // the third has nothing to do
+            halves.take_tiles(w == 0 ? 0 : screen_tiles(scene.settings) / 2,
+                              w == 0 ? screen_tiles(scene.settings) / 2 : screen_tiles(scene.settings));
+            halves.render(kernels, w);
+        }
+        for (std::size_t i = 0; i < once.size(); ++i) {
+            EXPECT_GT(once[i], 0);
+            EXPECT_EQ(duplicates(three)[i], 2 * once[i]) << name << i;
+            EXPECT_GT(duplicates(halves)[i], 0);
+            // Trees that are entered in another order end in other leaves, here and there.
+            EXPECT_NEAR(static_cast<double>(built(halves.statistics())[i] - duplicates(halves)[i]),
+                        static_cast<double>(once[i]), 0.02 * static_cast<double>(once[i]))
+                << name << i;
+        }
+        three.reset();
+        EXPECT_EQ(duplicates(three), (std::array<std::int64_t, 4>{}));
     }
 }
 
