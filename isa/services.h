@@ -49,6 +49,24 @@ private:
     std::vector<std::atomic<std::int64_t>> first_; // nanoseconds, at least 1
 };
 
+/// The host's time of each lap, of one thread.
+class lap_timer {
+public:
+    struct figures {
+        std::int64_t count = 0;
+        double seconds = 0, slowest_seconds = 0;
+        std::int64_t slowest = -1; // the number of that lap
+    };
+
+    void begin();
+    void end(std::int64_t lap);
+    const figures& laps() const { return laps_; }
+
+private:
+    std::chrono::steady_clock::time_point begin_;
+    figures laps_;
+};
+
 /// Thrown by trap(): a kernel cannot go on (an arena is exhausted, a wait was cancelled). The host says what the code
 /// means.
 class trapped : public std::runtime_error {

@@ -179,6 +179,9 @@ inline void tally(std::int64_t& counter, int n) { counter += n; }
 /// Likewise: something has happened, and when an event first did.
 inline void mark(isa::mark_set& set, sint i) { set.mark(i.v); }
 inline void note_time(isa::stopwatch& watch, int event) { watch.note(event); }
+/// Likewise: how long each lap takes, numbered as the caller does.
+inline void begin_lap(isa::lap_timer& timer) { timer.begin(); }
+inline void end_lap(isa::lap_timer& timer, sint lap) { timer.end(lap.v); }
 /// Likewise: traffic to `count` records counts under `level` - `finer` from now on, or under the level of `other`'s
 /// record (simulated machine). Natively nothing.
 template <class T> inline void note_level(pointer<T>, sint /*count*/, sint /*level*/, int /*finer*/ = 0) {}

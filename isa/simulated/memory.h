@@ -212,6 +212,8 @@ inline void tally(std::int64_t& counter, const sint& n) { counter += access::val
 inline void tally(std::int64_t& counter, int n) { counter += n; }
 inline void mark(isa::mark_set& set, const sint& i) { set.mark(access::value(i).v); }
 inline void note_time(isa::stopwatch&, int) {} // the host's time says nothing of the machine's
+inline void begin_lap(isa::lap_timer&) {}
+inline void end_lap(isa::lap_timer&, const sint&) {}
 namespace detail {
 template <class P> inline std::uint64_t bytes_of(const P& p, const sint& count) {
     return static_cast<std::uint64_t>(access::value(count).v) * sizeof(*access::value(p).host());

@@ -83,6 +83,7 @@ void Frame::Impl::reset() {
         opened[static_cast<std::size_t>(t)]->clear();
     }
     watch.restart();
+    tiles.assign(static_cast<std::size_t>(options.workers), {});
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
         r.grid_next = first_grid_line(w);
@@ -261,6 +262,15 @@ FrameStatistics Frame::statistics() const {
     }
     s.refit_seconds = impl_->watch.seconds(moment_refitted);
     s.first_packet_seconds = impl_->watch.seconds(moment_first_packet);
+    for (const isa::lap_timer& worker : impl_->tiles) {
+        const isa::lap_timer::figures& laps = worker.laps();
+        s.tiles += laps.count;
+        s.tile_seconds += laps.seconds;
+        if (laps.slowest_seconds > s.slowest_tile_seconds) {
+            s.slowest_tile_seconds = laps.slowest_seconds;
+            s.slowest_tile = static_cast<int>(laps.slowest);
+        }
+    }
     for (const isa::region& r : impl_->memory->regions()) {
         const auto bytes = static_cast<std::int64_t>(r.end - r.begin);
         s.scene_graph_bytes += r.structure == "scene graph" ? bytes : 0;

@@ -48,6 +48,11 @@ struct FrameStatistics {
     /// Host time from the frame's begin until all boxes were refitted, and until the first packet of camera
     /// rays was traced and shaded. 0: unknown.
     double refit_seconds = 0, first_packet_seconds = 0;
+    /// Screen tiles rendered, the host time they took together, and the slowest (numbered row by row; -1:
+    /// unknown). How long it takes bounds a frame on many workers from below.
+    std::int64_t tiles = 0;
+    double tile_seconds = 0, slowest_tile_seconds = 0;
+    int slowest_tile = -1;
     std::int64_t page_bytes = 0; // topology pages made so far; they outlive the frame
     double page_seconds = 0;     // host time spent on them
     std::string plan;            // which kernels the scene needs

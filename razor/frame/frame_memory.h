@@ -65,6 +65,7 @@ struct Frame::Impl {
     std::int64_t patches = 0, clusters = 0;             // over the instances
     std::vector<std::unique_ptr<isa::mark_set>> opened; // one a tree: graph nodes, then instances' clusters
     isa::stopwatch watch{moment_count};
+    std::vector<isa::lap_timer> tiles; // one a worker
 
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];
@@ -114,7 +115,7 @@ struct Frame::Impl {
     WorkerArguments arguments(int worker) {
         const auto w = static_cast<std::size_t>(worker);
         const auto tree = static_cast<std::size_t>(options.tree_of_worker[w]);
-        return {header, worker, pages.get(), counters[w].kind, opened[tree].get(), &watch};
+        return {header, worker, pages.get(), counters[w].kind, opened[tree].get(), &watch, &tiles[w]};
     }
 };
 

@@ -14,6 +14,7 @@ struct WorkerArguments {
     Counters* counters = nullptr;    // one a kind of ray
     isa::mark_set* opened = nullptr; // of the worker's tree: graph nodes, then clusters of instances
     isa::stopwatch* watch = nullptr; // of Moment
+    isa::lap_timer* tiles = nullptr; // of the worker
 };
 
 /// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene

@@ -40,6 +40,7 @@ struct Context {
     Counters* counters = nullptr;    // of kind_none, or of the rays that are traced
     isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
     isa::stopwatch* watch = nullptr;
+    isa::lap_timer* tiles = nullptr;
 };
 
 inline Context make_context(pointer<FrameHeader> frame, sint worker) {

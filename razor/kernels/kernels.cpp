@@ -11,6 +11,7 @@ Context begin(const WorkerArguments& a) {
     c.counters = a.counters;
     c.opened = a.opened;
     c.watch = a.watch;
+    c.tiles = a.tiles;
     return c;
 }
 

@@ -183,7 +183,9 @@ template <Features F> inline void render_worker(const Context& c) {
     sint end = load(field(c.frame, &FrameHeader::tiles_end));
     sint tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
     while (branch(tile < end)) {
+        begin_lap(*c.tiles);
         render_tile<F>(c, tile);
+        end_lap(*c.tiles, tile);
         tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
     }
 }

@@ -68,7 +68,12 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
     json["visible"] = {{"pixels", s.visible.pixels}, {"squares", s.visible.squares}};
     json["host"] = {{"load_seconds", s.load_seconds},
                     {"refit_seconds", f.refit_seconds},
-                    {"first_packet_seconds", f.first_packet_seconds}};
+                    {"first_packet_seconds", f.first_packet_seconds},
+                    {"tiles",
+                     {{"count", f.tiles},
+                      {"seconds", f.tile_seconds},
+                      {"slowest_seconds", f.slowest_tile_seconds},
+                      {"slowest", f.slowest_tile}}}};
     for (const FrameTime& t : s.times)
         json["host"]["frames"].push_back({{"render_seconds", t.render_seconds},
                                           {"render_processor_seconds", t.render_processor_seconds},

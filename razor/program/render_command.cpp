@@ -173,10 +173,12 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const Scen
     const FrameStatistics& built = result.statistics.frame;
     if (!frames_.empty() && !quiet_) {
         fmt::print(stderr, "{}", progress.shown() ? "\r\x1b[K" : "");
-        fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {:.2f} million rays, {:.1f} MB built\n",
+        fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {:.2f} million rays, {:.1f} MB built, "
+                   "slowest tile {:.1f} ms\n",
                    frame, seconds, result.statistics.load_seconds,
                    static_cast<double>(built.counters.rays) / 1e6,
-                   static_cast<double>(built.grid_bytes + built.node_bytes + built.list_bytes) / 1e6);
+                   static_cast<double>(built.grid_bytes + built.node_bytes + built.list_bytes) / 1e6,
+                   1e3 * built.slowest_tile_seconds);
         std::fflush(stdout);
     } else if (progress.shown()) {
         fmt::print(

@@ -229,7 +229,7 @@ TEST(Laziness, RaysMeetNoMoreBlocksBlendedThanNot) {
     EXPECT_LT(recursive.box_tests, fixed.box_tests * 3 / 2);
 }
 
-TEST(Laziness, FirstPacketIsTimedFromTheFramesBegin) {
+TEST(Laziness, FirstPacketAndTilesAreTimed) {
     Frame frame(square_of_tori(3), {});
     EXPECT_EQ(frame.statistics().first_packet_seconds, 0);
     frame.render(*native_targets().back(), 0);
@@ -237,7 +237,14 @@ TEST(Laziness, FirstPacketIsTimedFromTheFramesBegin) {
     EXPECT_GT(s.refit_seconds, 0);
     EXPECT_GT(s.first_packet_seconds, s.refit_seconds);
     EXPECT_LT(s.first_packet_seconds, 60);
+    EXPECT_EQ(s.tiles, frame.header().tiles);
+    EXPECT_GE(s.slowest_tile_seconds * static_cast<double>(s.tiles), s.tile_seconds);
+    EXPECT_LE(s.slowest_tile_seconds, s.tile_seconds);
+    EXPECT_GT(s.tile_seconds, s.first_packet_seconds - s.refit_seconds) << "which lies in the first tile";
+    EXPECT_GE(s.slowest_tile, 0);
+    EXPECT_LT(s.slowest_tile, s.tiles);
     frame.reset();
+    EXPECT_EQ(frame.statistics().tiles, 0);
     EXPECT_EQ(frame.statistics().first_packet_seconds, 0);
 }
 

@@ -2,6 +2,7 @@
 #include "razor/program/arguments.h"
 #include "razor/program/scene_options.h"
 #include "razor/program/sequence.h"
+#include "razor/scene/numbered_name.h"
 
 #include "razor/scene/default_scene.h"
 #include "razor/scene/error.h"
