@@ -1,7 +1,11 @@
-// libFuzzer target for the OBJ reader: any bytes give a mesh with sound indices or a one-line UserError. A
-// run without a corpus starts from the seeds below, through the custom mutator.
+// libFuzzer target for the OBJ reader and, of what begins as MD3 does, the MD3 reader: any bytes give a mesh
+// with sound indices or a one-line UserError. A run without a corpus starts from the seeds below, through the
+// custom mutator.
+#include "md3_writer.h"
 #include "razor/scene/error.h"
+#include "razor/scene/md3_reader.h"
 #include "razor/scene/obj_reader.h"
+#include "sound_md3.h"
 
 #include <algorithm>
 #include <array>
@@ -9,13 +13,16 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace {
 
-constexpr std::array<std::string_view, 4> seeds{
+const std::string md3_seed = razor::write_md3(razor::two_surfaces(), 2);
+const std::array<std::string_view, 5> seeds{
+    md3_seed,
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1 0\nvn 0 0 1\nf 1/1/1 2/2 3//1 4\nf -1 -2 -3\n",
     "v 1e3 -.5 +2 1 0 0 0\r\nv 1 2 3 \\\r\n# c\r\nv 3 2 1\rf 1 2 3",
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nt crease 2/1/0 0 1 2.5\nt corner 1/1/0 2 10\nt hole 1/0/0 0\n",
@@ -70,10 +77,17 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes{reinterpret_cast<const char*>(data), size};
     try {
-        check(razor::parse_obj({reinterpret_cast<const char*>(data), size}, "fuzz.obj"));
+        if (bytes.starts_with("IDP3")) {
+            const razor::Md3Model model = razor::parse_md3(bytes, "fuzz");
+            require(razor::sound(model));
+            check(model.cage);
+        } else {
+            check(razor::parse_obj(bytes, "fuzz"));
+        }
     } catch (const razor::UserError& error) {
-        require(std::string_view(error.what()).starts_with("fuzz.obj:"));
+        require(std::string_view(error.what()).starts_with("fuzz:"));
         require(std::string_view(error.what()).find_first_of("\n\r") == std::string_view::npos);
     }
     return 0;

@@ -1,0 +1,27 @@
+// One cage of an MD3 model's triangles: points that the format has split are joined again.
+#pragma once
+
+#include "razor/scene/md3_reader.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace razor {
+
+/// What a file holds, one surface after the other. A vertex is a texture coordinate and a point in every
+/// frame.
+struct Md3Triangles {
+    std::size_t frame_count = 0; // one or more
+    std::vector<glm::vec2> texcoords;
+    /// Coordinates in 1/64 unit: x, y, z of the first vertex in frame 0, in frame 1 ..., then the next
+    /// vertex.
+    std::vector<std::int16_t> steps;
+    std::vector<int> corners; // vertices, three a triangle, counter-clockwise seen from outside
+};
+
+/// The cage, without a name, and its frames as razor/scene/md3_reader.h describes them. Without a face if no
+/// triangle keeps three distinct corners.
+Md3Model join(const Md3Triangles& triangles);
+
+} // namespace razor
