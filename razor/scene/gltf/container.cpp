@@ -1,0 +1,138 @@
+#include "razor/scene/gltf/container.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace razor::gltf {
+namespace {
+
+constexpr std::size_t header_size = 12, chunk_header_size = 8;
+constexpr std::uint32_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
+constexpr std::string_view magic = "glTF";
+constexpr int deepest = 64; // levels of brackets; glTF itself has about eight
+
+constexpr std::array<std::string_view, 11> needed{
+    "asset",   "extensionsUsed", "extensionsRequired",
+    "buffers", "bufferViews",    "accessors",
+    "meshes",  "nodes",          "scenes",
+    "skins",   "animations",
+};
+
+[[noreturn]] void fail(std::string_view file, std::string_view mistake) {
+    throw UserError(fmt::format("{}: {}", printable(file, 1000), mistake));
+}
+
+std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 4; i-- > 0;)
+        word = word << 8 | static_cast<unsigned char>(bytes[offset + i]);
+    return word;
+}
+
+void append_word(std::string& bytes, std::size_t word) {
+    for (int i = 0; i < 4; ++i)
+        bytes += static_cast<char>(word >> (8 * i) & 255);
+}
+
+void append_chunk(std::string& bytes, std::uint32_t type, std::string_view content, char padding) {
+    const std::size_t padded = (content.size() + 3) / 4 * 4;
+    append_word(bytes, padded);
+    append_word(bytes, type);
+    bytes += content;
+    bytes.append(padded - content.size(), padding);
+}
+
+/// What the text is asked for before anything else reads it.
+void summarise(const nlohmann::json& text, Container& container) {
+    const auto list = [](const nlohmann::json& object, const char* key) {
+        const auto found = object.is_object() ? object.find(key) : object.end();
+        return found != object.end() && found->is_array() ? *found : nlohmann::json::array();
+    };
+    if (text.contains("asset") && text["asset"].is_object() && text["asset"].contains("version") &&
+        text["asset"]["version"].is_string())
+        container.version = text["asset"]["version"].get<std::string>();
+    for (const nlohmann::json& name : list(text, "extensionsRequired"))
+        container.required.push_back(name.is_string() ? name.get<std::string>() : name.dump());
+    for (const nlohmann::json& mesh : list(text, "meshes"))
+        container.primitives += list(mesh, "primitives").size();
+}
+
+/// Reads the text, and leaves out what is not needed.
+void sift(std::string_view text, std::string_view file, Container& container) {
+    using nlohmann::json;
+    const auto keep = [file](int depth, json::parse_event_t event, json& parsed) {
+        if (depth > deepest)
+            fail(file, fmt::format("brackets more than {} deep; this is no glTF file", deepest));
+        if (event != json::parse_event_t::key)
+            return true;
+        const auto& key = parsed.get_ref<const std::string&>();
+        if (depth == 1)
+            return key == "scene" || std::find(needed.begin(), needed.end(), key) != needed.end();
+        return key != "extras" && key != "extensions";
+    };
+    try {
+        const json sifted = json::parse(text, keep);
+        if (!sifted.is_object())
+            fail(file, "holds no JSON object; give a glTF file");
+        summarise(sifted, container);
+        container.json = sifted.dump(-1, ' ', false, json::error_handler_t::replace);
+    } catch (const json::exception& error) {
+        fail(file, fmt::format("is no glTF file ({}); export it anew", printable(error.what(), 200)));
+    }
+}
+
+} // namespace
+
+Container open_container(std::string_view bytes, std::string_view file) {
+    Container container;
+    if (bytes.substr(0, magic.size()) != magic) {
+        sift(bytes, file, container);
+        return container;
+    }
+    if (bytes.size() < header_size + chunk_header_size)
+        fail(file, "is cut short; export it anew");
+    if (const std::uint32_t version = word_at(bytes, 4); version != 2)
+        fail(file, fmt::format("binary glTF of version {}; export it as glTF 2.0", version));
+    const std::size_t size = word_at(bytes, 8);
+    if (size > bytes.size())
+        fail(file, fmt::format("is cut short: {} of {} bytes; export it anew", bytes.size(), size));
+    container.is_binary = true;
+    std::string_view json;
+    for (std::size_t at = header_size; at + chunk_header_size <= size;) {
+        const std::size_t length = word_at(bytes, at), begin = at + chunk_header_size;
+        const std::uint32_t type = word_at(bytes, at + 4);
+        if (length > size - begin)
+            fail(file, fmt::format("its chunk at byte {} is longer than the file; export it anew", at));
+        if (at == header_size && type != json_chunk)
+            fail(file, "its first chunk is no JSON; export it anew");
+        if (type == json_chunk && json.empty())
+            json = bytes.substr(begin, length);
+        else if (type == binary_chunk && container.binary.empty())
+            container.binary = bytes.substr(begin, length);
+        at = begin + length;
+    }
+    sift(json, file, container);
+    return container;
+}
+
+std::string to_glb(const Container& container) {
+    std::string glb{magic};
+    glb.reserve(container.json.size() + container.binary.size() + 64);
+    append_word(glb, 2);
+    append_word(glb, 0);
+    append_chunk(glb, json_chunk, container.json, ' ');
+    if (!container.binary.empty())
+        append_chunk(glb, binary_chunk, container.binary, '\0');
+    std::string size;
+    append_word(size, glb.size());
+    return glb.replace(8, 4, size);
+}
+
+} // namespace razor::gltf

@@ -1,0 +1,22 @@
+// One mesh of a glTF file as one of its nodes draws it.
+#pragma once
+
+#include "razor/scene/animation/skin.h"
+#include "razor/scene/gltf/document.h"
+
+#include <glm/vec2.hpp>
+
+namespace razor::gltf {
+
+/// Triangles over shared points: what the file splits at seams of texture and of normals is joined again.
+struct DrawnMesh {
+    Skin skin;
+    std::vector<int> triangles;        // points of `skin`, three a triangle, all distinct
+    std::vector<glm::vec2> texcoords;  // v upwards
+    std::vector<int> corner_texcoords; // texture coordinate of each corner, -1: none
+};
+
+/// All triangles of the node's mesh; points and lines are passed over. Throws UserError.
+DrawnMesh read_drawn_mesh(const Document& document, int node);
+
+} // namespace razor::gltf

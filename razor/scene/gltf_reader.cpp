@@ -1,0 +1,176 @@
+#include "razor/scene/gltf_reader.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/gltf/drawn_mesh.h"
+#include "razor/scene/gltf/nodes.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+namespace razor {
+namespace {
+
+using namespace gltf;
+
+std::vector<glm::dvec3> pose_all(const std::vector<Skin>& skins, const SkeletonPose& skeleton) {
+    std::size_t count = 0;
+    for (const Skin& skin : skins)
+        count += skin.points.size();
+    std::vector<glm::dvec3> points(count);
+    std::span<glm::dvec3> rest = points;
+    for (const Skin& skin : skins) {
+        pose(skin, skeleton, rest.first(skin.points.size()));
+        rest = rest.subspan(skin.points.size());
+    }
+    return points;
+}
+
+class GltfMotion final : public MovingCage {
+public:
+    GltfMotion(std::shared_ptr<const Mesh> cage, Skeleton skeleton, std::vector<Skin> skins, Clip clip,
+               double cycle)
+        : cage_(std::move(cage)), skeleton_(std::move(skeleton)), skins_(std::move(skins)),
+          clip_(std::move(clip)), cycle_(cycle) {}
+
+    std::shared_ptr<const Mesh> at(double seconds) const override {
+        if (cycle_ > 0)
+            seconds -= cycle_ * std::floor(seconds / cycle_);
+        return moved(*cage_, pose_all(skins_, pose_at(skeleton_, clip_, seconds)));
+    }
+    double length() const override { return clip_.length(); }
+
+private:
+    std::shared_ptr<const Mesh> cage_;
+    Skeleton skeleton_;
+    std::vector<Skin> skins_;
+    Clip clip_;
+    double cycle_;
+};
+
+/// Adds the triangles of a mesh; `first_point`: number of its first point in the cage.
+void append_faces(const DrawnMesh& drawn, int first_point, bool turn, Mesh& cage) {
+    const auto first_texcoord = static_cast<int>(cage.texcoords.size());
+    for (std::size_t c = 0; c < drawn.triangles.size(); c += 3) {
+        cage.face_sizes.push_back(3);
+        for (const std::size_t corner : {c, turn ? c + 2 : c + 1, turn ? c + 1 : c + 2}) {
+            cage.face_vertices.push_back(first_point + drawn.triangles[corner]);
+            const int texcoord = drawn.corner_texcoords[corner];
+            cage.face_texcoords.push_back(texcoord == none ? none : first_texcoord + texcoord);
+        }
+    }
+    cage.texcoords.insert(cage.texcoords.end(), drawn.texcoords.begin(), drawn.texcoords.end());
+}
+
+/// Texture coordinates at all corners or at none.
+void finish_texcoords(Mesh& cage) {
+    if (cage.texcoords.empty()) {
+        cage.face_texcoords.clear();
+    } else if (std::find(cage.face_texcoords.begin(), cage.face_texcoords.end(), none) !=
+               cage.face_texcoords.end()) {
+        std::replace(cage.face_texcoords.begin(), cage.face_texcoords.end(), none,
+                     static_cast<int>(cage.texcoords.size()));
+        cage.texcoords.emplace_back(0.0F, 0.0F);
+    }
+}
+
+void check_cage(const Document& document, const Mesh& cage) {
+    if (cage.face_sizes.empty())
+        document.fail("its scene draws no triangles; a model needs at least one");
+    const auto is_finite = [](const glm::dvec3& p) {
+        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    };
+    const auto in_range = [](const glm::vec2& t) { return std::isfinite(t.x) && std::isfinite(t.y); };
+    if (!std::all_of(cage.points.begin(), cage.points.end(), is_finite))
+        document.fail("its nodes take points beyond double precision; mend their transforms");
+    if (!std::all_of(cage.texcoords.begin(), cage.texcoords.end(), in_range))
+        document.fail("texture coordinate beyond single precision; mend it");
+}
+
+std::size_t find_clip(const Document& document, const std::vector<std::string>& clips,
+                      const std::string& name) {
+    const auto found = std::find(clips.begin(), clips.end(), name);
+    if (found == clips.end()) {
+        std::string list;
+        for (const std::string& clip : clips)
+            list += fmt::format("{}{}", list.empty() ? "" : ", ", printable(clip));
+        document.fail(fmt::format("no animation is named '{}'; {}", printable(name),
+                                  list.empty() ? "the file has none" : "there are: " + list));
+    }
+    return static_cast<std::size_t>(found - clips.begin());
+}
+
+/// Whether any point follows a node, or has a morph target, that the clip moves.
+bool moves(const Clip& clip, const Skeleton& skeleton, const std::vector<Skin>& skins) {
+    const std::vector<bool> moved = moved_nodes(skeleton, clip);
+    const auto is_moved = [&](int node) { return moved[static_cast<std::size_t>(node)]; };
+    return std::any_of(skins.begin(), skins.end(), [&](const Skin& skin) {
+        const auto morphs = [&](const Channel& channel) {
+            return channel.path == Channel::Path::weights && channel.node == skin.node;
+        };
+        return std::any_of(clip.channels.begin(), clip.channels.end(), morphs) ||
+               (skin.joints.empty() ? is_moved(skin.node)
+                                    : std::any_of(skin.joints.begin(), skin.joints.end(), is_moved));
+    });
+}
+
+GltfModel read(const std::filesystem::path& path, const std::string& clip_name, double cycle) {
+    const Document document = load_document(path);
+    if (!(cycle >= 0 && std::isfinite(cycle)))
+        document.fail(fmt::format("a cycle of {} s; give 0 or more", cycle));
+    Skeleton skeleton = read_skeleton(document);
+    const SkeletonPose rest = rest_pose(skeleton);
+    Mesh cage;
+    cage.name = path.stem().string();
+    std::vector<Skin> skins;
+    std::size_t points = 0;
+    for (const int node : nodes_to_draw(document, skeleton)) {
+        if (document.nodes[static_cast<std::size_t>(node)].mesh == none)
+            continue;
+        DrawnMesh drawn = read_drawn_mesh(document, node);
+        const bool turn =
+            drawn.skin.joints.empty() && is_mirrored(rest.world[static_cast<std::size_t>(node)].linear);
+        constexpr std::size_t most = std::numeric_limits<int>::max();
+        if (drawn.skin.points.size() > most - points ||
+            drawn.triangles.size() > most - cage.face_vertices.size())
+            document.fail("has more than 2^31 face corners; split the model");
+        append_faces(drawn, static_cast<int>(points), turn, cage);
+        points += drawn.skin.points.size();
+        skins.push_back(std::move(drawn.skin));
+    }
+    finish_texcoords(cage);
+    cage.points = pose_all(skins, rest);
+    check_cage(document, cage);
+    GltfModel model{std::make_shared<const Mesh>(std::move(cage)), nullptr, clip_names(document)};
+    if (model.clips.empty() && clip_name.empty())
+        return model;
+    const std::size_t chosen = clip_name.empty() ? 0 : find_clip(document, model.clips, clip_name);
+    Clip clip = read_clip(document, skeleton, chosen);
+    if (moves(clip, skeleton, skins))
+        model.motion = std::make_shared<const GltfMotion>(model.cage, std::move(skeleton), std::move(skins),
+                                                          std::move(clip), cycle);
+    return model;
+}
+
+} // namespace
+
+GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle) {
+    const auto too_large = [&path] {
+        return UserError(fmt::format("{}: the model does not fit in memory; give a smaller one",
+                                     printable(path.string(), 1000)));
+    };
+    try {
+        return read(path, clip, cycle);
+    } catch (const std::bad_alloc&) {
+        throw too_large();
+    } catch (const std::length_error&) {
+        throw too_large();
+    }
+}
+
+} // namespace razor

@@ -1,0 +1,31 @@
+// Cages from glTF 2.0 files (.gltf, .glb), with their animations.
+//
+// Read: triangles (lists, strips, fans), nodes, skins, morph targets, animations of nodes and of morph
+// weights, sparse accessors, quantised meshes. Points that a file keeps apart only for their normals or
+// texture coordinates are joined, so that the surface is closed there; texture coordinates become
+// face-varying. Passed over: points, lines, normals, materials, images, cameras, lights. Refused: compressed
+// geometry and other required extensions that could change shapes.
+#pragma once
+
+#include "razor/scene/animation/moving_cage.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace razor {
+
+/// One cage of all meshes that the file's scene draws, in the scene's coordinates: right-handed, y up,
+/// metres.
+struct GltfModel {
+    std::shared_ptr<const Mesh> cage;         // at rest: the nodes stand as without animation
+    std::shared_ptr<const MovingCage> motion; // null: no animation, or one that does not move the cage
+    std::vector<std::string> clips;           // names of the animations, "clip 0" etc. for those without
+};
+
+/// The cage is named by the file's stem. `clip`: name of an animation; empty: the first. `cycle`: seconds
+/// after which the motion begins again; 0: it holds its last keys. Throws UserError: one line
+/// `file: cause; mend`.
+GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle);
+
+} // namespace razor
