@@ -2,6 +2,8 @@
 
 #include "razor/scene/animation/cage_frames.h"
 #include "razor/scene/error.h"
+#include "razor/scene/gltf_reader.h"
+#include "razor/scene/md3_reader.h"
 #include "razor/scene/numbered_name.h"
 #include "razor/scene/obj_reader.h"
 #include "razor/scene/shapes/shapes.h"
@@ -30,20 +32,64 @@ std::string key_of(const MeshDescription& mesh) {
                        static_cast<int>(p.timing.interpolation), p.timing.cycle, p.clip);
 }
 
+CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
+    CageCache::Entry entry{.playback = mesh.playback};
+    Playback& p = entry.playback;
+    Md3Model model = read_md3(mesh.file);
+    const int last = static_cast<int>(model.frames.size()) - 1;
+    if (!p.frames)
+        p.frames = {0, last};
+    if (p.frames->second > last)
+        throw UserError(fmt::format("{}: has no frame {}; give frames from 0 to {}",
+                                    printable(mesh.file, 1000), p.frames->second, last));
+    entry.source = std::make_shared<const Mesh>(std::move(model.cage));
+    if (p.frames->first == p.frames->second) {
+        entry.source =
+            moved(*entry.source, std::move(model.frames[static_cast<std::size_t>(p.frames->first)]));
+        return entry;
+    }
+    model.frames.erase(model.frames.begin() + p.frames->second + 1, model.frames.end());
+    model.frames.erase(model.frames.begin(), model.frames.begin() + p.frames->first);
+    entry.motion =
+        std::make_shared<const PointFrames>(entry.source, std::move(model.frames), p.frame_rate, p.timing);
+    return entry;
+}
+
+CageCache::Entry read_clip(const MeshDescription& mesh) {
+    CageCache::Entry entry{.playback = mesh.playback};
+    Playback& p = entry.playback;
+    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle);
+    if (p.clip.empty() && !model.clips.empty())
+        p.clip = model.clips.front();
+    entry.source = model.cage;
+    entry.motion = model.motion;
+    return entry;
+}
+
+CageCache::Entry read_sequence(const MeshDescription& mesh) {
+    CageCache::Entry entry{.playback = mesh.playback};
+    Playback& p = entry.playback;
+    if (!p.frames)
+        p.frames = all_frames(mesh.file);
+    entry.motion = std::make_shared<const ObjSequence>(mesh.file, p.frames->first, p.frames->second,
+                                                       p.frame_rate, p.timing);
+    entry.source = entry.motion->at(0);
+    return entry;
+}
+
 CageCache::Entry read(const MeshDescription& mesh) {
-    const Playback& p = mesh.playback;
-    CageCache::Entry entry;
     switch (model_file(mesh.file)) {
-    case ModelFile::obj_sequence: {
-        entry.motion = std::make_shared<const ObjSequence>(mesh.file, p.frames->first, p.frames->second,
-                                                           p.frame_rate, p.timing);
-        entry.source = entry.motion->at(0);
+    case ModelFile::obj_sequence:
+        return read_sequence(mesh);
+    case ModelFile::md3:
+        return read_md3_frames(mesh);
+    case ModelFile::gltf:
+        return read_clip(mesh);
+    case ModelFile::none:
+    case ModelFile::obj:
         break;
     }
-    default:
-        entry.source = std::make_shared<const Mesh>(read_obj(mesh.file));
-    }
-    return entry;
+    return {.playback = mesh.playback, .source = std::make_shared<const Mesh>(read_obj(mesh.file))};
 }
 
 } // namespace
@@ -54,7 +100,9 @@ ModelFile model_file(const std::filesystem::path& path) {
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     if (extension == ".obj")
         return has_number(path.filename().string()) ? ModelFile::obj_sequence : ModelFile::obj;
-    return ModelFile::none;
+    if (extension == ".md3")
+        return ModelFile::md3;
+    return extension == ".gltf" || extension == ".glb" ? ModelFile::gltf : ModelFile::none;
 }
 
 void load_cage(MeshDescription& mesh) {
@@ -66,13 +114,14 @@ void load_cage(MeshDescription& mesh, CageCache& cages) {
     if (mesh.file.empty()) {
         mesh.source = std::make_shared<const Mesh>(make_shape(mesh.shape, mesh.parameters));
     } else {
-        if (model_file(mesh.file) == ModelFile::obj_sequence && !mesh.playback.frames)
-            mesh.playback.frames = all_frames(mesh.file);
         CageCache::Entry& entry = cages.entries[key_of(mesh)];
         if (!entry.source)
             entry = read(mesh);
         mesh.source = entry.source;
         mesh.motion = entry.motion;
+        // Start, speed and moment are the mesh's own.
+        mesh.playback.frames = entry.playback.frames;
+        mesh.playback.clip = entry.playback.clip;
     }
     shape_cage(mesh, 0);
 }

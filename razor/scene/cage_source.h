@@ -1,4 +1,4 @@
-// Cages from where a scene says they come: shapes, OBJ files and sequences of them.
+// Cages from where a scene says they come: shapes, OBJ files and sequences of them, MD3 and glTF models.
 #pragma once
 
 #include "razor/scene/description.h"
@@ -12,18 +12,19 @@ namespace razor {
 /// What was read, by the file and how it is played: no file is read twice.
 struct CageCache {
     struct Entry {
-        std::shared_ptr<const Mesh> source;
-        std::shared_ptr<const MovingCage> motion;
+        Playback playback{}; // as asked for, and what was left open
+        std::shared_ptr<const Mesh> source{};
+        std::shared_ptr<const MovingCage> motion{};
     };
     std::unordered_map<std::string, Entry> entries;
 };
 
 /// What files hold by their names' extensions, in any case.
-enum class ModelFile { none, obj, obj_sequence };
+enum class ModelFile { none, obj, obj_sequence, md3, gltf };
 ModelFile model_file(const std::filesystem::path& path);
 
 /// Reads or generates the cage of a mesh whose file or shape, parameters, playback and deformers are set;
-/// fills in playback.frames where they are all that there are. Throws UserError.
+/// fills in which frames are played (all that there are) and which clip (the first). Throws UserError.
 void load_cage(MeshDescription& mesh);
 void load_cage(MeshDescription& mesh, CageCache& cages);
 

@@ -128,7 +128,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
     table.finish();
     try {
         if (table.has("file") && file.empty()) {
-            throw UserError("the file name is empty; give an OBJ file");
+            throw UserError("the file name is empty; give a model");
         }
         load_cage(mesh, cages);
     } catch (const UserError& error) {
@@ -236,12 +236,13 @@ SceneDescription describe(const std::filesystem::path& path, const FramingOption
                                                    : frame_instances(path, framing);
     }
     if (std::filesystem::is_directory(path)) {
-        throw UserError(fmt::format("{}: is a directory; give a file ending in .toml, .obj or .instances",
-                                    printable(path.string(), 1000)));
+        throw UserError(fmt::format(
+            "{}: is a directory; give a file ending in .toml, .obj, .md3, .gltf, .glb or .instances",
+            printable(path.string(), 1000)));
     }
-    throw UserError(
-        fmt::format("{}: neither a scene file nor a model; give a file ending in .toml, .obj or .instances",
-                    printable(path.string(), 1000)));
+    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in .toml, .obj, "
+                                ".md3, .gltf, .glb or .instances",
+                                printable(path.string(), 1000)));
 }
 
 Scene load_scene(const std::filesystem::path& path) {

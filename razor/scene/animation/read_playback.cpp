@@ -20,13 +20,14 @@ constexpr Range period_range{0, 1e6};    // seconds
 constexpr Range phase_range{-1e6, 1e6};  // turns
 constexpr Range length_range{1e-30, 1e30};
 
+/// What can be said of a file's motion.
 struct PlaybackKeys {
     bool frames, clip;
 };
 
 PlaybackKeys keys_of(const MeshDescription& mesh) {
     const ModelFile kind = mesh.file.empty() ? ModelFile::none : model_file(mesh.file);
-    return {kind == ModelFile::obj_sequence, false};
+    return {kind == ModelFile::obj_sequence || kind == ModelFile::md3, kind == ModelFile::gltf};
 }
 
 Deformer read_deformer(TomlTable table) {
@@ -71,7 +72,10 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
         }
     };
     only({"frames", "frame_rate", "interpolation"}, keys.frames,
-         "whose file is no sequence; write %d in its name, where the number of the frame comes");
+         "whose file has no frames; give an .md3 model, or write %d in the name of .obj files, where the "
+         "number "
+         "of the frame comes");
+    only({"clip"}, keys.clip, "whose file has no clips; give a .gltf or .glb model");
     only({"cycle"}, keys.frames || keys.clip, "whose file does not move; leave it out");
     only({"start", "speed", "moment"}, keys.frames || keys.clip || !mesh.deformers.empty(),
          "that does not change its shape; leave it out");
@@ -87,6 +91,8 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
     }
     if (keys.frames || keys.clip)
         p.timing.cycle = table.number("cycle", 0, time_range);
+    if (keys.clip)
+        p.clip = table.text("clip", "");
     for (const std::string_view name : {"start", "speed"})
         if (table.has(name) && table.has("moment"))
             table.fail(name, fmt::format("{} and moment, at which all stands still; leave one out", name));
@@ -104,6 +110,8 @@ std::string playback_to_toml(const MeshDescription& mesh) {
         text += fmt::format("frames = [{}, {}]\nframe_rate = {}\ninterpolation = {}\n", p.frames->first,
                             p.frames->second, toml_number(p.frame_rate),
                             toml_text(word_of(interpolation_words, p.timing.interpolation)));
+    if (!p.clip.empty())
+        text += fmt::format("clip = {}\n", toml_text(p.clip));
     if (keys.frames || keys.clip)
         text += fmt::format("cycle = {}\n", toml_number(p.timing.cycle));
     if (keys.frames || keys.clip || !mesh.deformers.empty())
