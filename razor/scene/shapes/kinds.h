@@ -19,6 +19,7 @@ ShapeKind bowl_kind();
 ShapeKind gear_kind();
 /// A band of rectangular section along a trefoil knot about the y axis, its four edges semi-sharp.
 ShapeKind knot_kind();
+ShapeKind limb_kind();
 /// A dodecahedron with an arm pulled out of every face, each ending in a pentagon.
 ShapeKind urchin_kind();
 /// A cube pierced through all faces (the first Menger sponge): extraordinary points of valence 3, 5 and 6.

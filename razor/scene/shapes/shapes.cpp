@@ -8,8 +8,9 @@
 namespace razor {
 
 std::span<const ShapeKind> shape_kinds() {
-    static const std::array kinds{plane_kind(), box_kind(),    pawn_kind(),   bowl_kind(), gear_kind(),
-                                  knot_kind(),  urchin_kind(), sponge_kind(), dish_kind(), canopy_kind()};
+    static const std::array kinds{plane_kind(), box_kind(),    pawn_kind(),   bowl_kind(),
+                                  gear_kind(),  knot_kind(),   urchin_kind(), sponge_kind(),
+                                  dish_kind(),  canopy_kind(), limb_kind()};
     return kinds;
 }
 
