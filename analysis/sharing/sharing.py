@@ -13,25 +13,11 @@ import json
 import os
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 
-
-def fail(message):
-    print(f"sharing.py: {message}", file=sys.stderr)
-    sys.exit(2)
-
-
-def run(command):
-    """The most memory that a command held, bytes."""
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    out = process.stdout.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        fail(f"{' '.join(command)}: {(out.strip().splitlines() or ['no message'])[-1]}")
-    return usage.ru_maxrss * 1024
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../levels"))
+import view  # noqa: E402
 
 
 def ways(workers):
@@ -44,8 +30,8 @@ def ways(workers):
 
 def frame(options, scene, workers, share, folder):
     stats, picture = os.path.join(folder, "s.json"), os.path.join(folder, f"{workers}_{share}.exr")
-    memory = run([options.razor, "render", scene, *options.render, "--size", options.size, "--threads", str(workers), "--share", share,
-                  "--repeat", "2", "--stats", stats, "-o", picture])
+    _, usage = view.run([options.razor, "render", scene, *options.render, "--size", options.size, "--threads", str(workers), "--share", share,
+                         "--repeat", "2", "--stats", stats, "-o", picture])
     with open(stats) as file:
         figures = json.load(file)["statistics"]
     built, time = figures["built"], figures["host"]["frames"][-1]
@@ -53,7 +39,7 @@ def frame(options, scene, workers, share, folder):
             "duplicate_nodes": figures["duplicates"]["kd_nodes"] / max(1, built["inner_nodes"] + built["leaves"]),
             "duplicate_blocks": figures["duplicates"]["blocks"] / max(1, figures["counters"]["blocks_made"]),
             "built_bytes": sum(built[key] for key in ("grid_bytes", "node_bytes", "list_bytes", "patch_table_bytes")),
-            "most_bytes": memory}
+            "most_bytes": usage.ru_maxrss * 1024}
 
 
 def study(options, scene):
@@ -66,7 +52,7 @@ def study(options, scene):
                 runs[kind].append(frame(options, scene, *kind, folder))
         pictures = [runs[kind][0]["picture"] for kind in kinds]
         for other in pictures[1:]:
-            run([options.razor, "compare", pictures[0], other, "--identical"])
+            view.run([options.razor, "compare", pictures[0], other, "--identical"])
     for workers, share in kinds:
         made = runs[workers, share]
         rows.append({"scene": os.path.basename(scene), "workers": workers, "share": share,
@@ -111,12 +97,8 @@ def main():
                 json.dump(rows, file, indent=1)
                 file.write("\n")
         except OSError as error:
-            fail(f"{options.json}: {error.strerror}; give a file in a folder that is there")
+            view.fail(f"{options.json}: {error.strerror}; give a file in a folder that is there")
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except KeyboardInterrupt:
-        print("sharing.py: stopped", file=sys.stderr)
-        sys.exit(130)
+    view.run_program(main)

@@ -1,5 +1,5 @@
 // razor render --frames of cages that change their shape: each frame is the one rendered alone.
-#include "razor/image/exr.h"
+#include "tests/program/pictures.h"
 #include "tests/program/run.h"
 
 #include <fmt/format.h>
@@ -63,10 +63,7 @@ protected:
         folder_.file(name, std::string(head) + meshes);
     }
     void expect_equal(const std::string& a, const std::string& b) const {
-        const Film left = read_exr(folder_ / a), right = read_exr(folder_ / b);
-        ASSERT_EQ(left.planes.size(), right.planes.size());
-        for (const Plane& plane : left.planes)
-            EXPECT_EQ(right.find(plane.name)->values, plane.values) << a << " " << b << " " << plane.name;
+        expect_same_picture(folder_ / a, folder_ / b);
     }
     /// Every frame, and each alone by several workers.
     void expect_each_alone(const std::string& toml, int frames) const {

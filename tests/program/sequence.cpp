@@ -1,5 +1,5 @@
 // razor render --frames: sequences of what moves.
-#include "razor/image/exr.h"
+#include "tests/program/pictures.h"
 #include "tests/program/run.h"
 
 #include <nlohmann/json.hpp>
@@ -58,10 +58,7 @@ protected:
     }
     Film film(const std::string& name) const { return read_exr(folder_ / name); }
     void expect_equal(const std::string& a, const std::string& b) const {
-        const Film left = film(a), right = film(b);
-        ASSERT_EQ(left.planes.size(), right.planes.size());
-        for (const Plane& plane : left.planes)
-            EXPECT_EQ(right.find(plane.name)->values, plane.values) << a << " " << b << " " << plane.name;
+        expect_same_picture(folder_ / a, folder_ / b);
     }
 
     TemporaryFolder folder_;
