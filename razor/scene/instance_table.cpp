@@ -2,7 +2,7 @@
 
 #include "razor/scene/error.h"
 #include "razor/scene/graph/flatten.h"
-#include "razor/scene/obj_cursor.h"
+#include "razor/scene/models/obj_cursor.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
 

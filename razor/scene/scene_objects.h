@@ -1,7 +1,7 @@
 // The scene graph in scene files: [[object]] and [[group]].
 #pragma once
 
-#include "razor/scene/cage_source.h"
+#include "razor/scene/models/cage_source.h"
 #include "razor/scene/toml_table.h"
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 
 #include "razor/scene/default_scene.h"
 #include "razor/scene/description.h"
-#include "razor/scene/obj_reader.h"
+#include "razor/scene/models/obj_reader.h"
 #include "razor/scene/shapes/shapes.h"
 
 #include <glm/common.hpp>

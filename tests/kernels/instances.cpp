@@ -7,7 +7,7 @@
 
 #include "razor/native/render.h"
 #include "razor/scene/graph/records.h"
-#include "razor/scene/obj_reader.h"
+#include "razor/scene/models/obj_reader.h"
 #include "razor/scene/scene_file.h"
 
 #include <fmt/format.h>

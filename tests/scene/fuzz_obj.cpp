@@ -1,11 +1,11 @@
 // libFuzzer target for the OBJ reader and, of what begins as MD3 does, the MD3 reader: any bytes give a mesh
 // with sound indices or a one-line UserError. A run without a corpus starts from the seeds below, through the
 // custom mutator.
-#include "md3_writer.h"
 #include "razor/scene/error.h"
-#include "razor/scene/md3_reader.h"
-#include "razor/scene/obj_reader.h"
-#include "sound_md3.h"
+#include "razor/scene/models/md3_reader.h"
+#include "razor/scene/models/obj_reader.h"
+#include "tests/scene/md3_writer.h"
+#include "tests/scene/sound_md3.h"
 
 #include <algorithm>
 #include <array>

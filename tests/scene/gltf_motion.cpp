@@ -1,6 +1,6 @@
 // Animations of glTF files beside closed forms.
 #include "razor/scene/error.h"
-#include "razor/scene/gltf_reader.h"
+#include "razor/scene/models/gltf_reader.h"
 #include "tests/scene/gltf_writer.h"
 #include "tests/scene/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // Shapes of glTF files: joined points, seams, stored types, and what is refused.
-#include "razor/scene/gltf_reader.h"
+#include "razor/scene/models/gltf_reader.h"
 #include "razor/scene/error.h"
 #include "tests/scene/gltf_writer.h"
 #include "tests/scene/temporary_folder.h"

@@ -1,9 +1,9 @@
 // What the MD3 reader says to damaged files, and that no bytes whatever make it fail otherwise.
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/md3_reader.h"
 
-#include "md3_writer.h"
 #include "razor/scene/error.h"
-#include "sound_md3.h"
+#include "tests/scene/md3_writer.h"
+#include "tests/scene/sound_md3.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

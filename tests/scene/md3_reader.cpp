@@ -1,10 +1,10 @@
 // The MD3 reader: every number of a small model, joined points, turned faces.
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/md3_reader.h"
 
-#include "md3_writer.h"
 #include "razor/scene/error.h"
-#include "sound_md3.h"
-#include "temporary_folder.h"
+#include "tests/scene/md3_writer.h"
+#include "tests/scene/sound_md3.h"
+#include "tests/scene/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

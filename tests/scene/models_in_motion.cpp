@@ -1,8 +1,8 @@
 // MD3 and glTF models played by scene files.
 #include "razor/scene/animation/pose.h"
-#include "razor/scene/cage_source.h"
 #include "razor/scene/error.h"
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/cage_source.h"
+#include "razor/scene/models/md3_reader.h"
 #include "razor/scene/scene_file.h"
 #include "tests/scene/gltf_writer.h"
 #include "tests/scene/md3_writer.h"

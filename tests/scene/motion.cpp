@@ -1,10 +1,10 @@
 // Cages that change their shape: sequences of OBJ files, deformers, what scene files say of them.
 #include "razor/scene/animation/cage_frames.h"
 #include "razor/scene/animation/pose.h"
-#include "razor/scene/cage_source.h"
 #include "razor/scene/error.h"
 #include "razor/scene/framing.h"
-#include "razor/scene/obj_reader.h"
+#include "razor/scene/models/cage_source.h"
+#include "razor/scene/models/obj_reader.h"
 #include "razor/scene/scene_file.h"
 #include "tests/scene/same_scene.h"
 #include "tests/scene/temporary_folder.h"

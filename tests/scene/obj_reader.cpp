@@ -1,6 +1,6 @@
 // The OBJ reader: statements one by one, every kind of mistake, and every shared file against its published
 // counts.
-#include "razor/scene/obj_reader.h"
+#include "razor/scene/models/obj_reader.h"
 
 #include "razor/scene/error.h"
 

@@ -1,7 +1,7 @@
 // What holds of every MD3 model that loads, whatever its bytes.
 #pragma once
 
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/md3_reader.h"
 
 #include <algorithm>
 #include <cmath>

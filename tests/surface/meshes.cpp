@@ -1,7 +1,7 @@
 #include "meshes.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/obj_reader.h"
+#include "razor/scene/models/obj_reader.h"
 #include "razor/surface/topology.h"
 
 #include <fmt/format.h>

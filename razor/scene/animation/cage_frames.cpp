@@ -1,8 +1,8 @@
 #include "razor/scene/animation/cage_frames.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/models/obj_reader.h"
 #include "razor/scene/numbered_name.h"
-#include "razor/scene/obj_reader.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>

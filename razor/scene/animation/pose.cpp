@@ -1,7 +1,7 @@
 #include "razor/scene/animation/pose.h"
 
-#include "razor/scene/cage_source.h"
 #include "razor/scene/error.h"
+#include "razor/scene/models/cage_source.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
 

@@ -1,7 +1,7 @@
 #include "razor/scene/animation/read_playback.h"
 
 #include "razor/scene/animation/read_keys.h"
-#include "razor/scene/cage_source.h"
+#include "razor/scene/models/cage_source.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/toml_words.h"

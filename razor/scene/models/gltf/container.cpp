@@ -1,4 +1,4 @@
-#include "razor/scene/gltf/container.h"
+#include "razor/scene/models/gltf/container.h"
 
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"

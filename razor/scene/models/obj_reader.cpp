@@ -1,8 +1,8 @@
-#include "razor/scene/obj_reader.h"
+#include "razor/scene/models/obj_reader.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/obj_cursor.h"
-#include "razor/scene/obj_tags.h"
+#include "razor/scene/models/obj_cursor.h"
+#include "razor/scene/models/obj_tags.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // One cage of an MD3 model's triangles: points that the format has split are joined again.
 #pragma once
 
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/md3_reader.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +20,8 @@ struct Md3Triangles {
     std::vector<int> corners; // vertices, three a triangle, counter-clockwise seen from outside
 };
 
-/// The cage, without a name, and its frames as razor/scene/md3_reader.h describes them. Without a face if no
-/// triangle keeps three distinct corners.
+/// The cage, without a name, and its frames as razor/scene/models/md3_reader.h describes them. Without a face
+/// if no triangle keeps three distinct corners.
 Md3Model join(const Md3Triangles& triangles);
 
 } // namespace razor

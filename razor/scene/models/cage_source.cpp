@@ -1,11 +1,11 @@
-#include "razor/scene/cage_source.h"
+#include "razor/scene/models/cage_source.h"
 
 #include "razor/scene/animation/cage_frames.h"
 #include "razor/scene/error.h"
-#include "razor/scene/gltf_reader.h"
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/gltf_reader.h"
+#include "razor/scene/models/md3_reader.h"
+#include "razor/scene/models/obj_reader.h"
 #include "razor/scene/numbered_name.h"
-#include "razor/scene/obj_reader.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
 

@@ -1,7 +1,7 @@
 // The only source that sees tinygltf. Its own file access is not used: that expands names as a shell does,
 // and looks in the working folder too.
-#include "razor/scene/gltf/container.h"
-#include "razor/scene/gltf/document.h"
+#include "razor/scene/models/gltf/container.h"
+#include "razor/scene/models/gltf/document.h"
 
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"

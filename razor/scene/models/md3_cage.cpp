@@ -1,4 +1,4 @@
-#include "razor/scene/md3_cage.h"
+#include "razor/scene/models/md3_cage.h"
 
 #include <algorithm>
 #include <array>

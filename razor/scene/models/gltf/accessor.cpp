@@ -1,4 +1,4 @@
-#include "razor/scene/gltf/accessor.h"
+#include "razor/scene/models/gltf/accessor.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // from 0.
 #pragma once
 
-#include "razor/scene/obj_cursor.h"
+#include "razor/scene/models/obj_cursor.h"
 #include "razor/scene/scene.h"
 
 #include <cstdint>

@@ -1,8 +1,8 @@
-#include "razor/scene/gltf_reader.h"
+#include "razor/scene/models/gltf_reader.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/gltf/drawn_mesh.h"
-#include "razor/scene/gltf/nodes.h"
+#include "razor/scene/models/gltf/drawn_mesh.h"
+#include "razor/scene/models/gltf/nodes.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "razor/scene/animation/skin.h"
-#include "razor/scene/gltf/document.h"
+#include "razor/scene/models/gltf/document.h"
 
 #include <glm/vec2.hpp>
 

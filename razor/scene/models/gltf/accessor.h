@@ -1,7 +1,7 @@
 // Numbers out of a glTF file's buffers: glTF 2.0, 3.6.2.
 #pragma once
 
-#include "razor/scene/gltf/document.h"
+#include "razor/scene/models/gltf/document.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
-#include "razor/scene/gltf/nodes.h"
+#include "razor/scene/models/gltf/nodes.h"
 
-#include "razor/scene/gltf/accessor.h"
+#include "razor/scene/models/gltf/accessor.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>

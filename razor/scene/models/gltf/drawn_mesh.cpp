@@ -1,7 +1,7 @@
-#include "razor/scene/gltf/drawn_mesh.h"
+#include "razor/scene/models/gltf/drawn_mesh.h"
 
-#include "razor/scene/gltf/accessor.h"
-#include "razor/scene/gltf/nodes.h"
+#include "razor/scene/models/gltf/accessor.h"
+#include "razor/scene/models/gltf/nodes.h"
 
 #include <fmt/format.h>
 

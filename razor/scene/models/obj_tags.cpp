@@ -1,4 +1,4 @@
-#include "razor/scene/obj_tags.h"
+#include "razor/scene/models/obj_tags.h"
 
 #include "razor/scene/text_file.h"
 

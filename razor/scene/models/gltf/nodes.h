@@ -2,7 +2,7 @@
 #pragma once
 
 #include "razor/scene/animation/skeleton.h"
-#include "razor/scene/gltf/document.h"
+#include "razor/scene/models/gltf/document.h"
 
 namespace razor::gltf {
 

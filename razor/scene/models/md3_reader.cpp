@@ -1,7 +1,7 @@
-#include "razor/scene/md3_reader.h"
+#include "razor/scene/models/md3_reader.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/md3_cage.h"
+#include "razor/scene/models/md3_cage.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>

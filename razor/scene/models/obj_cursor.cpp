@@ -1,4 +1,4 @@
-#include "razor/scene/obj_cursor.h"
+#include "razor/scene/models/obj_cursor.h"
 
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"
