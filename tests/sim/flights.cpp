@@ -13,7 +13,7 @@ using Message = Network::Message;
 
 // A bus, 3 cycles a hop, lines of 5 flits. What is known of it: how long before.
 TEST(Flights, LinesThatComeBackGoFirstByHand) {
-    for (const cycle ahead : {5, 6, 9}) {
+    for (const cycle ahead : {5U, 6U, 9U}) {
         Config c = network_machine("bus", 4);
         c.network.buses = 1;
         const cycle earliest = 0;
