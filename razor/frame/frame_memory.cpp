@@ -30,6 +30,14 @@ std::int32_t hashed(int seed) {
     return static_cast<std::int32_t>(h ^ (h >> 16));
 }
 
+/// So many that packets divide the samples, and a lane is left for each of two pixels.
+int packet_samples_log2(int samples) {
+    int log2 = 0;
+    while ((2 << log2) < ISA_WIDTH && samples % (2 << log2) == 0)
+        ++log2;
+    return log2;
+}
+
 void put(float (&to)[3], const glm::dvec3& v) {
     for (int i = 0; i < 3; ++i)
         to[i] = static_cast<float>(v[i]);
@@ -308,6 +316,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.width = s.width;
     h.height = s.height;
     h.samples = s.samples;
+    h.packet_samples_log2 = packet_samples_log2(s.samples);
     h.tiles_x = (s.width + tile_side - 1) / tile_side;
     h.tiles = screen_tiles(s);
     const View v = view_of(scene.camera);

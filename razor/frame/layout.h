@@ -400,6 +400,7 @@ enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 
 struct FrameHeader {
     std::int32_t width, height, samples;
+    std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
     std::int32_t tiles_x, tiles;
     std::int32_t tiles_end; // workers take tiles before this one
     std::int32_t light_samples, sky_samples;

@@ -9,23 +9,22 @@
 namespace razor::ISA_TARGET {
 inline namespace intersect_kernel {
 
-/// Cells whose box, widened, some ray of the group may meet before its present hit: conservative, by interval
-/// arithmetic.
-inline vmask cells_met(const Group& g, const View& v, const svec& origin, sfloat widen, sint from, sint cells,
-                       sfloat last_t) {
+/// Boxes of m, one a lane, that some ray of the group may meet, widened and moved by `origin`, between the
+/// distances `enter` and `leave`: conservative, by interval arithmetic. Planes of axis k lie at low[k * step]
+/// and low[(k + 3) * step].
+inline vmask boxes_met(const Group& g, pointer<const float> low, sint step, const svec& origin, sfloat widen,
+                       const vmask& m, vfloat enter, vfloat leave) {
     sfloat shift[3] = {origin.x, origin.y, origin.z};
-    vfloat enter = vfloat(g.first_t);
-    vfloat leave = vfloat(last_t);
-    vmask m = first_lanes(cells - from);
-    pointer<float> low = v.words + v.cells_at + from;
+    sint half = step * 3;
     for (int k = 0; k < 3; ++k) {
         if (branch(g.mixed[k]))
             continue;
         // With the axis flipped to a positive direction: entering plane minus the furthest origin, and so on.
-        sint near_at = g.sign[k] * (3 * cell_boxes);
-        sint far_at = sint(3 * cell_boxes) - near_at;
-        vfloat near_plane = load_vector(low + k * cell_boxes + near_at, m);
-        vfloat far_plane = load_vector(low + k * cell_boxes + far_at, m);
+        sint near_at = select(g.sign[k] != 0, half, sint(0));
+        sint far_at = half - near_at;
+        pointer<const float> plane = low + step * k;
+        vfloat near_plane = load_vector(plane + near_at, m);
+        vfloat far_plane = load_vector(plane + far_at, m);
         sfloat moved = g.flip[k] * shift[k];
         vfloat flip = vfloat(g.flip[k]);
         sfloat near_origin = g.near[k] - moved + widen;
@@ -180,7 +179,8 @@ inline void visit_cells(const Group& g, const View& v, const Slabs& scene, sfloa
     vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
     sfloat last_t = reduce_max(furthest);
     for (sint from = 0; branch(from < cells); from += isa::width) {
-        vmask met = cells_met(g, v, origin, widen, from, cells, last_t);
+        vmask met = boxes_met(g, v.words + v.cells_at + from, cell_boxes, origin, widen,
+                              first_lanes(cells - from), vfloat(g.first_t), vfloat(last_t));
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
             pointer<const float> box = v.words + v.cells_at + cell;

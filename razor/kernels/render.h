@@ -8,9 +8,26 @@
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
 
-/// Pixels of a packet: as square as the width allows.
-inline constexpr int packet_width = isa::width >= 32 ? 8 : 4;
-inline constexpr int packet_height = isa::width / packet_width;
+/// Which pixels and samples the lanes of a packet are: 2^samples_log2 samples of a pixel side by side, and
+/// pixels as square as what is left of the width allows. Rays of one pixel meet the same few quads, so the
+/// more of its samples come together the less is visited.
+struct PacketShape {
+    sint samples_log2, columns_log2, rows_log2;
+};
+
+inline constexpr int log2_of(int n) {
+    return n > 1 ? 1 + log2_of(n / 2) : 0;
+}
+
+inline PacketShape packet_shape(const Context& c) {
+    constexpr int width_log2 = log2_of(isa::width);
+    PacketShape s;
+    s.samples_log2 = load(field(c.frame, &FrameHeader::packet_samples_log2));
+    sint pixels_log2 = sint(width_log2) - s.samples_log2;
+    s.rows_log2 = pixels_log2 >> 1;
+    s.columns_log2 = pixels_log2 - s.rows_log2;
+    return s;
+}
 
 struct Camera {
     vvec position, corner, x, y;
@@ -33,17 +50,17 @@ inline Camera load_camera(const Context& c) {
     return k;
 }
 
-/// Rays through the pixels (column, row), one lane each, at this sample's place in the pixel.
+/// Rays through the pixels (column, row), one lane each, at the sample's place in the pixel.
 inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, const vint& row,
-                        const vint& pixel, sint sample, const vmask& active) {
-    vpoint at = sample_square(pixel, vint(sample), dimension_film);
+                        const vint& pixel, const vint& sample, const vmask& active) {
+    vpoint at = sample_square(pixel, sample, dimension_film);
     vfloat x = to_float(column) + at.u;
     vfloat y = to_float(row) + at.v;
     vvec d = madd(y, k.y, madd(x, k.x, k.corner));
     Rays r;
     r.origin = k.position;
     if (branch(k.lens)) {
-        vpoint on = concentric_disk(sample_square(pixel, vint(sample), dimension_lens));
+        vpoint on = concentric_disk(sample_square(pixel, sample, dimension_lens));
         vvec from = madd(on.v, k.lens_y, k.lens_x * on.u);
         r.origin = r.origin + from;
         d = d * k.focus - from;
@@ -56,14 +73,28 @@ inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, c
     return r;
 }
 
-/// Sums over the samples of one packet of pixels.
+/// Sums over the samples of one packet of pixels, of each lane's or of each pixel's.
 struct PixelSums {
     vvec beauty, normal, albedo;
     vfloat depth, hits;
 };
 
+/// Of each lane's samples to those of its pixel.
+inline void add_lanes(const PacketShape& shape, PixelSums& sums) {
+    sint lanes = sint(1) << shape.samples_log2;
+    for (sint k = 1; branch(k < lanes); k = k + k) {
+        vint other = lane_index() ^ vint(k);
+        sums.beauty = sums.beauty + permute(sums.beauty, other);
+        sums.normal = sums.normal + permute(sums.normal, other);
+        sums.albedo = sums.albedo + permute(sums.albedo, other);
+        sums.depth = sums.depth + permute(sums.depth, other);
+        sums.hits = sums.hits + permute(sums.hits, other);
+    }
+}
+
 template <Features F>
-inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint sample, PixelSums& sums) {
+inline void add_sample(const Context& c, const Rays& r, const vint& pixel, const vint& sample,
+                       PixelSums& sums) {
     Hits h = trace_packet<F, kind_camera>(c, r);
     vfloat zero(0.0F);
     vmask hit = h.patch >= vint(0);
@@ -75,13 +106,14 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint 
         return;
     Surface s = find_surface(c, r, h);
     s.pixel = pixel;
+    s.sample = sample;
     sums.normal = sums.normal + select(hit, s.shading, {zero, zero, zero});
     sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});
     sums.depth = sums.depth + select(hit, h.t, zero);
     sums.hits = sums.hits + select(hit, vfloat(1.0F), zero);
     sint light_samples = load(field(c.frame, &FrameHeader::light_samples));
     if (branch(light_samples > 0)) {
-        vfloat light = gather_light<F, false>(c, s, light_samples, sample * light_samples);
+        vfloat light = gather_light<F, false>(c, s, light_samples);
         vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::light_radiance));
         vvec arriving = radiance * light;
         vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
@@ -89,7 +121,7 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, sint 
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
-        vfloat light = gather_light<F, true>(c, s, sky_samples, sample * sky_samples);
+        vfloat light = gather_light<F, true>(c, s, sky_samples);
         vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::sky));
         vvec arriving = radiance * light;
         vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
@@ -153,10 +185,16 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
-    vint lane_x = lane_index() & vint(packet_width - 1);
-    vint lane_y = lane_index() >> (packet_width == 8 ? 3 : 2);
-    for (sint y = y0; branch(y < y1); y += packet_height) {
-        for (sint x = x0; branch(x < x1); x += packet_width) {
+    PacketShape shape = packet_shape(c);
+    sint packet_samples = sint(1) << shape.samples_log2;
+    sint columns = sint(1) << shape.columns_log2;
+    sint rows = sint(1) << shape.rows_log2;
+    vint member = lane_index() & vint(packet_samples - 1);
+    vint place_in = lane_index() >> vint(shape.samples_log2);
+    vint lane_x = place_in & vint(columns - 1);
+    vint lane_y = place_in >> vint(shape.columns_log2);
+    for (sint y = y0; branch(y < y1); y += rows) {
+        for (sint x = x0; branch(x < x1); x += columns) {
             vint column = lane_x + vint(x);
             vint row = lane_y + vint(y);
             vmask inside = column < vint(x1);
@@ -166,12 +204,14 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
             vint place = pixel + vint(seed);
             vfloat zero(0.0F);
             PixelSums sums{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero};
-            for (sint s = 0; branch(s < samples); ++s) {
-                Rays r = camera_rays(c, camera, column, row, place, s, inside);
-                add_sample<F>(c, r, place, s, sums);
+            for (sint s = 0; branch(s < samples); s += packet_samples) {
+                vint sample = member + vint(s);
+                Rays r = camera_rays(c, camera, column, row, place, sample, inside);
+                add_sample<F>(c, r, place, sample, sums);
                 note_time(*c.watch, moment_first_packet);
             }
-            resolve(c, sums, pixel, samples, inside);
+            add_lanes(shape, sums);
+            resolve(c, sums, pixel, samples, inside & (member == vint(0)));
         }
     }
 }

@@ -19,7 +19,7 @@ struct Surface {
     vvec shading;   // unit, interpolated, towards the viewer
     vvec albedo;
     vfloat target, growth; // the edge length that the camera ray asked for here, and how fast it changes
-    vint pixel;            // number of the pixel, for sampling
+    vint pixel, sample;    // number of the pixel and of its camera sample, for sampling
 };
 
 /// The three vertices of the triangles hit, from component arrays at word `base` of each lane's block.
@@ -520,45 +520,51 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
     p.target = permute(s.target, from);
     p.growth = permute(s.growth, from);
     p.pixel = permute(s.pixel, from);
+    p.sample = permute(s.sample, from);
     return p;
 }
 
+/// Rays of one hit in a packet, at most: 2^rays_log2.
+inline constexpr int rays_of_hit_log2 = 2;
+
 /// Sum over `samples` shadow rays a hit of the weights of those that arrive. Sky: directions about the
-/// normal; else points on the light. `first_sample` is the number of the camera sample times `samples`.
+/// normal; else points on the light.
 template <Features F, bool Sky>
-[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, sint samples,
-                                             sint first_sample) {
+[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, sint samples) {
     phase_scope phase(phase_light);
-    constexpr int per_hit = 4;
-    constexpr int hits_per_packet = isa::width / per_hit;
+    // Few samples leave room for more hits.
+    sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), samples - 1);
+    sint per_hit = sint(1) << per_hit_log2;
+    sint hits_per_packet = sint(isa::width) >> per_hit_log2;
     pointer<float> sums = c.packets + packet_sum;
     store_vector(sums, vfloat(0.0F));
     vint order = compress(lane_index(), s.hit);
     sint hits = count(s.hit);
     vint member = lane_index() & vint(per_hit - 1);
-    vint rank = lane_index() >> 2;
+    vint rank = lane_index() >> vint(per_hit_log2);
     for (sint from = 0; branch(from < hits); from += hits_per_packet) {
         vint place = rank + vint(from);
         vmask present = place < vint(hits);
         vint lane = permute(order, place);
         Surface here = permute(s, lane, present);
+        vint first_sample = here.sample * vint(samples);
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
             vmask wanted = number < vint(samples);
             LightRays l;
             if constexpr (Sky)
-                l = sample_sky(c, here, number + vint(first_sample));
+                l = sample_sky(c, here, number + first_sample);
             else
-                l = sample_light(c, here, number + vint(first_sample));
+                l = sample_light(c, here, number + first_sample);
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
                 Hits blocked = trace_packet<F, (Sky ? kind_sky : kind_light)>(c, l.rays);
                 vmask arrives = l.rays.active & (blocked.patch < vint(0));
                 vfloat part = select(arrives, l.weight, vfloat(0.0F));
-                vint pair = lane_index() ^ vint(1);
-                part = part + permute(part, pair);
-                pair = lane_index() ^ vint(2);
-                part = part + permute(part, pair);
+                for (sint step = 1; branch(step < per_hit); step = step + step) {
+                    vint pair = lane_index() ^ vint(step);
+                    part = part + permute(part, pair);
+                }
                 vmask leader = present & (member == vint(0));
                 vfloat before = gather(sums, lane, leader);
                 scatter(sums, lane, before + part, leader);

@@ -159,23 +159,32 @@ inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, v
     Listed listed;
     listed.box_step = stride;
     listed.level = load(field(list, &ItemList::level));
-    for (sint i = 0; branch(i < n); ++i) {
-        sint item = load(items + i);
-        listed.line = sint(-1) - item;
-        // Whoever finds a block in the mailbox knows that all rays still alive have met it.
-        sint slot = (listed.line >> 2) & (mailbox_slots - 1);
-        sint seen = load(mailbox + slot);
-        if (branch(seen == listed.line))
-            continue;
-        listed.box = words + stride + i;
-        g.alive = here;
-        sbool tested = intersect_block<F, Mixed>(c, g, listed, cell, hits);
-        if (branch(everyone & tested))
-            store(mailbox + slot, listed.line);
-        if constexpr (AnyHit) {
-            vmask hit = hits.patch >= vint(0);
-            here = here & !hit;
-            hits.t = select(hit, vfloat(-infinite), hits.t);
+    // Whatever of it a ray can meet lies in the cell.
+    vfloat earliest = vfloat(reduce_min(select(here, max(cell.enter, g.t_min), vfloat(infinite))));
+    svec nowhere{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
+    for (sint from = 0; branch(from < n); from += isa::width) {
+        vfloat last = select(here, min(cell.leave, hits.t), vfloat(-infinite));
+        vmask met = boxes_met(g, words + stride + from, stride, nowhere, 0.0F, first_lanes(n - from),
+                              earliest, vfloat(reduce_max(last)));
+        for (; branch(any(met)); met = clear_first(met)) {
+            sint i = from + first(met);
+            sint item = load(items + i);
+            listed.line = sint(-1) - item;
+            // Whoever finds a block in the mailbox knows that all rays still alive have met it.
+            sint slot = (listed.line >> 2) & (mailbox_slots - 1);
+            sint seen = load(mailbox + slot);
+            if (branch(seen == listed.line))
+                continue;
+            listed.box = words + stride + i;
+            g.alive = here;
+            sbool tested = intersect_block<F, Mixed>(c, g, listed, cell, hits);
+            if (branch(everyone & tested))
+                store(mailbox + slot, listed.line);
+            if constexpr (AnyHit) {
+                vmask hit = hits.patch >= vint(0);
+                here = here & !hit;
+                hits.t = select(hit, vfloat(-infinite), hits.t);
+            }
         }
     }
     g.alive = here | others;
