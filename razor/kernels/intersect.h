@@ -177,10 +177,12 @@ inline void visit_cells(const Group& g, const View& v, const Slabs& scene, sfloa
     sint shift = cells_shift(v.quads_u);
     sint cells = ((v.quads_v + 1) >> 1) << shift;
     vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
-    sfloat last_t = reduce_max(furthest);
+    vfloat latest = vfloat(reduce_max(furthest));
+    vfloat earliest = vfloat(g.first_t);
     for (sint from = 0; branch(from < cells); from += isa::width) {
-        vmask met = boxes_met(g, v.words + v.cells_at + from, cell_boxes, origin, widen,
-                              first_lanes(cells - from), vfloat(g.first_t), vfloat(last_t));
+        vmask valid = first_lanes(cells - from);
+        vmask met =
+            boxes_met(g, v.words + (v.cells_at + from), cell_boxes, origin, widen, valid, earliest, latest);
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
             pointer<const float> box = v.words + v.cells_at + cell;

@@ -15,12 +15,8 @@ struct PacketShape {
     sint samples_log2, columns_log2, rows_log2;
 };
 
-inline constexpr int log2_of(int n) {
-    return n > 1 ? 1 + log2_of(n / 2) : 0;
-}
-
 inline PacketShape packet_shape(const Context& c) {
-    constexpr int width_log2 = log2_of(isa::width);
+    constexpr int width_log2 = __builtin_ctz(isa::width);
     PacketShape s;
     s.samples_log2 = load(field(c.frame, &FrameHeader::packet_samples_log2));
     sint pixels_log2 = sint(width_log2) - s.samples_log2;

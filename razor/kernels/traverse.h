@@ -1,5 +1,5 @@
-// Packets through the kd-tree. A packet is traversed in groups of rays whose directions agree in
-// largest component, so that order and projection are uniform; splitting by their signs as well, or by the
+// Packets through the kd-tree. A packet is traversed in groups of rays whose directions are long along one
+// axis, so that order and projection are uniform; splitting by their signs as well, or by the
 // octave of what the rays ask for, was measured to cost time (a tenth to a third; up to a tenth). A hit
 // anywhere in a block counts, whatever cell led to it; a cell's exit, rounded outward, only ends traversal;
 // equal distances go to the lowest (patch, triangle).
@@ -26,6 +26,10 @@ inline sfloat position_slack(const Context& c) {
     return reach * (12.0F / 16777216.0F);
 }
 
+/// Rays of a group have a component along its axis of at least this share of their largest. Any but 0 is
+/// watertight; the smaller, the more rays go together and the more their vertices are sheared (by 2 here).
+inline constexpr float least_component = 0.5F;
+
 inline vint largest_component(const vvec& d) {
     vfloat ax = abs(d.x);
     vfloat ay = abs(d.y);
@@ -44,12 +48,11 @@ inline vint sign_bits(const vvec& d) {
     return xy | z;
 }
 
-/// Everything common to the rays `alive`, whose directions are largest in component `largest`; `signs` are
-/// the first one's.
-inline Group make_group(const Context& c, const Rays& r, vmask alive, sint largest, sint signs) {
+/// Everything common to the rays `alive`, which are sheared along axis `along`; `signs` are the first one's.
+inline Group make_group(const Context& c, const Rays& r, vmask alive, sint along, sint signs) {
     Group g;
     g.alive = alive;
-    g.kz = largest;
+    g.kz = along;
     sbool last = g.kz == 2;
     g.kx = select(last, sint(0), g.kz + 1);
     last = g.kx == 2;
@@ -159,13 +162,14 @@ inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, v
     Listed listed;
     listed.box_step = stride;
     listed.level = load(field(list, &ItemList::level));
-    // Whatever of it a ray can meet lies in the cell.
-    vfloat earliest = vfloat(reduce_min(select(here, max(cell.enter, g.t_min), vfloat(infinite))));
+    vfloat enter = max(cell.enter, g.t_min);
+    vfloat earliest = vfloat(reduce_min(select(here, enter, vfloat(infinite))));
     svec nowhere{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
     for (sint from = 0; branch(from < n); from += isa::width) {
-        vfloat last = select(here, min(cell.leave, hits.t), vfloat(-infinite));
-        vmask met = boxes_met(g, words + stride + from, stride, nowhere, 0.0F, first_lanes(n - from),
-                              earliest, vfloat(reduce_max(last)));
+        vfloat leave = min(cell.leave, hits.t);
+        vfloat latest = vfloat(reduce_max(select(here, leave, vfloat(-infinite))));
+        vmask valid = first_lanes(n - from);
+        vmask met = boxes_met(g, words + (stride + from), stride, nowhere, 0.0F, valid, earliest, latest);
         for (; branch(any(met)); met = clear_first(met)) {
             sint i = from + first(met);
             sint item = load(items + i);
@@ -428,14 +432,18 @@ template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Con
     }
     Hits hits = no_hits(r);
     vint axis = largest_component(r.direction);
+    vfloat least = largest(abs(r.direction)) * least_component;
     vint signs = sign_bits(r.direction);
     vmask left = usable_rays(r);
     while (branch(any(left))) {
         sint one = first(left);
-        sint largest = extract(axis, one);
-        vmask same = left & (axis == vint(largest));
+        sint along = extract(axis, one);
+        vmask x = vmask(along == 0);
+        vmask y = vmask(along == 1);
+        vfloat component = select(x, r.direction.x, select(y, r.direction.y, r.direction.z));
+        vmask same = left & (abs(component) >= least);
         left = left & !same;
-        Group g = make_group(c, r, same, largest, extract(signs, one));
+        Group g = make_group(c, r, same, along, extract(signs, one));
         g.fields = fields;
         if constexpr (F.hanging) {
             if (branch(choice == sint(by_patch))) {

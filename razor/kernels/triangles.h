@@ -24,11 +24,10 @@ struct Hits {
     vint field;    // the lane whose field the block was blended for; -1: it was not
 };
 
-/// A group of rays of one packet whose directions agree in largest component, with all that is common to
-/// them.
+/// A group of rays of one packet whose directions are long along one axis, with all that is common to them.
 struct Group {
     vmask alive;
-    sint kx, ky, kz;         // permutation: z is the largest component
+    sint kx, ky, kz;         // permutation: z is that axis
     vfloat ox, oy, oz;       // origin, permuted
     vfloat shear_x, shear_y; // d_x / d_z, d_y / d_z
     vfloat scale_z;          // 1 / d_z
