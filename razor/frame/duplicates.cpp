@@ -27,6 +27,8 @@ public:
                 if (state_of(node.state) == node_inner) {
                     lower.push_back(node.link);
                     upper.push_back(node.link + 1);
+                } else if (state_of(node.state) == node_leaf && node.link < 0) {
+                    // empty
                 } else if (state_of(node.state) == node_leaf) {
                     const auto& list = *reinterpret_cast<const ItemList*>(header_.lists.get() + node.link);
                     if (list.finer >= 0)

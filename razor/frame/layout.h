@@ -303,8 +303,8 @@ struct KdNode {
     isa::shared<std::int32_t> state; // a NodeState
     float split;
     std::int32_t axis; // inner: 0, 1, 2. Unsplit: not 0 if the list is a coarser node's, to be refined first
-    std::int32_t
-        link; // inner: index of the lower child, the upper follows; else: first line of its item list
+    std::int32_t link; // inner: index of the lower child, the upper follows; else: first line of its item
+                       // list; -1: an empty leaf, which has none
 };
 static_assert(sizeof(KdNode) == 16);
 
@@ -316,21 +316,23 @@ inline constexpr std::int32_t cluster_items = 1 << 30;
 inline constexpr std::int32_t graph_items = cluster_items + (1 << 29);
 inline constexpr std::int32_t most_patches = cluster_items; // that can be numbered
 struct ItemList {
+    // What rays read, in one line.
     std::int32_t count;
     std::int32_t stride;
-    std::int32_t depth;
-    std::int32_t level; // leaves: the absolute level of every block that has children
-    float cell_low[3], cell_high[3];
+    std::int32_t in_cell; // leaves: so many items are in the cell themselves, the first ones; of the others,
+                          // only what is finer
+    std::int32_t level;   // leaves: the absolute level of every block that has children
     std::int32_t finer; // leaves: the node for rays that this level is too coarse for; -1: it is fine enough
                         // for all
     float coarse;       // leaves: the target edge length from which on it is fine enough
     float coarsest;     // leaves: what is finer is bounded for target edge lengths up to this
     float most;         // the largest target edge length of rays that come here
-    std::int32_t in_cell; // leaves: so many items are in the cell themselves, the first ones; of the others,
-                          // only what is finer
-    std::int32_t padding;
     float low[3], high[3]; // leaves: of all that is finer or can move, scene coordinates
-    std::int32_t padding2[10];
+    std::int32_t padding[2];
+    // What only builders read.
+    std::int32_t depth;
+    float cell_low[3], cell_high[3];
+    std::int32_t padding2[9];
 };
 static_assert(sizeof(ItemList) == 2 * line_bytes);
 inline constexpr int item_list_words = 32;

@@ -106,6 +106,19 @@ inline Plane choose_plane(const List& l) {
     return best;
 }
 
+/// The list of a node below the one whose list is split; none if nothing is in it.
+inline List begin_child(const Context& c, const List& parent, sint count, const svec& low, const svec& high) {
+    if (branch(count > 0)) {
+        List l = make_list(c, count, parent.depth + 1, parent.most, low, high);
+        note_list_level_of(l, parent);
+        return l;
+    }
+    List none = parent;
+    none.count = 0;
+    none.line = -1;
+    return none;
+}
+
 /// Writes the items on either side of the plane into the lists of two new nodes; returns the lower one's
 /// number.
 inline sint split_list(const Context& c, const List& l, const Plane& plane) {
@@ -119,10 +132,8 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     cut_low.y = select(plane.axis == 1, plane.at, l.low.y);
     cut_low.z = select(plane.axis == 2, plane.at, l.low.z);
     List child[2];
-    child[0] = make_list(c, plane.below, l.depth + 1, l.most, l.low, cut_high);
-    child[1] = make_list(c, plane.above, l.depth + 1, l.most, cut_low, l.high);
-    for (const List& part : child)
-        note_list_level_of(part, l);
+    child[0] = begin_child(c, l, plane.below, l.low, cut_high);
+    child[1] = begin_child(c, l, plane.above, cut_low, l.high);
     sint at[2] = {0, 0};
     pointer<float> low = l.boxes + l.stride * plane.axis;
     pointer<float> high = low + l.stride * 3;
@@ -138,10 +149,12 @@ inline sint split_list(const Context& c, const List& l, const Plane& plane) {
     for (int k = 0; k < 2; ++k) {
         pointer<KdNode> node = c.nodes + (children + k);
         note_level_of(node, 1, l.header);
-        close_list(child[k]);
+        sbool empty = child[k].count == 0;
+        if (branch(!empty))
+            close_list(child[k]);
         store(field(node, &KdNode::link), child[k].line);
         store(field(node, &KdNode::axis), 0);
-        sint state = select(child[k].count == 0, sint(node_leaf), sint(node_unsplit));
+        sint state = select(empty, sint(node_leaf), sint(node_unsplit));
         store_release(field(node, &KdNode::state), state);
     }
     return children;

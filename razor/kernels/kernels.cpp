@@ -66,6 +66,8 @@ template <Features F> void trace_all(const WorkerArguments& w, const TraceArgume
 /// The blocks that a leaf lists.
 void make_listed(const Context& c, pointer<KdNode> leaf) {
     sint line = load(field(leaf, &KdNode::link));
+    if (branch(line < 0))
+        return;
     List l = read_list(c, line);
     for (sint i = 0; branch(i < l.count); ++i) {
         sint block = sint(-1) - load(l.items + i);

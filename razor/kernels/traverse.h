@@ -275,61 +275,64 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
             leave = near_leave;
             continue;
         }
-        pointer<ItemList> list = as<ItemList>(c.lists + link);
-        sint finer = load(field(list, &ItemList::finer));
-        vmask deeper = vmask(false);
-        if constexpr (F.hanging && By == by_leaf) {
-            if (branch(finer >= 0)) {
-                sfloat coarse = load(field(list, &ItemList::coarse));
-                svec low = load_svec(field(list, &ItemList::low));
-                svec high = load_svec(field(list, &ItemList::high));
-                if (branch(least_target_in(g.fields, low, high, g.slack) < coarse)) {
-                    // Where this is too coarse for a ray, all go on in the same cell, if what is finer is
-                    // bounded for what they ask: nobody is left behind, who would keep it from the mailbox.
-                    sfloat bound = load(field(list, &ItemList::coarsest));
-                    if (branch(most_target_in(g.fields, low, high, g.slack) <= bound)) {
-                        number = finer;
-                        continue;
-                    }
-                    Targets t = targets_in(c, g.fields, low, high, g.slack);
-                    deeper = g.alive & (t.least < vfloat(coarse));
-                    // Those that are elsewhere keep nobody here.
-                    vmask staying = g.alive & !deeper;
-                    if (branch(none(staying & (enter <= leave)))) {
-                        number = finer;
-                        continue;
+        if (branch(link >= 0)) {
+            pointer<ItemList> list = as<ItemList>(c.lists + link);
+            sint finer = load(field(list, &ItemList::finer));
+            vmask deeper = vmask(false);
+            if constexpr (F.hanging && By == by_leaf) {
+                if (branch(finer >= 0)) {
+                    sfloat coarse = load(field(list, &ItemList::coarse));
+                    svec low = load_svec(field(list, &ItemList::low));
+                    svec high = load_svec(field(list, &ItemList::high));
+                    if (branch(least_target_in(g.fields, low, high, g.slack) < coarse)) {
+                        // Where this is too coarse for a ray, all go on in the same cell, if what is finer is
+                        // bounded for what they ask: nobody is left behind, who would keep it from the
+                        // mailbox.
+                        sfloat bound = load(field(list, &ItemList::coarsest));
+                        if (branch(most_target_in(g.fields, low, high, g.slack) <= bound)) {
+                            number = finer;
+                            continue;
+                        }
+                        Targets t = targets_in(c, g.fields, low, high, g.slack);
+                        deeper = g.alive & (t.least < vfloat(coarse));
+                        // Those that are elsewhere keep nobody here.
+                        vmask staying = g.alive & !deeper;
+                        if (branch(none(staying & (enter <= leave)))) {
+                            number = finer;
+                            continue;
+                        }
                     }
                 }
             }
-        }
-        if constexpr (By != by_leaf) {
-            if constexpr (By == by_patch)
-                deeper = intersect_patches<F, AnyHit, Mixed>(c, g, list, {enter, leave}, hits);
-            else
-                deeper = intersect_stretches<F, AnyHit, Mixed>(c, g, scale, list, {enter, leave}, hits);
-            if constexpr (AnyHit) {
-                if (branch(none(g.alive)))
-                    return;
-            }
-        } else {
-            vmask here = g.alive & !deeper;
-            if (branch(any(here))) {
-                intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, {enter, leave}, hits);
-                deeper = deeper & g.alive;
+            if constexpr (By != by_leaf) {
+                if constexpr (By == by_patch)
+                    deeper = intersect_patches<F, AnyHit, Mixed>(c, g, list, {enter, leave}, hits);
+                else
+                    deeper = intersect_stretches<F, AnyHit, Mixed>(c, g, scale, list, {enter, leave}, hits);
                 if constexpr (AnyHit) {
                     if (branch(none(g.alive)))
                         return;
                 }
+            } else {
+                vmask here = g.alive & !deeper;
+                if (branch(any(here))) {
+                    intersect_leaf<F, AnyHit, Mixed>(c, g, list, here, {enter, leave}, hits);
+                    deeper = deeper & g.alive;
+                    if constexpr (AnyHit) {
+                        if (branch(none(g.alive)))
+                            return;
+                    }
+                }
             }
-        }
-        if constexpr (F.hanging) {
-            // Those for which this is too coarse go on in the same cell.
-            leave = min(hits.t, leave);
-            vmask inside = deeper & (enter <= leave);
-            if (branch(any(inside))) {
-                number = finer;
-                enter = select(deeper, enter, never);
-                continue;
+            if constexpr (F.hanging) {
+                // Those for which this is too coarse go on in the same cell.
+                leave = min(hits.t, leave);
+                vmask inside = deeper & (enter <= leave);
+                if (branch(any(inside))) {
+                    number = finer;
+                    enter = select(deeper, enter, never);
+                    continue;
+                }
             }
         }
         for (;;) {
