@@ -38,6 +38,14 @@ int packet_samples_log2(int samples) {
     return log2;
 }
 
+constexpr double pi = 3.14159265358979323846;
+
+/// Side of the square that each sample of a domain has to itself, times edge_pixels: all that a pixel takes
+/// share the domain.
+float sample_spacing(const Settings& s, double domain, int samples) {
+    return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
+}
+
 void put(float (&to)[3], const glm::dvec3& v) {
     for (int i = 0; i < 3; ++i)
         to[i] = static_cast<float>(v[i]);
@@ -300,16 +308,18 @@ void Frame::Impl::place_workers() {
 }
 
 void Frame::Impl::place_view(const Scene& scene) {
-    fill_view(scene);
     const Settings& s = scene.settings;
     const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
+    most_lights = scene.lights.size();
+    header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
+    fill_view(scene);
 }
 
 void Frame::Impl::fill_view(const Scene& scene) {
     const Settings& s = scene.settings;
     FrameHeader& h = *header;
-    h.light_samples = h.sky_samples = 0;
+    h.sky_samples = 0;
     h.focus = 0;
     put(h.lens_x, glm::dvec3(0));
     put(h.lens_y, glm::dvec3(0));
@@ -327,25 +337,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.film_x, v.right * pixel);
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
-    // All samples that a pixel takes share the domain.
-    const auto spacing = [&](double domain, int samples) {
-        return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
-    };
-    if (!scene.lights.empty()) {
-        const RectangleLight& light = scene.lights.front();
-        glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
-        double area = glm::length(normal);
-        if (area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0) {
-            h.light_samples = s.light_samples;
-            put(h.light_corner, light.corner - geometry.origin);
-            put(h.light_u, light.edge_u);
-            put(h.light_v, light.edge_v);
-            h.light_spacing = spacing(area, s.light_samples);
-            put(h.light_normal, normal / area);
-            put(h.light_radiance, glm::dvec3(light.radiance) *
-                                      (area / (3.14159265358979323846 * std::max(s.light_samples, 1))));
-        }
-    }
+    fill_lights(scene);
     if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0) {
         h.sky_samples = s.sky_samples;
         put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
@@ -366,13 +358,36 @@ void Frame::Impl::fill_view(const Scene& scene) {
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);
     }
-    h.sky_spacing = spacing(3.14159265358979323846, s.sky_samples);
+    h.sky_spacing = sample_spacing(s, pi, s.sky_samples);
     h.reach = static_cast<float>(geometry.reach);
+}
+
+void Frame::Impl::fill_lights(const Scene& scene) {
+    const Settings& s = scene.settings;
+    header->light_count = 0;
+    if (s.light_samples == 0)
+        return;
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+        const RectangleLight& light = scene.lights[l];
+        const glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
+        const double area = glm::length(normal);
+        if (!(area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0))
+            continue;
+        LightRecord& r = header->lights.get()[header->light_count++];
+        put(r.corner, light.corner - geometry.origin);
+        put(r.edge_u, light.edge_u);
+        put(r.edge_v, light.edge_v);
+        put(r.normal, normal / area);
+        put(r.radiance, glm::dvec3(light.radiance) * (area / (pi * s.light_samples)));
+        r.spacing = sample_spacing(s, area, s.light_samples);
+        r.samples = s.light_samples;
+        r.dimension = light_dimension(static_cast<int>(l));
+    }
 }
 
 bool Frame::Impl::pose(const Scene& scene) {
     SceneGeometry posed = locate_scene(scene, drawn);
-    if (posed.instances.size() != geometry.instances.size())
+    if (posed.instances.size() != geometry.instances.size() || scene.lights.size() > most_lights)
         return false;
     geometry = std::move(posed);
     fill_instances(scene);

@@ -70,6 +70,7 @@ struct Frame::Impl {
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];
     }
+    std::size_t most_lights = 0; // that there is room for
     std::size_t clusters_of(std::size_t mesh) const {
         return (topologies[mesh].patches.size() + refit_patches - 1) >> refit_log2;
     }
@@ -109,7 +110,8 @@ struct Frame::Impl {
     void fill_graph();
     void fill_points(const Scene& scene);
     void fill_view(const Scene& scene);
-    /// In the frame's unit, which `unit` is to be. False: with another number of instances.
+    void fill_lights(const Scene& scene);
+    /// In the frame's unit, which `unit` is to be. False: with another number of instances, or more lights.
     bool pose(const Scene& scene);
     void reset();
     WorkerArguments arguments(int worker) {

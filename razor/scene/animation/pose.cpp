@@ -48,10 +48,11 @@ void pose(RectangleLight& light, const LightKeys& keys, double t) {
         light.radiance = glm::max(glm::vec3(keys.radiance.at(t, keys.timing)), glm::vec3(0));
 }
 
-void check(const std::optional<Mistake>& mistake, const SceneDescription& scene, double seconds) {
+void check(const std::optional<Mistake>& mistake, const SceneDescription& scene, double seconds,
+           const std::string& whose = "") {
     if (mistake)
         throw UserError(
-            fmt::format("{}: {} s after the beginning {}", scene.name, seconds, mistake->message));
+            fmt::format("{}: {} s after the beginning {}{}", scene.name, seconds, whose, mistake->message));
 }
 
 } // namespace
@@ -89,7 +90,8 @@ SceneDescription pose_at(const SceneDescription& description, double t) {
     d.camera_keys = {};
     for (std::size_t l = 0; l < d.light_keys.size(); ++l) {
         pose(d.lights[l], d.light_keys[l], t);
-        check(mistake_of(d.lights[l]), d, t);
+        check(mistake_of(d.lights[l]), d, t,
+              d.lights.size() == 1 ? "" : fmt::format("of light {} of {}: ", l + 1, d.lights.size()));
     }
     d.light_keys.clear();
     return d;
