@@ -183,7 +183,8 @@ struct InstanceRecord {
 };
 static_assert(sizeof(InstanceRecord) == 128);
 
-/// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root.
+/// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root. Nodes that are
+/// none's children have neither instance (-1) nor children.
 struct GraphNodeRecord {
     float low[3], high[3];
     std::int32_t first_child; // children are consecutive
@@ -432,7 +433,8 @@ struct FrameHeader {
     std::int32_t light_count, sky_samples;
     std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
     std::int32_t cluster_count; // of all meshes
-    std::int32_t graph_count;   // nodes of the scene graph
+    std::int32_t graph_count;   // nodes of the scene graph, used or not
+    std::int32_t refit_count;   // clusters listed in refit_list
     float camera[3];            // scene coordinates
     float film_corner[3], film_x[3],
         film_y[3];       // direction of the film's top left corner, and a pixel's steps
@@ -453,6 +455,7 @@ struct FrameHeader {
     isa::ref<ClassRecord> classes;
     isa::ref<std::int32_t> cluster_patches; // how many each cluster has
     isa::ref<float> cluster_boxes;          // low x[clusters_stride], y, z, high x, y, z, mesh coordinates
+    isa::ref<std::int32_t> refit_list;      // clusters whose boxes this frame makes; others have theirs
     std::int32_t clusters_stride;
     isa::ref<TreeRecord> trees;
     isa::ref<WorkerRecord> workers;
