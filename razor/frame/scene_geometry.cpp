@@ -24,15 +24,24 @@ double distance_to(const Box& b, const glm::dvec3& p) {
 
 /// One level serves a whole mesh for now: the footprint of a pixel at the mesh's nearest point, but no nearer
 /// than an eighth of the way to its centre (a floor reaches under the camera).
-double automatic_edge_length(const Scene& scene, const Box& box) {
-    const Camera& camera = dicing_camera(scene);
-    double centre = glm::length(box.centre() - camera.position);
-    double distance = std::max(distance_to(box, camera.position), centre / 8);
-    double length = scene.settings.edge_pixels * pixel_footprint(camera, scene.settings) * distance;
-    double size = glm::length(box.high - box.low);
-    double least = std::max(size * 1e-6, 1e-30);
-    return std::clamp(length, least, 1e30);
-}
+class AutomaticLength {
+public:
+    explicit AutomaticLength(const Scene& scene)
+        : from_(dicing_camera(scene).position),
+          pixels_(scene.settings.edge_pixels * pixel_footprint(dicing_camera(scene), scene.settings)) {}
+
+    double operator()(const Box& box) const {
+        double centre = glm::length(box.centre() - from_);
+        double distance = std::max(distance_to(box, from_), centre / 8);
+        double size = glm::length(box.high - box.low);
+        double least = std::max(size * 1e-6, 1e-30);
+        return std::clamp(pixels_ * distance, least, 1e30);
+    }
+
+private:
+    glm::dvec3 from_;
+    double pixels_; // at distance 1
+};
 
 } // namespace
 
@@ -91,9 +100,10 @@ void place_instance(const Affine& world, const glm::dvec3& mesh_origin, const gl
 }
 
 /// Target edge lengths of an instance by itself.
-void level_instance(const Scene& scene, const FlatInstance& flat, const Box& box, Instance& placed) {
+void level_instance(const Scene& scene, const AutomaticLength& automatic, const FlatInstance& flat,
+                    const Box& box, Instance& placed) {
     const double stated = scene.meshes[static_cast<std::size_t>(flat.mesh)].edge_length;
-    double length = stated > 0 ? stated : automatic_edge_length(scene, box);
+    double length = stated > 0 ? stated : automatic(box);
     length *= flat.rate;
     length = std::ldexp(nearest_power_of_two(length), scene.settings.lod.coarser);
     placed.mesh_edge_length = std::clamp(std::ldexp(length, flat.level_offset), 1e-30, 1e30);
@@ -115,7 +125,7 @@ void share_levels(std::vector<Instance>& instances, const std::vector<FlatInstan
     }
 }
 
-void locate_instance(SceneGeometry& g, const Scene& scene, std::size_t n) {
+void locate_instance(SceneGeometry& g, const Scene& scene, const AutomaticLength& automatic, std::size_t n) {
     const FlatInstance& i = g.flat.instances[n];
     const auto mesh = static_cast<std::size_t>(i.mesh);
     Instance placed;
@@ -123,7 +133,7 @@ void locate_instance(SceneGeometry& g, const Scene& scene, std::size_t n) {
     placed.material = i.material >= 0 ? i.material : scene.meshes[mesh].material;
     place_instance(g.flat.nodes[static_cast<std::size_t>(i.node)].world, g.mesh_origins[mesh], g.origin,
                    glm::length(g.boxes[n].high - g.boxes[n].low), placed);
-    level_instance(scene, i, g.boxes[n], placed);
+    level_instance(scene, automatic, i, g.boxes[n], placed);
     g.instances[n] = placed;
 }
 
@@ -149,15 +159,28 @@ bool same_view(const Camera& a, const Camera& b) {
 
 /// Levels of all instances; appends those that have others now.
 void level_all(SceneGeometry& g, const Scene& scene, std::vector<std::int32_t>& changed) {
-    std::vector<Instance> before = g.instances;
-    for (std::size_t n = 0; n < g.instances.size(); ++n)
-        level_instance(scene, g.flat.instances[n], g.boxes[n], g.instances[n]);
-    if (scene.settings.lod == Lod::fixed)
-        share_levels(g.instances, g.flat.instances, scene.meshes.size());
-    for (std::size_t n = 0; n < g.instances.size(); ++n)
-        if (g.instances[n].edge_length != before[n].edge_length ||
-            g.instances[n].mesh_edge_length != before[n].mesh_edge_length)
+    const bool shared = scene.settings.lod == Lod::fixed;
+    const std::vector<Instance> before = shared ? g.instances : std::vector<Instance>{};
+    const auto note = [&](std::size_t n, const Instance& was) {
+        if (g.instances[n].edge_length != was.edge_length ||
+            g.instances[n].mesh_edge_length != was.mesh_edge_length)
             changed.push_back(static_cast<std::int32_t>(n));
+    };
+    const AutomaticLength automatic(scene);
+    Instance was;
+    for (std::size_t n = 0; n < g.instances.size(); ++n) {
+        Instance& i = g.instances[n];
+        was.edge_length = i.edge_length;
+        was.mesh_edge_length = i.mesh_edge_length;
+        level_instance(scene, automatic, g.flat.instances[n], g.boxes[n], i);
+        if (!shared)
+            note(n, was);
+    }
+    if (!shared)
+        return;
+    share_levels(g.instances, g.flat.instances, scene.meshes.size());
+    for (std::size_t n = 0; n < g.instances.size(); ++n)
+        note(n, before[n]);
 }
 
 void keep_once(std::vector<int>& numbers) {
@@ -198,8 +221,9 @@ SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m)
         g.mesh_origins.push_back(origin_of(scene.meshes[m], g.standing[m] > 0, g.origin));
     g.instances.resize(g.flat.instances.size());
+    const AutomaticLength automatic(scene);
     for (std::size_t n = 0; n < g.instances.size(); ++n)
-        locate_instance(g, scene, n);
+        locate_instance(g, scene, automatic, n);
     if (scene.settings.lod == Lod::fixed)
         share_levels(g.instances, g.flat.instances, scene.meshes.size());
     g.camera = dicing_camera(scene);
@@ -251,8 +275,9 @@ std::optional<GeometryChanges> follow(SceneGeometry& g, const FlatIndex& index, 
     });
     keep_once(result.instances);
     keep_once(result.meshes);
+    const AutomaticLength automatic(scene);
     for (const std::int32_t n : result.instances)
-        locate_instance(g, scene, static_cast<std::size_t>(n));
+        locate_instance(g, scene, automatic, static_cast<std::size_t>(n));
     const bool other_view = !same_view(g.camera, dicing_camera(scene));
     g.camera = dicing_camera(scene);
     if (other_view || (scene.settings.lod == Lod::fixed && !result.instances.empty())) {
