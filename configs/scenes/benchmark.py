@@ -107,12 +107,24 @@ def figure(scene, name, cycle, phase, stride=28.0):
 
 # --- the scenes
 
-def head(scene, camera, light, sky, materials, size=(1024, 1024)):
-    scene.table("[settings]", size=list(size), samples=4, light_samples=4, sky_samples=4)
+def facing(way, centre, across, up, radiance):
+    """A rectangle light about `centre` that looks along `way` (whole numbers, so that its edges are exact). Its level
+    edges are as long as the level part of `way`, times `across`; the others are in proportion to `up`."""
+    level = [way[2], 0, -way[0]]
+    edge_u = [across * x for x in level]
+    edge_v = [up * x for x in (way[1] * level[2], way[2] * level[0] - way[0] * level[2], -way[1] * level[0])]
+    return {"corner": [c - (a + b) / 2 for c, a, b in zip(centre, edge_u, edge_v)], "edge_u": edge_u, "edge_v": edge_v,
+            "radiance": radiance}
+
+
+def head(scene, camera, lights, background, materials, size=(1024, 1024)):
+    """A frame takes 36 rays a pixel where nothing faces away: 4 samples, each with 4 to each of two lights."""
+    scene.table("[settings]", size=list(size), samples=4, light_samples=4, sky_samples=0)
     scene.table("[animation]", rate=24)
     scene.table("[camera]", **camera)
-    scene.table("[sky]", radiance=sky)
-    scene.table("[[light]]", **light)
+    scene.table("[sky]", radiance=background)
+    for light in lights:
+        scene.table("[[light]]", **light)
     for name, albedo in materials.items():
         scene.table("[[material]]", name=name, albedo=albedo)
 
@@ -120,7 +132,8 @@ def head(scene, camera, light, sky, materials, size=(1024, 1024)):
 def courtyard():
     scene = Scene("courtyard", ["64 figures walk in a walled court. Written by benchmark.py."], "bilinear")
     head(scene, {"position": [10.6, 4.3, 11.0], "target": [0.0, 0.3, 0.0], "fov": 54},
-         {"corner": [-26.0, 30.0, 8.0], "edge_u": [6.0, 6.0, 0.0], "edge_v": [-3.5355, 3.5355, 6.0], "radiance": 110},
+         [{"corner": [-26.0, 30.0, 8.0], "edge_u": [6.0, 6.0, 0.0], "edge_v": [-3.5355, 3.5355, 6.0], "radiance": [190, 170, 140]},
+          facing([-3, -6, -4], [14.0, 30.0, 18.0], 8.0, 1.0, [1.0, 1.15, 1.35])],
          [0.42, 0.48, 0.56],
          {"paving": [0.52, 0.49, 0.44], "wall": [0.66, 0.58, 0.47], "stone": [0.58, 0.56, 0.52], "skin": [0.62, 0.42, 0.31],
           "cloth": [0.30, 0.22, 0.42], "linen": [0.70, 0.66, 0.58], "rust": [0.52, 0.20, 0.12], "water": [0.18, 0.30, 0.34]})
@@ -169,7 +182,8 @@ def interior():
     scene = Scene("interior", ["A house of twenty rooms with two people in each; the camera is in one room. Written by benchmark.py."],
                   "bilinear")
     head(scene, {"position": [14.7, 1.8, 9.7], "target": [11.4, 0.95, 6.2], "fov": 64},
-         {"corner": [13.9, 2.93, 6.7], "edge_u": [0.0, 0.0, 1.6], "edge_v": [-2.4, 0.0, 0.0], "radiance": 8},
+         [{"corner": [13.9, 2.93, 6.7], "edge_u": [0.0, 0.0, 1.6], "edge_v": [-2.4, 0.0, 0.0], "radiance": [8.5, 7.8, 6.6]},
+          {"corner": [14.8, 0.9, 9.88], "edge_u": [-4.6, 0.0, 0.0], "edge_v": [0.0, 1.9, 0.0], "radiance": [1.7, 1.9, 2.2]}],
          [0.55, 0.60, 0.68],
          {"plaster": [0.74, 0.70, 0.63], "wood": [0.40, 0.25, 0.14], "floor": [0.46, 0.36, 0.27], "brass": [0.58, 0.44, 0.20],
           "clay": [0.55, 0.28, 0.18], "skin": [0.62, 0.42, 0.31], "cloth": [0.20, 0.30, 0.40], "books": [0.36, 0.16, 0.14]})
@@ -237,7 +251,8 @@ def ground(x, z):
 def forest():
     scene = Scene("forest", ["A forest on hills: trees and plants that sway, creatures that pass. Written by benchmark.py."], "catmark")
     head(scene, {"position": [3.0, 3.4, 27.0], "target": [-1.0, 2.2, 0.0], "fov": 48},
-         {"corner": [-52.0, 46.0, 30.0], "edge_u": [12.0, 10.0, 0.0], "edge_v": [-4.0, 4.8, 14.0], "radiance": 60},
+         [{"corner": [-52.0, 46.0, 30.0], "edge_u": [12.0, 10.0, 0.0], "edge_v": [-4.0, 4.8, 14.0], "radiance": [130, 115, 90]},
+          facing([-1, -3, -4], [12.0, 40.0, 48.0], 16.0, 2.5, [0.9, 1.05, 1.25])],
          [0.42, 0.50, 0.60],
          {"soil": [0.30, 0.25, 0.16], "bark": [0.30, 0.21, 0.14], "needles": [0.10, 0.22, 0.11], "leaves": [0.24, 0.36, 0.10],
           "grass": [0.30, 0.40, 0.14], "fur": [0.46, 0.34, 0.24], "bloom": [0.75, 0.45, 0.20]})
@@ -325,7 +340,8 @@ def forest():
 def showcase():
     scene = Scene("showcase", ["Creased subdivision surfaces on turning plinths. Written by benchmark.py."], "catmark")
     head(scene, {"position": [0.0, 4.6, 11.6], "target": [0.0, 1.1, -0.5], "fov": 43},
-         {"corner": [-5.5, 8.5, 3.5], "edge_u": [3.4, 0.0, 0.0], "edge_v": [0.0, -1.6, 3.2], "radiance": 22},
+         [{"corner": [-5.5, 8.5, 3.5], "edge_u": [3.4, 0.0, 0.0], "edge_v": [0.0, -1.6, 3.2], "radiance": [28, 26, 23]},
+          facing([-3, -2, -4], [8.0, 6.0, 11.0], 2.0, 0.25, [1.2, 1.3, 1.5])],
          [0.42, 0.45, 0.50],
          {"marble": [0.68, 0.66, 0.63], "jade": [0.20, 0.44, 0.32], "copper": [0.62, 0.30, 0.17], "ivory": [0.76, 0.71, 0.60],
           "ink": [0.09, 0.11, 0.20], "saffron": [0.74, 0.50, 0.12], "rose": [0.62, 0.24, 0.30], "hall": [0.46, 0.45, 0.44]})

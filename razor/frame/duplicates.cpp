@@ -107,7 +107,7 @@ Duplicates Frame::duplicates() const {
             roots.push_back(tree.root);
     }
     counter.count_nodes(std::move(roots));
-    const auto graph_nodes = static_cast<std::int64_t>(f.geometry.graph.size());
+    const auto graph_nodes = static_cast<std::int64_t>(f.geometry.graph.nodes().size());
     for (std::int64_t cluster = 0; cluster < f.clusters && f.trees > 1; ++cluster) {
         std::vector<const OpenPatch*> tables;
         for (int t = 0; t < f.trees; ++t)

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace razor {
 
@@ -54,7 +55,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         total.curves * 4 * static_cast<std::size_t>(trees) +
         total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
         (total.faces + total.points + total.curves + total.face_curves) * 64 +
-        geometry.instances.size() * sizeof(InstanceRecord) + geometry.graph.size() * sizeof(GraphNodeRecord);
+        geometry.instances.size() * sizeof(InstanceRecord) +
+        Hierarchy::node_limit(geometry.instances.size()) * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(
@@ -68,6 +70,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     place_blend_table();
     place_workers();
     place_view(scene);
+    touched.instances = static_cast<std::int64_t>(geometry.instances.size());
     reset();
 }
 
@@ -125,6 +128,7 @@ bool Frame::pose(const Scene& scene) {
     Impl& f = *impl_;
     if (!f.options.moves)
         throw std::invalid_argument("the frame was not made to move");
+    f.followed = false;
     for (const Mesh& mesh : scene.meshes)
         validate_mesh(mesh);
     const double unit = frame_unit(scene);
@@ -135,6 +139,20 @@ bool Frame::pose(const Scene& scene) {
         return false;
     f.unit = unit;
     return unit == 1 ? f.pose(scene) : f.pose(scaled(scene, 1 / unit));
+}
+
+bool Frame::pose(const Scene& scene, const SceneChanges& changes) {
+    Impl& f = *impl_;
+    if (!f.options.moves)
+        throw std::invalid_argument("the frame was not made to move");
+    const bool goes_on = std::exchange(f.followed, false);
+    for (const int m : changes.meshes) {
+        const auto mesh = static_cast<std::size_t>(m);
+        validate_mesh(scene.meshes[mesh]);
+        if (!same_topology(scene.meshes[mesh], f.meshes[mesh], 1 / f.topology_unit))
+            return false;
+    }
+    return (goes_on && f.follow(scene, changes)) || pose(scene);
 }
 
 void Frame::reset() {
@@ -248,12 +266,15 @@ FrameStatistics Frame::statistics() const {
     s.meshes = static_cast<std::int64_t>(impl_->meshes.size());
     s.instances = static_cast<std::int64_t>(impl_->geometry.instances.size());
     s.patches = impl_->patches * impl_->trees;
-    s.graph_nodes = static_cast<std::int64_t>(impl_->geometry.graph.size()) * impl_->trees;
+    const std::vector<HierarchyNode>& graph = impl_->geometry.graph.nodes();
+    for (const HierarchyNode& node : graph)
+        s.graph_nodes += node.instance >= 0 || node.child_count > 0 ? impl_->trees : 0;
+    s.touched = impl_->touched;
     s.clusters = impl_->clusters * impl_->trees;
     for (const std::unique_ptr<isa::mark_set>& opened : impl_->opened) {
-        const auto nodes = static_cast<std::int64_t>(impl_->geometry.graph.size());
+        const auto nodes = static_cast<std::int64_t>(graph.size());
         for (std::int64_t n = 0; n < nodes; ++n) {
-            const bool leaf = impl_->geometry.graph[static_cast<std::size_t>(n)].instance >= 0;
+            const bool leaf = graph[static_cast<std::size_t>(n)].instance >= 0;
             s.graph_nodes_opened += opened->is_marked(n) ? 1 : 0;
             s.instances_opened += leaf && opened->is_marked(n) ? 1 : 0;
         }

@@ -10,6 +10,7 @@
 #include "razor/frame/layout.h"
 #include "razor/image/image.h"
 #include "razor/scene/scene.h"
+#include "razor/scene/scene_changes.h"
 
 #include <memory>
 #include <string>
@@ -30,6 +31,11 @@ struct FrameOptions {
 };
 
 /// What was built, and what laziness left unbuilt.
+/// How much of what outlives a frame the last pose wrote anew, and its refit: of a new frame everything.
+struct Touched {
+    std::int64_t instances = 0, graph_nodes = 0, meshes = 0, clusters = 0;
+};
+
 struct FrameStatistics {
     CountersByKind by_kind; // summed over workers
     Counters counters;      // summed over kinds as well
@@ -55,7 +61,8 @@ struct FrameStatistics {
     int slowest_tile = -1;
     std::int64_t page_bytes = 0; // topology pages made so far; they outlive the frame
     double page_seconds = 0;     // host time spent on them
-    std::string plan;            // which kernels the scene needs
+    Touched touched;
+    std::string plan; // which kernels the scene needs
 };
 
 /// How many screen tiles a picture has.
@@ -77,6 +84,10 @@ public:
     /// what a new frame would. False where meshes or number of instances are others, and then, as where it
     /// throws UserError as the constructor does, nothing may be rendered.
     bool pose(const Scene& scene);
+    /// The same, where only these changes, camera and lights make the scene another one than that of the last
+    /// pose, or of the constructor: nothing else is looked at. After an exception or false the next pose may
+    /// be of any scene.
+    bool pose(const Scene& scene, const SceneChanges& changes);
     /// Until the next reset() workers take the screen tiles from `first` up to, not including, `end` alone.
     /// They are numbered row by row. After the workers have returned they may run again on other tiles, and
     /// find what is built; the statistics go on.

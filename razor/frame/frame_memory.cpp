@@ -2,6 +2,7 @@
 
 #include "razor/frame/blend_table.h"
 #include "razor/frame/scratch.h"
+#include "razor/frame/unit.h"
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
 #include "razor/scene/graph/records.h"
@@ -36,6 +37,14 @@ int packet_samples_log2(int samples) {
     while ((2 << log2) < ISA_WIDTH && samples % (2 << log2) == 0)
         ++log2;
     return log2;
+}
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Side of the square that each sample of a domain has to itself, times edge_pixels: all that a pixel takes
+/// share the domain.
+float sample_spacing(const Settings& s, double domain, int samples) {
+    return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
 }
 
 void put(float (&to)[3], const glm::dvec3& v) {
@@ -101,37 +110,13 @@ void Frame::Impl::place_scene(const Scene& scene) {
 }
 
 void Frame::Impl::fill_instances(const Scene& scene) {
-    InstanceRecord* record = header->instances.get();
     std::int32_t* cluster_instance = header->cluster_instance.get();
     std::int32_t first_patch = 0;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
-        const Instance& i = geometry.instances[n];
-        const Topology& t = topology_of(i);
-        const auto mesh = static_cast<std::size_t>(i.mesh);
-        InstanceRecord& r = *record++;
-        for (int k = 0; k < 3; ++k) {
-            r.origin[k] = i.origin[k];
-            r.offset[k] = i.offset[k];
-            for (int column = 0; column < 3; ++column)
-                r.linear[3 * k + column] = static_cast<float>(i.linear[column][k]);
-        }
-        r.moved = i.moved() ? 1 : 0;
-        r.edge_length = static_cast<float>(i.edge_length);
-        r.mesh_edge_length = static_cast<float>(i.mesh_edge_length);
-        r.first_level = static_cast<std::int32_t>(std::lround(std::log2(i.edge_length)));
-        r.max_exponent = t.max_exponent;
-        r.mesh = i.mesh;
+        const Topology& t = topology_of(geometry.instances[n]);
+        InstanceRecord& r = header->instances.get()[n];
         r.first_patch = first_patch;
-        r.patch_count = static_cast<std::int32_t>(t.patches.size());
-        r.first_cluster = static_cast<std::int32_t>(first_cluster[mesh]);
-        r.first_record = r.first_cluster << refit_log2;
-        r.cluster_count = static_cast<std::int32_t>(clusters_of(mesh));
-        glm::vec3 albedo(0.7F);
-        auto material = static_cast<std::size_t>(i.material);
-        if (material < scene.materials.size())
-            albedo = scene.materials[material].albedo;
-        for (int k = 0; k < 3; ++k)
-            r.albedo[k] = albedo[k];
+        fill_instance(scene, n);
         cluster_instance = std::fill_n(cluster_instance, r.cluster_count, static_cast<std::int32_t>(n));
         header->patch_count = std::max(header->patch_count, first_patch + r.patch_count);
         first_patch += r.cluster_count << refit_log2;
@@ -141,9 +126,39 @@ void Frame::Impl::fill_instances(const Scene& scene) {
     }
 }
 
+/// All but which patches are the instance's.
+void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
+    const Instance& i = geometry.instances[n];
+    const Topology& t = topology_of(i);
+    const auto mesh = static_cast<std::size_t>(i.mesh);
+    InstanceRecord& r = header->instances.get()[n];
+    for (int k = 0; k < 3; ++k) {
+        r.origin[k] = i.origin[k];
+        r.offset[k] = i.offset[k];
+        for (int column = 0; column < 3; ++column)
+            r.linear[3 * k + column] = static_cast<float>(i.linear[column][k]);
+    }
+    r.moved = i.moved() ? 1 : 0;
+    r.edge_length = static_cast<float>(i.edge_length);
+    r.mesh_edge_length = static_cast<float>(i.mesh_edge_length);
+    r.first_level = static_cast<std::int32_t>(std::lround(std::log2(i.edge_length)));
+    r.max_exponent = t.max_exponent;
+    r.mesh = i.mesh;
+    r.patch_count = static_cast<std::int32_t>(t.patches.size());
+    r.first_cluster = static_cast<std::int32_t>(first_cluster[mesh]);
+    r.first_record = r.first_cluster << refit_log2;
+    r.cluster_count = static_cast<std::int32_t>(clusters_of(mesh));
+    glm::vec3 albedo(0.7F);
+    const auto material = static_cast<std::size_t>(i.material);
+    if (material < scene.materials.size())
+        albedo = scene.materials[material].albedo;
+    for (int k = 0; k < 3; ++k)
+        r.albedo[k] = albedo[k];
+}
+
 void Frame::Impl::place_graph() {
-    // Nodes have two children at least: of what moves there may be as many as that leaves room for.
-    const std::size_t most = options.moves ? 2 * geometry.instances.size() : geometry.graph.size();
+    const std::size_t most =
+        options.moves ? Hierarchy::node_limit(geometry.instances.size()) : geometry.graph.nodes().size();
     header->graph.set(region<GraphNodeRecord>("scene graph", -1, most));
     fill_graph();
     for (int t = 0; t < trees; ++t)
@@ -153,6 +168,7 @@ void Frame::Impl::place_graph() {
     header->clusters_stride = (header->cluster_count + 15) & -16;
     header->cluster_boxes.set(
         region<float>("scene graph", -1, static_cast<std::size_t>(header->clusters_stride) * 6));
+    header->refit_list.set(region<std::int32_t>("scene graph", -1, total.clusters));
     auto* counts = region<std::int32_t>("scene graph", -1, total.clusters);
     header->cluster_patches.set(counts);
     for (const Topology& t : topologies)
@@ -164,28 +180,61 @@ void Frame::Impl::place_graph() {
 }
 
 void Frame::Impl::fill_graph() {
-    const std::vector<GraphNodeRecord> nodes = pack(geometry.graph, geometry.origin);
-    GraphNodeRecord* graph = header->graph.get();
-    std::copy(nodes.begin(), nodes.end(), graph);
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-        if (graph[n].instance >= 0)
-            graph[n].child_count = header->instances.get()[graph[n].instance].cluster_count;
+    const std::vector<HierarchyNode>& nodes = geometry.graph.nodes();
+    const std::vector<std::int32_t> others = geometry.graph.take_touched();
+    for (const std::int32_t n : others) {
+        GraphNodeRecord& record = header->graph.get()[n];
+        record = pack(nodes[static_cast<std::size_t>(n)], geometry.origin);
+        if (record.instance >= 0)
+            record.child_count = header->instances.get()[record.instance].cluster_count;
+    }
     header->graph_count = static_cast<std::int32_t>(nodes.size());
+    touched.graph_nodes = static_cast<std::int64_t>(others.size());
 }
 
 void Frame::Impl::place_points(const Scene& scene) {
+    std::size_t first = 0;
+    for (const Topology& t : topologies) {
+        first_point.push_back(first);
+        first += t.points.size();
+    }
     header->points.set(region<float>("control points", -1, total.points * 3));
-    fill_points(scene);
+    fill_meshes(scene);
 }
 
-void Frame::Impl::fill_points(const Scene& scene) {
-    float* xyz = header->points.get();
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-        for (const glm::dvec3& point : scene.meshes[m].points) {
-            const glm::dvec3 p = point - geometry.mesh_origins[m];
-            for (int k = 0; k < 3; ++k)
-                *xyz++ = static_cast<float>(p[k]);
-        }
+void Frame::Impl::fill_points(const Scene& scene, std::size_t mesh) {
+    float* xyz = header->points.get() + 3 * first_point[mesh];
+    for (const glm::dvec3& point : scene.meshes[mesh].points) {
+        const glm::dvec3 p = point - geometry.mesh_origins[mesh];
+        for (int k = 0; k < 3; ++k)
+            *xyz++ = static_cast<float>(p[k]);
+    }
+}
+
+void Frame::Impl::fill_meshes(const Scene& scene) {
+    std::vector<int> all;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        fill_points(scene, m);
+        all.push_back(static_cast<int>(m));
+    }
+    list_clusters(all);
+    touched.meshes = static_cast<std::int64_t>(all.size());
+}
+
+void Frame::Impl::list_clusters(const std::vector<int>& of_meshes) {
+    std::int32_t* list = header->refit_list.get();
+    std::vector<std::int32_t> wanted;
+    // A frame that was given up has left some undone, and does not say which.
+    if (header->queues.get() != nullptr && header->queues.get()->refitted.word != header->refit_count)
+        wanted.assign(list, list + header->refit_count);
+    for (const int mesh : of_meshes)
+        for (std::size_t k = 0; k < clusters_of(static_cast<std::size_t>(mesh)); ++k)
+            wanted.push_back(static_cast<std::int32_t>(first_cluster[static_cast<std::size_t>(mesh)] + k));
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::copy(wanted.begin(), wanted.end(), list);
+    header->refit_count = static_cast<std::int32_t>(wanted.size());
+    touched.clusters = header->refit_count;
 }
 
 void Frame::Impl::place_topology() {
@@ -300,16 +349,18 @@ void Frame::Impl::place_workers() {
 }
 
 void Frame::Impl::place_view(const Scene& scene) {
-    fill_view(scene);
     const Settings& s = scene.settings;
     const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
+    most_lights = scene.lights.size();
+    header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
+    fill_view(scene);
 }
 
 void Frame::Impl::fill_view(const Scene& scene) {
     const Settings& s = scene.settings;
     FrameHeader& h = *header;
-    h.light_samples = h.sky_samples = 0;
+    h.sky_samples = 0;
     h.focus = 0;
     put(h.lens_x, glm::dvec3(0));
     put(h.lens_y, glm::dvec3(0));
@@ -327,25 +378,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.film_x, v.right * pixel);
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
-    // All samples that a pixel takes share the domain.
-    const auto spacing = [&](double domain, int samples) {
-        return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
-    };
-    if (!scene.lights.empty()) {
-        const RectangleLight& light = scene.lights.front();
-        glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
-        double area = glm::length(normal);
-        if (area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0) {
-            h.light_samples = s.light_samples;
-            put(h.light_corner, light.corner - geometry.origin);
-            put(h.light_u, light.edge_u);
-            put(h.light_v, light.edge_v);
-            h.light_spacing = spacing(area, s.light_samples);
-            put(h.light_normal, normal / area);
-            put(h.light_radiance, glm::dvec3(light.radiance) *
-                                      (area / (3.14159265358979323846 * std::max(s.light_samples, 1))));
-        }
-    }
+    fill_lights(scene);
     if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0) {
         h.sky_samples = s.sky_samples;
         put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
@@ -366,20 +399,70 @@ void Frame::Impl::fill_view(const Scene& scene) {
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);
     }
-    h.sky_spacing = spacing(3.14159265358979323846, s.sky_samples);
+    h.sky_spacing = sample_spacing(s, pi, s.sky_samples);
     h.reach = static_cast<float>(geometry.reach);
 }
 
+void Frame::Impl::fill_lights(const Scene& scene) {
+    const Settings& s = scene.settings;
+    header->light_count = 0;
+    if (s.light_samples == 0)
+        return;
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+        const RectangleLight& light = scene.lights[l];
+        const glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
+        const double area = glm::length(normal);
+        if (!(area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0))
+            continue;
+        LightRecord& r = header->lights.get()[header->light_count++];
+        put(r.corner, light.corner - geometry.origin);
+        put(r.edge_u, light.edge_u);
+        put(r.edge_v, light.edge_v);
+        put(r.normal, normal / area);
+        put(r.radiance, glm::dvec3(light.radiance) * (area / (pi * s.light_samples)));
+        r.spacing = sample_spacing(s, area, s.light_samples);
+        r.samples = s.light_samples;
+        r.dimension = light_dimension(static_cast<int>(l));
+    }
+}
+
 bool Frame::Impl::pose(const Scene& scene) {
+    index.reset();
     SceneGeometry posed = locate_scene(scene, drawn);
-    if (posed.instances.size() != geometry.instances.size())
+    if (posed.instances.size() != geometry.instances.size() || scene.lights.size() > most_lights)
         return false;
     geometry = std::move(posed);
     fill_instances(scene);
     fill_graph();
-    fill_points(scene);
+    fill_meshes(scene);
+    fill_view(scene);
+    touched.instances = static_cast<std::int64_t>(geometry.instances.size());
+    reset();
+    followed = true;
+    return true;
+}
+
+bool Frame::Impl::follow(const Scene& scene, const SceneChanges& changes) {
+    // The unit follows from all instances, and the box that is kept is of those that are drawn.
+    if (unit != 1 || scene.lights.size() > most_lights ||
+        std::find(drawn.begin(), drawn.end(), false) != drawn.end())
+        return false;
+    if (!index)
+        index.emplace(geometry.flat, drawn_graph(scene.graph, scene.meshes.size()), scene.meshes.size());
+    const std::optional<GeometryChanges> others = razor::follow(geometry, *index, scene, changes);
+    if (!others || frame_unit(scene, geometry.graph.bounds()) != 1)
+        return false;
+    for (const std::int32_t n : others->instances)
+        fill_instance(scene, static_cast<std::size_t>(n));
+    fill_graph();
+    for (const int mesh : others->meshes)
+        fill_points(scene, static_cast<std::size_t>(mesh));
+    list_clusters(others->meshes);
+    touched.instances = static_cast<std::int64_t>(others->instances.size());
+    touched.meshes = static_cast<std::int64_t>(others->meshes.size());
     fill_view(scene);
     reset();
+    followed = true;
     return true;
 }
 

@@ -49,6 +49,9 @@ struct Frame::Impl {
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
     FrameOptions options;
     SceneGeometry geometry;
+    std::optional<FlatIndex> index; // of the geometry's graph, once something is followed
+    bool followed = true;           // else geometry and records are those of no moment
+    Touched touched;                // by the last pose
     std::unique_ptr<PageStore> pages;
     std::unique_ptr<isa::address_space> memory;
     FrameHeader* header = nullptr;
@@ -60,16 +63,17 @@ struct Frame::Impl {
     std::int64_t undrawn = 0;
     struct {
         std::size_t clusters = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
-    } total;                                            // over the meshes
-    std::vector<std::size_t> first_cluster;             // of each mesh
-    std::int64_t patches = 0, clusters = 0;             // over the instances
-    std::vector<std::unique_ptr<isa::mark_set>> opened; // one a tree: graph nodes, then instances' clusters
+    } total;                                             // over the meshes
+    std::vector<std::size_t> first_cluster, first_point; // of each mesh
+    std::int64_t patches = 0, clusters = 0;              // over the instances
+    std::vector<std::unique_ptr<isa::mark_set>> opened;  // one a tree: graph nodes, then instances' clusters
     isa::stopwatch watch{moment_count};
     std::vector<isa::lap_timer> tiles; // one a worker
 
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];
     }
+    std::size_t most_lights = 0; // that there is room for
     std::size_t clusters_of(std::size_t mesh) const {
         return (topologies[mesh].patches.size() + refit_patches - 1) >> refit_log2;
     }
@@ -106,11 +110,19 @@ struct Frame::Impl {
     void place_workers();
     void place_view(const Scene& scene);
     void fill_instances(const Scene& scene);
+    void fill_instance(const Scene& scene, std::size_t n);
     void fill_graph();
-    void fill_points(const Scene& scene);
+    void fill_points(const Scene& scene, std::size_t mesh);
+    void fill_meshes(const Scene& scene);
+    /// Which clusters the next refit makes boxes of: those of these meshes, and what the last one was to make
+    /// and did not.
+    void list_clusters(const std::vector<int>& of_meshes);
     void fill_view(const Scene& scene);
-    /// In the frame's unit, which `unit` is to be. False: with another number of instances.
+    void fill_lights(const Scene& scene);
+    /// In the frame's unit, which `unit` is to be. False: with another number of instances, or more lights.
     bool pose(const Scene& scene);
+    /// Of a scene in units of 1, as is the frame. False: everything is to be posed.
+    bool follow(const Scene& scene, const SceneChanges& changes);
     void reset();
     WorkerArguments arguments(int worker) {
         const auto w = static_cast<std::size_t>(worker);

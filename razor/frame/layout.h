@@ -183,7 +183,8 @@ struct InstanceRecord {
 };
 static_assert(sizeof(InstanceRecord) == 128);
 
-/// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root.
+/// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root. Nodes that are
+/// none's children have neither instance (-1) nor children.
 struct GraphNodeRecord {
     float low[3], high[3];
     std::int32_t first_child; // children are consecutive
@@ -192,6 +193,32 @@ struct GraphNodeRecord {
     std::int32_t padding;
 };
 static_assert(sizeof(GraphNodeRecord) == 40);
+
+/// The dimensions of sample points, a number each, so that no two of a pixel and sample go together.
+enum SampleDimension : std::int32_t {
+    dimension_film = 1,
+    dimension_light = 2, // of the scene's first light
+    dimension_sky = 3,
+    dimension_lens = 4,
+    dimension_count = 5
+};
+/// Of the scene's light of that number, whether or not those before it have radiance.
+constexpr std::int32_t light_dimension(int light) {
+    return light == 0 ? dimension_light : dimension_count - 1 + light;
+}
+
+/// A rectangle that lights hits in front of it. Lights without radiance have no record.
+struct alignas(line_bytes) LightRecord {
+    float corner[3]; // scene coordinates
+    float edge_u[3], edge_v[3];
+    float normal[3];        // unit
+    float radiance[3];      // x area / (pi x samples)
+    float spacing;          // of the samples that a pixel takes: see growth_to_area(), times edge_pixels
+    std::int32_t samples;   // shadow rays a hit
+    std::int32_t dimension; // of its sample points (razor/kernels/sampling.h)
+    std::int32_t padding[14];
+};
+static_assert(sizeof(LightRecord) == 2 * line_bytes);
 
 // --- grids: what tessellating a patch yields
 // --------------------------------------------------------------------------
@@ -405,20 +432,20 @@ struct FrameHeader {
     std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
     std::int32_t tiles_x, tiles;
     std::int32_t tiles_end; // workers take tiles before this one
-    std::int32_t light_samples, sky_samples;
+    std::int32_t light_count, sky_samples;
     std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
     std::int32_t cluster_count; // of all meshes
-    std::int32_t graph_count;   // nodes of the scene graph
+    std::int32_t graph_count;   // nodes of the scene graph, used or not
+    std::int32_t refit_count;   // clusters listed in refit_list
     float camera[3];            // scene coordinates
     float film_corner[3], film_x[3],
-        film_y[3]; // direction of the film's top left corner, and a pixel's steps
-    float light_corner[3], light_u[3], light_v[3], light_normal[3],
-        light_radiance[3]; // radiance x area / (pi x samples)
-    float sky[3];          // radiance / samples
-    float background[3];   // what a camera ray that hits nothing sees
-    float reach;           // no two points of scene and camera are further apart
+        film_y[3];       // direction of the film's top left corner, and a pixel's steps
+    float sky[3];        // radiance / samples
+    float background[3]; // what a camera ray that hits nothing sees
+    float reach;         // no two points of scene and camera are further apart
     isa::ref<GraphNodeRecord> graph;
     isa::ref<InstanceRecord> instances;
+    isa::ref<LightRecord> lights;
     isa::ref<std::int32_t> cluster_instance; // of every refit_patches patch numbers
     isa::ref<PatchRecord> patches;
     isa::ref<FaceRecord> faces;
@@ -430,6 +457,7 @@ struct FrameHeader {
     isa::ref<ClassRecord> classes;
     isa::ref<std::int32_t> cluster_patches; // how many each cluster has
     isa::ref<float> cluster_boxes;          // low x[clusters_stride], y, z, high x, y, z, mesh coordinates
+    isa::ref<std::int32_t> refit_list;      // clusters whose boxes this frame makes; others have theirs
     std::int32_t clusters_stride;
     isa::ref<TreeRecord> trees;
     isa::ref<WorkerRecord> workers;
@@ -445,13 +473,12 @@ struct FrameHeader {
     float camera_slope[3];
     float lens_x[3], lens_y[3]; // radii of the lens
     float focus;                // depth in focus; 0: a pinhole
-    float light_spacing;        // see growth_to_area() and growth_to_sky(), times edge_pixels
-    float sky_spacing;
-    std::int32_t morphs;       // 0: vertices stay at their anchors
-    std::int32_t one_field;    // not 0: rays that leave surfaces ask for what camera rays do
-    float fixed_target;        // not 0: what all rays ask for, everywhere
-    std::int32_t level_choice; // a LevelChoice
-    std::int32_t sample_seed;  // added to the numbers of pixels: razor/kernels/sampling.h
+    float sky_spacing;          // see growth_to_sky(), times edge_pixels
+    std::int32_t morphs;        // 0: vertices stay at their anchors
+    std::int32_t one_field;     // not 0: rays that leave surfaces ask for what camera rays do
+    float fixed_target;         // not 0: what all rays ask for, everywhere
+    std::int32_t level_choice;  // a LevelChoice
+    std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
 };
 
 inline constexpr int tile_side = 16; // pixels

@@ -6,7 +6,7 @@ namespace razor {
 enum RayKind : int {
     kind_none,   // work that is not the tracing of a ray
     kind_camera, // closest hits
-    kind_light,  // shadow rays to the rectangle light
+    kind_light,  // shadow rays to the rectangle lights
     kind_sky,    // shadow rays to the sky
     kind_count
 };

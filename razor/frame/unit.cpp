@@ -37,12 +37,12 @@ void scale(Placement& placement, double factor) {
 
 double frame_unit(const Scene& scene) {
     std::vector<Box> of_meshes;
-    for (const Mesh& mesh : scene.meshes) {
-        Box& box = of_meshes.emplace_back();
-        for (const glm::dvec3& p : mesh.points)
-            box.add(p);
-    }
-    const Box all = lay_out(scene, of_meshes).nodes.front().bounds;
+    for (const Mesh& mesh : scene.meshes)
+        of_meshes.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
+    return frame_unit(scene, lay_out(scene, of_meshes).nodes.front().bounds);
+}
+
+double frame_unit(const Scene& scene, const Box& all) {
     const double extent = largest(all.high - all.low);
     if (!(extent > 0)) // a point: there is nothing to see
         return 1;

@@ -4,6 +4,7 @@
 // power of two apart, so that nothing is rounded.
 #pragma once
 
+#include "razor/scene/graph/box.h"
 #include "razor/scene/scene.h"
 
 namespace razor {
@@ -19,6 +20,8 @@ inline constexpr int least_log2_extent = -10, most_log2_extent = 20;
 /// squares would overflow; the scene is then made smaller. The meshes must be valid. Throws UserError where
 /// the graph cannot be laid out (see flatten()).
 double frame_unit(const Scene& scene);
+/// The same, where the box of all instances (as of FlatNode::bounds) is known.
+double frame_unit(const Scene& scene, const Box& all);
 
 /// The scene with every length times `factor`.
 Scene scaled(Scene scene, double factor);

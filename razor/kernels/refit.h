@@ -1,6 +1,7 @@
-// Refitting: the box of every cluster of every mesh, in mesh coordinates, by all workers together, however
-// often the meshes are drawn. What lies above, instances and groups, has its boxes from the host: they move
-// with transforms, not with control points.
+// Refitting: the boxes of clusters of meshes, in mesh coordinates, by all workers together, however often the
+// meshes are drawn: of those that the header lists, as others keep theirs from frame to frame. What lies
+// above, instances and groups, has its boxes from the host: they move with transforms, not with control
+// points.
 #pragma once
 
 #include "razor/kernels/hull.h"
@@ -41,17 +42,19 @@ inline void refit_cluster(const Context& c, const Cage& g, sint cluster) {
     }
 }
 
-/// Refits every cluster once, whoever takes part; returns when all are done.
+/// Refits every cluster that is listed once, whoever takes part; returns when all are done.
 [[gnu::noinline]] inline void refit(const Context& c) {
     phase_scope phase(phase_animate);
     pointer<QueueRecord> queues = load(field(c.frame, &FrameHeader::queues));
-    sint clusters = load(field(c.frame, &FrameHeader::cluster_count));
+    sint clusters = load(field(c.frame, &FrameHeader::refit_count));
+    pointer<std::int32_t> listed = load(field(c.frame, &FrameHeader::refit_list));
     Cage g = load_topology(c);
-    sint cluster = fetch_add(field(queues, &QueueRecord::next_refit), 1);
-    while (branch(cluster < clusters)) {
+    sint next = fetch_add(field(queues, &QueueRecord::next_refit), 1);
+    while (branch(next < clusters)) {
+        sint cluster = load(listed + next);
         refit_cluster(c, g, cluster);
         fetch_add(field(queues, &QueueRecord::refitted), 1);
-        cluster = fetch_add(field(queues, &QueueRecord::next_refit), 1);
+        next = fetch_add(field(queues, &QueueRecord::next_refit), 1);
     }
     sint done = load_acquire(field(queues, &QueueRecord::refitted));
     while (branch(done != clusters))

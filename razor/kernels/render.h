@@ -107,21 +107,23 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, const
     sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});
     sums.depth = sums.depth + select(hit, h.t, zero);
     sums.hits = sums.hits + select(hit, vfloat(1.0F), zero);
-    sint light_samples = load(field(c.frame, &FrameHeader::light_samples));
-    if (branch(light_samples > 0)) {
-        vfloat light = gather_light<F, false>(c, s, light_samples);
-        vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::light_radiance));
+    const auto reflect = [&](const vvec& radiance, const vfloat& light) {
         vvec arriving = radiance * light;
         vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
         sums.beauty = sums.beauty + select(hit, reflected, {zero, zero, zero});
+    };
+    sint lights = load(field(c.frame, &FrameHeader::light_count));
+    pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
+    for (sint n = 0; branch(n < lights); ++n) {
+        sint samples = load(field(light, &LightRecord::samples));
+        vfloat gathered = gather_light<F>(c, s, TowardsLight{light}, samples);
+        reflect(load_broadcast_vec(field(light, &LightRecord::radiance)), gathered);
+        light = light + 1;
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
-        vfloat light = gather_light<F, true>(c, s, sky_samples);
-        vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::sky));
-        vvec arriving = radiance * light;
-        vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
-        sums.beauty = sums.beauty + select(hit, reflected, {zero, zero, zero});
+        vfloat gathered = gather_light<F>(c, s, TowardsSky{}, sky_samples);
+        reflect(load_broadcast_vec(field(c.frame, &FrameHeader::sky)), gathered);
     }
 }
 

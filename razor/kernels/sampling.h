@@ -4,11 +4,10 @@
 #pragma once
 
 #include "isa/math.h"
+#include "razor/frame/layout.h"
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {
-
-enum SampleDimension : int { dimension_film = 1, dimension_light = 2, dimension_sky = 3, dimension_lens = 4 };
 
 /// A permutation of 32-bit integers with good avalanche (after O'Neill's PCG output function RXS-M-XS).
 inline vint scramble(const vint& x) {
@@ -29,19 +28,31 @@ struct vpoint {
     vfloat u, v;
 };
 
-/// The point of `sample` in [0,1)^2 for this pixel and dimension.
-inline vpoint sample_square(const vint& pixel, const vint& sample, int dimension) {
-    vint seed = scramble(pixel + vint(std::int32_t(0x9e3779b9U * static_cast<std::uint32_t>(dimension))));
+/// The point of `sample` of the sequence that begins at a place of its own for each `key`. On the lens, with
+/// the film's steps, a place on one would always go with the same place on the other.
+inline vpoint sequence_point(const vint& key, const vint& sample, bool lens) {
+    vint seed = scramble(key);
     vint other = scramble(seed);
-    // 2^32 / p and 2^32 / p^2, p the plastic constant; on the lens 2^32 (sqrt(2) - 1) and 2^32 (sqrt(3) - 1):
-    // with the same steps as on the film, a place on one would always go with the same place on the other.
-    const bool lens = dimension == dimension_lens;
+    // 2^32 / p and 2^32 / p^2, p the plastic constant; on the lens 2^32 (sqrt(2) - 1) and 2^32 (sqrt(3) - 1).
     vint x = sample * vint(std::int32_t(lens ? 1779033703U : 3242174889U)) + seed;
     vint y = sample * vint(std::int32_t(lens ? 3144134277U : 2447445414U)) + other;
     vpoint s;
     s.u = unit(x);
     s.v = unit(y);
     return s;
+}
+
+inline constexpr std::uint32_t dimension_step = 0x9e3779b9U;
+
+/// The point of `sample` in [0,1)^2 for this pixel and dimension.
+inline vpoint sample_square(const vint& pixel, const vint& sample, int dimension) {
+    vint key = pixel + vint(std::int32_t(dimension_step * static_cast<std::uint32_t>(dimension)));
+    return sequence_point(key, sample, dimension == dimension_lens);
+}
+/// The same of a dimension that is known only as the kernel runs, and is not the lens.
+inline vpoint sample_square(const vint& pixel, const vint& sample, sint dimension) {
+    sint apart = dimension * std::int32_t(dimension_step);
+    return sequence_point(pixel + vint(apart), sample, false);
 }
 
 /// From the unit square to the unit disk: squares about the middle become circles, and equal areas stay equal

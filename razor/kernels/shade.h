@@ -1,4 +1,4 @@
-// Hits to surface points, and the light they receive: a rectangle light and a constant sky, both by shadow
+// Hits to surface points, and the light they receive: rectangle lights and a constant sky, both by shadow
 // rays, on matte surfaces. Shadow packets hold width/4 neighbouring hits x 4 samples.
 #pragma once
 
@@ -458,14 +458,15 @@ inline void leave_surface(const Context& c, const Surface& s, const vfloat& want
     }
 }
 
-/// A point on the rectangle light for each lane. header.light_radiance holds radiance x area / (pi x
-/// samples).
-inline LightRays sample_light(const Context& c, const Surface& s, const vint& sample) {
-    vpoint at = sample_square(s.pixel, sample, dimension_light);
-    vvec corner = load_broadcast_vec(field(c.frame, &FrameHeader::light_corner));
-    vvec edge_u = load_broadcast_vec(field(c.frame, &FrameHeader::light_u));
-    vvec edge_v = load_broadcast_vec(field(c.frame, &FrameHeader::light_v));
-    vvec normal = load_broadcast_vec(field(c.frame, &FrameHeader::light_normal));
+/// A point on the rectangle light for each lane.
+inline LightRays sample_light(const Context& c, const Surface& s, pointer<LightRecord> light,
+                              const vint& sample) {
+    sint dimension = load(field(light, &LightRecord::dimension));
+    vpoint at = sample_square(s.pixel, sample, dimension);
+    vvec corner = load_broadcast_vec(field(light, &LightRecord::corner));
+    vvec edge_u = load_broadcast_vec(field(light, &LightRecord::edge_u));
+    vvec edge_v = load_broadcast_vec(field(light, &LightRecord::edge_v));
+    vvec normal = load_broadcast_vec(field(light, &LightRecord::normal));
     vvec point = madd(at.v, edge_v, madd(at.u, edge_u, corner));
     vvec way = point - s.position;
     vfloat square = dot(way, way);
@@ -482,7 +483,7 @@ inline LightRays sample_light(const Context& c, const Surface& s, const vint& sa
     vmask faces = apart & (cos_surface > zero);
     faces = faces & (cos_light > zero);
     l.rays.active = s.hit & faces;
-    vfloat spacing = load_broadcast(field(c.frame, &FrameHeader::light_spacing));
+    vfloat spacing = load_broadcast(field(light, &LightRecord::spacing));
     leave_surface(c, s, growth_to_area(s.target, spacing, cos_light, inverse), l.rays);
     vfloat cosines = cos_surface * cos_light;
     l.weight = cosines * (inverse * inverse);
@@ -527,10 +528,25 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
 /// Rays of one hit in a packet, at most: 2^rays_log2.
 inline constexpr int rays_of_hit_log2 = 2;
 
-/// Sum over `samples` shadow rays a hit of the weights of those that arrive. Sky: directions about the
-/// normal; else points on the light.
-template <Features F, bool Sky>
-[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, sint samples) {
+/// Where shadow rays go: to points of one light, or in directions about the normal.
+struct TowardsLight {
+    static constexpr RayKind kind = kind_light;
+    pointer<LightRecord> light;
+    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
+        return sample_light(c, s, light, number);
+    }
+};
+struct TowardsSky {
+    static constexpr RayKind kind = kind_sky;
+    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
+        return sample_sky(c, s, number);
+    }
+};
+
+/// Sum over `samples` shadow rays a hit of the weights of those that arrive.
+template <Features F, class Towards>
+[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, const Towards& towards,
+                                             sint samples) {
     phase_scope phase(phase_light);
     // Few samples leave room for more hits.
     sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), samples - 1);
@@ -551,14 +567,10 @@ template <Features F, bool Sky>
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
             vmask wanted = number < vint(samples);
-            LightRays l;
-            if constexpr (Sky)
-                l = sample_sky(c, here, number + first_sample);
-            else
-                l = sample_light(c, here, number + first_sample);
+            LightRays l = towards.sample(c, here, number + first_sample);
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
-                Hits blocked = trace_packet<F, (Sky ? kind_sky : kind_light)>(c, l.rays);
+                Hits blocked = trace_packet<F, Towards::kind>(c, l.rays);
                 vmask arrives = l.rays.active & (blocked.patch < vint(0));
                 vfloat part = select(arrives, l.weight, vfloat(0.0F));
                 for (sint step = 1; branch(step < per_hit); step = step + step) {

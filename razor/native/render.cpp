@@ -92,20 +92,23 @@ NativeRenderer::NativeRenderer(const Scene& scene, const RenderOptions& options,
     : options_(options), moves_(moves), kernels_(native_target(options.isa)) {
     if (options_.threads <= 0)
         options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    load(scene);
+    load(scene, nullptr);
     if (options_.eager && frame_->statistics().trees > 1)
         throw UserError("--eager builds one kd-tree; leave --share out");
 }
 
-void NativeRenderer::pose(const Scene& scene) {
-    load(scene);
+void NativeRenderer::pose(const Scene& scene, const SceneChanges* changes) {
+    load(scene, changes);
 }
 
-void NativeRenderer::load(const Scene& scene) {
+void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
     camera_ = scene.camera;
     settings_ = scene.settings;
     const auto begin = Clock::now();
-    if (!frame_ || !frame_->pose(scene)) {
+    const auto pose = [&] {
+        return changes != nullptr ? frame_->pose(scene, *changes) : frame_->pose(scene);
+    };
+    if (!frame_ || !pose()) {
         frame_.reset(); // its memory goes before the next one's comes
         frame_ = std::make_unique<Frame>(
             scene, FrameOptions{.workers = options_.threads,

@@ -70,13 +70,14 @@ public:
     /// Throws UserError for scenes and options that cannot be rendered.
     NativeRenderer(const Scene& scene, const RenderOptions& options, bool moves);
     /// The same scene in another pose; a scene with other meshes or instances is analysed anew. Throws
-    /// UserError for scenes that cannot be rendered.
-    void pose(const Scene& scene);
+    /// UserError for scenes that cannot be rendered. `changes`: what of it is other than when this was last
+    /// called, or the constructor (see Frame::pose()); null: anything.
+    void pose(const Scene& scene, const SceneChanges* changes = nullptr);
     /// options.frames times. `progress` as of the options, whose own is not called.
     RenderResult render(const std::function<void(double fraction)>& progress = {});
 
 private:
-    void load(const Scene& scene);
+    void load(const Scene& scene, const SceneChanges* changes);
 
     RenderOptions options_;
     bool moves_;

@@ -60,6 +60,10 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                       {"clusters", opened(f.clusters_opened, f.clusters)},
                       {"patches", opened(c.patches_opened, f.patches)},
                       {"kd_nodes", opened(f.inner_nodes + f.leaves, nodes)}};
+    json["touched"] = {{"instances", f.touched.instances},
+                       {"graph_nodes", f.touched.graph_nodes},
+                       {"meshes", f.touched.meshes},
+                       {"clusters_refitted", f.touched.clusters}};
     json["left_out"] = {{"patches_never_opened", f.patches - c.patches_opened},
                         {"of_patches", f.patches},
                         {"nodes_never_split", f.unsplit_nodes},

@@ -5,7 +5,6 @@
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/sequence.h"
-#include "razor/scene/animation/pose.h"
 #include "razor/scene/error.h"
 #include "razor/scene/numbered_name.h"
 
@@ -86,7 +85,7 @@ int RenderCommand::run() const {
         fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
         return 0;
     }
-    const SceneDescription moving = sequence ? scene_.describe_moving() : scene_.describe();
+    MovingScene moving(sequence ? scene_.describe_moving() : scene_.describe());
     for (const std::string& output : outputs_) {
         check_numbered("-o", output, frames);
         check_output(numbered(output, frames.first));
@@ -123,19 +122,18 @@ int RenderCommand::run() const {
     return 0;
 }
 
-bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& moving,
-                           int frame, const RenderOptions& options, const Progress& progress) const {
+bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
+                           const RenderOptions& options, const Progress& progress) const {
     const auto start = std::chrono::steady_clock::now();
     std::string config;
     RenderResult result;
     try {
-        const SceneDescription scene = pose_of_frame(moving, frame);
-        config = to_toml(scene);
-        const Scene built = build_scene(scene);
+        moving.go_to_frame(frame);
+        config = to_toml(moving.description());
         if (renderer) {
-            renderer->pose(built);
+            renderer->pose(moving.scene(), moving.changes());
         } else {
-            renderer = std::make_unique<NativeRenderer>(built, options, !frames_.empty());
+            renderer = std::make_unique<NativeRenderer>(moving.scene(), options, !frames_.empty());
         }
         result = renderer->render(options.progress);
     } catch (const Cancelled&) {
@@ -173,10 +171,10 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const Scen
     const FrameStatistics& built = result.statistics.frame;
     if (!frames_.empty() && !quiet_) {
         fmt::print(stderr, "{}", progress.shown() ? "\r\x1b[K" : "");
-        fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {:.2f} million rays, {:.1f} MB built, "
-                   "slowest tile {:.1f} ms\n",
-                   frame, seconds, result.statistics.load_seconds,
-                   static_cast<double>(built.counters.rays) / 1e6,
+        fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {} instances and {} clusters touched, "
+                   "{:.2f} million rays, {:.1f} MB built, slowest tile {:.1f} ms\n",
+                   frame, seconds, result.statistics.load_seconds, built.touched.instances,
+                   built.touched.clusters, static_cast<double>(built.counters.rays) / 1e6,
                    static_cast<double>(built.grid_bytes + built.node_bytes + built.list_bytes) / 1e6,
                    1e3 * built.slowest_tile_seconds);
         std::fflush(stdout);

@@ -4,6 +4,7 @@
 #include "razor/native/render.h"
 #include "razor/program/progress.h"
 #include "razor/program/scene_options.h"
+#include "razor/scene/animation/moving_scene.h"
 
 #include <CLI/CLI.hpp>
 
@@ -23,7 +24,7 @@ public:
 
 private:
     /// One frame to its files; false: interrupted, none is written. `renderer` is made by the first.
-    bool render(std::unique_ptr<NativeRenderer>& renderer, const SceneDescription& moving, int frame,
+    bool render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
                 const RenderOptions& options, const Progress& progress) const;
 
     SceneOptions scene_;

@@ -38,7 +38,7 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
         ->type_name("FILE");
     app.add_option("--size", size_, "the picture's size in pixels")->type_name("WxH");
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
-    app.add_option("--light-samples", light_samples_, "shadow rays a hit to the light")->type_name("N");
+    app.add_option("--light-samples", light_samples_, "shadow rays a hit to each light")->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
     app.add_option("--seed", seed_,
                    "of all samples and random rays: pictures of different seeds differ in noise alone")

@@ -175,6 +175,18 @@ SceneGraph build_graph(const SceneDescription& description) {
     return GraphBuilder(description).build();
 }
 
+Mesh build_mesh(const SceneDescription& description, std::size_t number) {
+    const MeshDescription& source = description.meshes[number];
+    Mesh mesh = *source.cage;
+    mesh.name = source.name;
+    mesh.scheme = source.scheme;
+    mesh.edge_length = source.edge_length;
+    mesh.points = placed_points(source);
+    mesh.rest = placed(source, source.cage->rest);
+    mesh.material = material_index(description, source.material);
+    return mesh;
+}
+
 Scene build_scene(const SceneDescription& description) {
     Scene scene;
     scene.name = description.name;
@@ -184,15 +196,8 @@ Scene build_scene(const SceneDescription& description) {
     scene.sky = description.sky;
     scene.lights = description.lights;
     scene.materials = description.materials;
-    for (const MeshDescription& source : description.meshes) {
-        Mesh mesh = *source.cage;
-        mesh.name = source.name;
-        mesh.scheme = source.scheme;
-        mesh.edge_length = source.edge_length;
-        mesh.points = placed_points(source);
-        mesh.rest = placed(source, source.cage->rest);
-        mesh.material = material_index(description, source.material);
-        scene.meshes.push_back(std::move(mesh));
+    for (std::size_t m = 0; m < description.meshes.size(); ++m) {
+        scene.meshes.push_back(build_mesh(description, m));
     }
     scene.graph = build_graph(description);
     return scene;

@@ -93,6 +93,9 @@ std::vector<Box> mesh_bounds(const SceneDescription& description);
 /// are neither objects nor groups. Throws UserError for names that are not there.
 SceneGraph build_graph(const SceneDescription& description);
 
+/// Of that number, where the scene has it.
+Mesh build_mesh(const SceneDescription& description, std::size_t mesh);
+
 /// What keys say is left out: see animation/pose.h.
 Scene build_scene(const SceneDescription& description);
 

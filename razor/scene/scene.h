@@ -130,7 +130,7 @@ struct Settings {
     LevelOfDetail lod{};
     int width = 512, height = 512; // pixels
     int samples = 4;               // camera samples a pixel
-    int light_samples = 4;         // shadow rays a hit to the rectangle light; 0: it is left out
+    int light_samples = 4;         // shadow rays a hit to each light; 0: lights are left out
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
     int seed = 0;                  // another takes other samples of the same picture
     double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
@@ -141,8 +141,8 @@ struct Scene {
     std::vector<Mesh> meshes;
     SceneGraph graph; // where they are drawn; without groups: each once, where its points lie
     std::vector<Material> materials;
-    std::vector<RectangleLight> lights; // at most one for now
-    glm::vec3 sky{0};                   // constant radiance
+    std::vector<RectangleLight> lights;
+    glm::vec3 sky{0}; // constant radiance
     Camera camera;
     std::optional<Camera> dicing_camera; // from which levels of detail are measured; else `camera`
     Settings settings;

@@ -153,9 +153,6 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     scene.frame_rate = animation.number("rate", scene.frame_rate, frame_rate_range);
     animation.finish();
     for (TomlTable& light : root.tables("light")) {
-        if (!scene.lights.empty()) {
-            light.fail("", "a second light; one rectangle is possible for now, remove the others");
-        }
         scene.lights.push_back(read_light(light));
         scene.light_keys.push_back(read_light_keys(light));
         light.finish();

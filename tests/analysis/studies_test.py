@@ -40,6 +40,16 @@ class Studies(unittest.TestCase):
         self.assertGreater(rows[1]["eager"]["megabytes"], 1.5 * rows[0]["eager"]["megabytes"])
         self.assertIn("no power of two", self.refused("levels/hidden.py", "--counts", "3"))
 
+    def test_what_stands_still_is_not_touched(self):
+        rows, table = self.run_study("levels/motion.py", "--counts", "1,1024", "--frames", "3")
+        self.assertEqual([row["still"] for row in rows], [1, 1024])
+        self.assertEqual(len(table.splitlines()), 3)
+        for row in rows:
+            self.assertEqual(row["instances"], 1)
+            self.assertTrue(0 < row["nodes"] < 20, row)
+        self.assertIn("no power of two", self.refused("levels/motion.py", "--counts", "3"))
+        self.assertIn("too few", self.refused("levels/motion.py", "--frames", "2"))
+
     def test_one_tree_has_no_duplicates(self):
         scene = os.path.join(SCENES, "crowd.toml")
         rows, table = self.run_study("sharing/sharing.py", scene, "--workers", "1,4", "--size", "96x96", "--repeat", "1", "--spp",

@@ -86,8 +86,9 @@ void camera_rays(const FrameHeader& h, RayArrays& rays, int size) {
             }
 }
 
-/// Four points of the light for each hit; 8 hits x 4 samples are a packet.
+/// Four points of the first light for each hit; 8 hits x 4 samples are a packet.
 int shadow_rays(const FrameHeader& h, const RayArrays& camera, const RayArrays& rays) {
+    const LightRecord& light = *h.lights.get();
     int n = 0;
     for (int i = 0; i < camera.count; ++i) {
         if (camera.patch[i] < 0)
@@ -99,7 +100,7 @@ int shadow_rays(const FrameHeader& h, const RayArrays& camera, const RayArrays& 
             float u = 0.25F + 0.5F * static_cast<float>(s % 2), v = 0.25F + 0.5F * static_cast<float>(s / 2);
             glm::vec3 q;
             for (int k = 0; k < 3; ++k)
-                q[k] = h.light_corner[k] + u * h.light_u[k] + v * h.light_v[k];
+                q[k] = light.corner[k] + u * light.edge_u[k] + v * light.edge_v[k];
             glm::vec3 way = q - p;
             float length = glm::length(way);
             rays.put(n++, p, way / length, length * 0.9999F);

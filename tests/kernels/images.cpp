@@ -44,6 +44,12 @@ std::vector<Scene> scenes() {
     for (const char* name : {"urchin_stretched", "torus_bilinear"})
         all.push_back(named_scene(name)->scene);
     all.push_back(scene_of(bilinear(cube_cage()), 10)); // flat patches only
+    all.back().lights.push_back(all.back().lights.front());
+    all.back().lights.back().corner.x += 1;
+    all.push_back(all[1]); // a second light of rays at levels of their own
+    all.back().settings.lod = Lod::recursive;
+    all.back().lights.push_back(all.back().lights.front());
+    all.back().lights.back().edge_u *= 0.1;
     all.push_back(named_scene("torus_stretched")->scene);
     all.back().settings.lod = Lod::patch;
     all.push_back(named_scene("urchin_stretched")->scene);

@@ -293,8 +293,7 @@ TEST(Instances, LieInTheirBounds) {
         Frame frame(scene, {});
         frame.build_all(best_target());
         const FrameHeader& h = frame.header();
-        const std::vector<bool> drawn(flat.instances.size(), true);
-        const std::vector<GraphNodeRecord> nodes = pack(build_hierarchy(flat, drawn), frame.origin());
+        const std::vector<GraphNodeRecord> nodes(h.graph.get(), h.graph.get() + h.graph_count);
         ASSERT_GT(nodes.size(), scene.graph.groups[0].placements.size());
         std::vector<int> leaf_of(flat.instances.size(), -1);
         for (std::size_t n = 0; n < nodes.size(); ++n)

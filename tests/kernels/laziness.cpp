@@ -182,7 +182,7 @@ TEST(Laziness, UnseenInstancesTakeNoMemory) {
     EXPECT_EQ(many.statistics.topology_bytes, few.statistics.topology_bytes);
     EXPECT_EQ(many.statistics.control_point_bytes, few.statistics.control_point_bytes);
     const std::int64_t more = many.statistics.scene_graph_bytes - few.statistics.scene_graph_bytes;
-    EXPECT_LE(more, 9900 * 256) << "records of instances and graph nodes";
+    EXPECT_LE(more, 9900 * 320) << "records of instances and graph nodes";
     for (std::size_t i = 0; i < few.hits.size(); ++i)
         EXPECT_EQ(few.hits[i].patch, many.hits[i].patch);
 }

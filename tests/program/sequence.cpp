@@ -128,6 +128,20 @@ TEST_F(Sequence, NothingStaysOfTheFrameBefore) {
         [[light.key]]
         time = 0.2
         radiance = 3
+        [[light]]
+        corner = [-4, 3, 1]
+        edge_u = [0, 1, 0]
+        edge_v = [0, 0, 1]
+        interpolation = "step"
+        [[light.key]]
+        time = 0
+        radiance = 0
+        [[light.key]]
+        time = 0.04
+        radiance = 5
+        [[light.key]]
+        time = 0.12
+        corner = [-4, 2, 1]
         [[mesh]]
         name = "gear"
         shape = "gear"

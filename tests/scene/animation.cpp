@@ -107,6 +107,14 @@ constexpr std::string_view moving = R"(
     time = 3
     corner = [3, 5, 0]
     radiance = [4, 2, 0]
+    [[light]]
+    corner = [0, 9, 0]
+    [[light.key]]
+    time = 0
+    corner = [0, 9, 0]
+    [[light.key]]
+    time = 2
+    corner = [0, 1, 0]
     [[mesh]]
     name = "a"
     shape = "box"
@@ -156,6 +164,8 @@ TEST(Pose, PutsEverythingWhereItsKeysSay) {
     EXPECT_EQ(at.lights[0].radiance, glm::vec3(2));
     EXPECT_EQ(pose_of_frame(scene, 16).objects[0].transform.translate, glm::dvec3(2, 0, 0));
     EXPECT_EQ(pose_of_frame(scene, 16).lights[0].radiance, glm::vec3(3, 2, 1));
+    ASSERT_EQ(at.lights.size(), 2U);
+    EXPECT_EQ(at.lights[1].corner, glm::dvec3(0, 5, 0)) << "moves by its own keys";
     EXPECT_EQ(pose_of_frame(scene, 32).lights[0].corner, glm::dvec3(2, 5, 0)) << "half-way back";
     EXPECT_EQ(pose_of_frame(scene, 4).camera.position, glm::dvec3(1, 0, 9));
     EXPECT_FALSE(is_animated(parse_scene_file("[[mesh]]\nshape = \"box\"\n", "s.toml", {})));
@@ -217,6 +227,13 @@ TEST(Pose, MistakesAreNamed) {
     EXPECT_EQ(message_of(camera, 0.5), "");
     EXPECT_EQ(message_of(camera, 1),
               "s: 1 s after the beginning camera.position equals camera.target; move one of them");
+    const std::string light = "[[light]]\nedge_u = [0, 0, 1]\nedge_v = [1, 0, 0]\n",
+                      turns = light + "[[light.key]]\ntime = 0\nedge_u = [0, 0, 1]\n[[light.key]]\ntime = "
+                                      "1\nedge_u = [1, 0, 0]\n";
+    EXPECT_EQ(message_of(turns + mesh, 1).find("s: 1 s after the beginning light.edge_u and"), 0U);
+    EXPECT_EQ(message_of(light + turns + mesh, 1)
+                  .find("s: 1 s after the beginning of light 2 of 2: light.edge_u and"),
+              0U);
 }
 
 } // namespace

@@ -212,5 +212,49 @@ TEST(FlatGraph, RefitFollowsWhatMoved) {
     }
 }
 
+TEST(FlatGraph, FollowsWhatMovedAlone) {
+    Random random(23);
+    for (int round = 0; round < 100; ++round) {
+        SceneGraph graph = random_graph(random, random.whole(1, 6), 3);
+        std::vector<Box> boxes(3, unit_box);
+        FlatGraph flat = flatten(graph, boxes);
+        const FlatIndex index(flat, graph, 3);
+        for (int step = 0; step < 4; ++step) {
+            const FlatGraph before = flat;
+            std::vector<PlacementName> moved;
+            for (int n = random.whole(0, 3); n > 0; --n) {
+                const int group = random.whole(0, static_cast<int>(graph.groups.size()) - 1);
+                std::vector<Placement>& all = graph.groups[static_cast<std::size_t>(group)].placements;
+                const int which = random.whole(0, static_cast<int>(all.size()) - 1);
+                all[static_cast<std::size_t>(which)].local = random.transform(1);
+                moved.push_back({group, which});
+            }
+            std::vector<int> meshes;
+            if (random.whole(0, 2) == 0) {
+                meshes = {random.whole(0, 2)};
+                boxes[static_cast<std::size_t>(meshes[0])].high += random.vector(0, 1);
+            }
+            const std::vector<std::int32_t> others = follow(flat, index, graph, boxes, moved, meshes);
+            const FlatGraph fresh = flatten(graph, boxes);
+            ASSERT_EQ(flat.instances.size(), fresh.instances.size());
+            for (std::size_t i = 0; i < flat.instances.size(); ++i) {
+                const FlatInstance& a = flat.instances[i];
+                const FlatInstance& b = fresh.instances[i];
+                const FlatNode& leaf = flat.nodes[static_cast<std::size_t>(a.node)];
+                const FlatNode& other = fresh.nodes[static_cast<std::size_t>(b.node)];
+                ASSERT_EQ(leaf.world.linear, other.world.linear);
+                ASSERT_EQ(leaf.world.translation, other.world.translation);
+                ASSERT_EQ(leaf.bounds, other.bounds);
+                ASSERT_EQ(a.scale, b.scale);
+                ASSERT_EQ(a.level_offset, b.level_offset);
+                const bool named =
+                    std::binary_search(others.begin(), others.end(), static_cast<std::int32_t>(i));
+                const bool same = before.nodes[static_cast<std::size_t>(a.node)].bounds == leaf.bounds;
+                ASSERT_TRUE(named || same);
+            }
+        }
+    }
+}
+
 } // namespace
 } // namespace razor

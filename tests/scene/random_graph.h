@@ -1,6 +1,7 @@
 // Scene graphs of any shape, at random or piece by piece.
 #pragma once
 
+#include "razor/scene/graph/flatten.h"
 #include "razor/scene/graph/records.h"
 
 #include <fmt/format.h>

@@ -20,10 +20,7 @@ template <class Value> void follow(Value& value, const Track<Value>& track, cons
 }
 
 void pose(ObjectDescription& object, double t) {
-    const TransformKeys& keys = object.keys;
-    follow(object.transform.scale, keys.scale, keys.timing, t);
-    follow(object.transform.rotate, keys.rotate, keys.timing, t);
-    follow(object.transform.translate, keys.translate, keys.timing, t);
+    object.transform = transform_at(object, t);
     object.keys = {};
 }
 
@@ -48,10 +45,11 @@ void pose(RectangleLight& light, const LightKeys& keys, double t) {
         light.radiance = glm::max(glm::vec3(keys.radiance.at(t, keys.timing)), glm::vec3(0));
 }
 
-void check(const std::optional<Mistake>& mistake, const SceneDescription& scene, double seconds) {
+void check(const std::optional<Mistake>& mistake, const SceneDescription& scene, double seconds,
+           const std::string& whose = "") {
     if (mistake)
         throw UserError(
-            fmt::format("{}: {} s after the beginning {}", scene.name, seconds, mistake->message));
+            fmt::format("{}: {} s after the beginning {}{}", scene.name, seconds, whose, mistake->message));
 }
 
 } // namespace
@@ -67,31 +65,53 @@ bool is_animated(const SceneDescription& d) {
            });
 }
 
+Transform transform_at(const ObjectDescription& object, double t) {
+    const TransformKeys& keys = object.keys;
+    Transform transform = object.transform;
+    follow(transform.scale, keys.scale, keys.timing, t);
+    follow(transform.rotate, keys.rotate, keys.timing, t);
+    follow(transform.translate, keys.translate, keys.timing, t);
+    return transform;
+}
+
+MeshDescription mesh_at(const SceneDescription& description, std::size_t mesh, double t) {
+    MeshDescription m = description.meshes[mesh];
+    try {
+        pose_cage(m, t);
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("{}: mesh '{}': {}", description.name, printable(m.name), error.what()));
+    }
+    return m;
+}
+
+void pose_view(SceneDescription& posed, const SceneDescription& moving, double t) {
+    posed.camera = moving.camera;
+    posed.lights = moving.lights;
+    posed.camera_keys = {};
+    posed.light_keys.clear();
+    if (moving.camera_keys.any()) {
+        pose(posed.camera, moving.camera_keys, t);
+        check(mistake_of(posed.camera, "camera"), moving, t);
+    }
+    for (std::size_t l = 0; l < moving.light_keys.size(); ++l) {
+        pose(posed.lights[l], moving.light_keys[l], t);
+        check(mistake_of(posed.lights[l]), moving, t,
+              moving.lights.size() == 1 ? ""
+                                        : fmt::format("of light {} of {}: ", l + 1, moving.lights.size()));
+    }
+}
+
 SceneDescription pose_at(const SceneDescription& description, double t) {
     SceneDescription d = description;
-    for (MeshDescription& m : d.meshes)
-        if (changes_shape(m)) {
-            try {
-                pose_cage(m, t);
-            } catch (const UserError& error) {
-                throw UserError(fmt::format("{}: mesh '{}': {}", d.name, printable(m.name), error.what()));
-            }
-        }
+    for (std::size_t m = 0; m < d.meshes.size(); ++m)
+        if (changes_shape(d.meshes[m]))
+            d.meshes[m] = mesh_at(description, m, t);
     for (ObjectDescription& o : d.objects)
         pose(o, t);
     for (GroupDescription& g : d.groups)
         for (ObjectDescription& o : g.objects)
             pose(o, t);
-    if (d.camera_keys.any()) {
-        pose(d.camera, d.camera_keys, t);
-        check(mistake_of(d.camera, "camera"), d, t);
-    }
-    d.camera_keys = {};
-    for (std::size_t l = 0; l < d.light_keys.size(); ++l) {
-        pose(d.lights[l], d.light_keys[l], t);
-        check(mistake_of(d.lights[l]), d, t);
-    }
-    d.light_keys.clear();
+    pose_view(d, description, t);
     return d;
 }
 

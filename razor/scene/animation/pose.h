@@ -14,6 +14,11 @@ SceneDescription pose_at(const SceneDescription& description, double seconds);
 /// ... in this frame: at frame / rate.
 SceneDescription pose_of_frame(const SceneDescription& description, int frame);
 
+// pose_at() part by part: an object, a mesh, camera and lights together (and what is wrong with these).
+Transform transform_at(const ObjectDescription& object, double seconds);
+MeshDescription mesh_at(const SceneDescription& description, std::size_t mesh, double seconds);
+void pose_view(SceneDescription& posed, const SceneDescription& moving, double seconds);
+
 /// What is wrong with a camera, or a light: the key to mend and a message; nothing if it is possible.
 struct Mistake {
     std::string key, message;

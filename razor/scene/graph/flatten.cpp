@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace razor {
 namespace {
@@ -237,11 +238,19 @@ double without_rounding(double sigma) {
     return std::abs(sigma - power) <= 1e-12 * power ? power : sigma;
 }
 
-void derive_instance(FlatGraph& flat, const SceneGraph& graph, std::int32_t node,
-                     const Inherited& inherited) {
+/// Of the instance at a leaf, what follows from its world transform.
+void derive_scale(FlatGraph& flat, const SceneGraph& graph, std::int32_t node) {
     FlatInstance& instance = flat.instances[at(flat.nodes[at(node)].instance)];
     const glm::dvec3 singular = singular_values(flat.nodes[at(node)].world.linear);
     check_scale(flat, graph, node, singular);
+    instance.scale = without_rounding(singular.x);
+    instance.level_offset =
+        instance.stated_level_offset - static_cast<int>(std::lround(std::log2(instance.scale)));
+}
+
+void derive_instance(FlatGraph& flat, const SceneGraph& graph, std::int32_t node,
+                     const Inherited& inherited) {
+    FlatInstance& instance = flat.instances[at(flat.nodes[at(node)].instance)];
     if (!(inherited.rate >= least_rate && inherited.rate <= largest_rate)) {
         fail(flat, graph, node,
              fmt::format("has rates that multiply to {:g}; keep the product from {:g} to {:g}",
@@ -252,10 +261,30 @@ void derive_instance(FlatGraph& flat, const SceneGraph& graph, std::int32_t node
              fmt::format("has level offsets that add up to {}; keep the sum from {} to {}",
                          inherited.level_offset, -largest_level_offset, largest_level_offset));
     }
-    instance.scale = without_rounding(singular.x);
-    instance.level_offset = inherited.level_offset - static_cast<int>(std::lround(std::log2(instance.scale)));
+    instance.stated_level_offset = inherited.level_offset;
     instance.rate = inherited.rate;
     instance.material = inherited.material;
+}
+
+void place_node(FlatNode& node, const Affine& parent, const Placement* placement) {
+    node.world = parent;
+    if (placement != nullptr) {
+        Affine local = to_affine(placement->local);
+        local.translation += node.copy_offset;
+        node.world = parent * local;
+    }
+}
+
+void bound_leaf(FlatGraph& flat, const SceneGraph& graph, std::int32_t node,
+                std::span<const Box> mesh_bounds) {
+    FlatNode& leaf = flat.nodes[at(node)];
+    leaf.bounds = bounds_of_image(leaf.world, mesh_bounds[at(flat.instances[at(leaf.instance)].mesh)]);
+    const glm::dvec3 reach = glm::max(glm::abs(leaf.bounds.low), glm::abs(leaf.bounds.high));
+    if (!(std::max({reach.x, reach.y, reach.z}) <= largest_bound)) {
+        fail(flat, graph, node,
+             fmt::format("reaches beyond {:g} in world coordinates; move or scale it",
+                         largest_world_coordinate));
+    }
 }
 
 } // namespace
@@ -290,11 +319,9 @@ void refit(FlatGraph& flat, const SceneGraph& graph, std::span<const Box> mesh_b
         FlatNode& node = flat.nodes[n];
         const FlatNode& parent = flat.nodes[at(node.parent)];
         inherited[n] = inherited[at(node.parent)];
-        node.world = parent.world;
-        if (const Placement* const placement = placement_of(node, graph)) {
-            Affine local = to_affine(placement->local);
-            local.translation += node.copy_offset;
-            node.world = parent.world * local;
+        const Placement* const placement = placement_of(node, graph);
+        place_node(node, parent.world, placement);
+        if (placement != nullptr) {
             inherited[n].rate *= placement->rate;
             inherited[n].level_offset =
                 std::clamp(inherited[n].level_offset + placement->level_offset, -1000000, 1000000);
@@ -304,6 +331,7 @@ void refit(FlatGraph& flat, const SceneGraph& graph, std::span<const Box> mesh_b
         }
         if (node.instance >= 0) {
             derive_instance(flat, graph, static_cast<std::int32_t>(n), inherited[n]);
+            derive_scale(flat, graph, static_cast<std::int32_t>(n));
         }
     }
     for (FlatNode& node : flat.nodes) {
@@ -312,19 +340,98 @@ void refit(FlatGraph& flat, const SceneGraph& graph, std::span<const Box> mesh_b
     for (std::size_t n = flat.nodes.size(); n-- > 0;) {
         FlatNode& node = flat.nodes[n];
         if (node.instance >= 0) {
-            const FlatInstance& instance = flat.instances[at(node.instance)];
-            node.bounds = bounds_of_image(node.world, mesh_bounds[at(instance.mesh)]);
-            const glm::dvec3 reach = glm::max(glm::abs(node.bounds.low), glm::abs(node.bounds.high));
-            if (!(std::max({reach.x, reach.y, reach.z}) <= largest_bound)) {
-                fail(flat, graph, static_cast<std::int32_t>(n),
-                     fmt::format("reaches beyond {:g} in world coordinates; move or scale it",
-                                 largest_world_coordinate));
-            }
+            bound_leaf(flat, graph, static_cast<std::int32_t>(n), mesh_bounds);
         }
         if (node.parent >= 0) {
             flat.nodes[at(node.parent)].bounds.add(node.bounds);
         }
     }
+}
+
+FlatIndex::Lists FlatIndex::sorted(std::span<const std::int32_t> list_of, std::size_t lists) {
+    Lists result;
+    result.first.assign(lists + 1, 0);
+    for (const std::int32_t l : list_of) {
+        if (l >= 0) {
+            ++result.first[at(l) + 1];
+        }
+    }
+    for (std::size_t l = 0; l < lists; ++l) {
+        result.first[l + 1] += result.first[l];
+    }
+    result.items.resize(result.first.back());
+    std::vector<std::size_t> next = result.first;
+    for (std::size_t i = 0; i < list_of.size(); ++i) {
+        if (list_of[i] >= 0) {
+            result.items[next[at(list_of[i])]++] = static_cast<std::int32_t>(i);
+        }
+    }
+    return result;
+}
+
+FlatIndex::FlatIndex(const FlatGraph& flat, const SceneGraph& graph, std::size_t meshes) {
+    std::size_t placements = 0;
+    for (const Group& group : graph.groups) {
+        first_placement_.push_back(placements);
+        placements += group.placements.size();
+    }
+    std::vector<std::int32_t> of_nodes, of_instances;
+    for (const FlatNode& node : flat.nodes) {
+        of_nodes.push_back(node.placement < 0 ? -1
+                                              : static_cast<std::int32_t>(first_placement_[at(node.group)]) +
+                                                    node.placement);
+    }
+    for (const FlatInstance& instance : flat.instances) {
+        of_instances.push_back(instance.mesh);
+    }
+    placements_ = sorted(of_nodes, placements);
+    meshes_ = sorted(of_instances, meshes);
+}
+
+std::span<const std::int32_t> FlatIndex::nodes_of(const PlacementName& name) const {
+    return list(placements_, first_placement_[at(name.group)] + at(name.placement));
+}
+
+std::vector<std::int32_t> follow(FlatGraph& flat, const FlatIndex& index, const SceneGraph& graph,
+                                 std::span<const Box> mesh_bounds, std::span<const PlacementName> moved,
+                                 std::span<const int> meshes) {
+    std::vector<std::int32_t> open, leaves;
+    for (const PlacementName& name : moved) {
+        const std::span<const std::int32_t> nodes = index.nodes_of(name);
+        open.insert(open.end(), nodes.begin(), nodes.end());
+    }
+    // Parents come before children, so of two that are one below the other the upper is met first.
+    std::make_heap(open.begin(), open.end(), std::greater<>());
+    std::int32_t last = -1;
+    while (!open.empty()) {
+        std::pop_heap(open.begin(), open.end(), std::greater<>());
+        const std::int32_t n = open.back();
+        open.pop_back();
+        if (n == last) {
+            continue;
+        }
+        last = n;
+        FlatNode& node = flat.nodes[at(n)];
+        place_node(node, flat.nodes[at(node.parent)].world, placement_of(node, graph));
+        if (node.instance >= 0) {
+            derive_scale(flat, graph, n);
+            leaves.push_back(node.instance);
+        }
+        for (std::int32_t k = 0; k < node.child_count; ++k) {
+            open.push_back(node.first_child + k);
+            std::push_heap(open.begin(), open.end(), std::greater<>());
+        }
+    }
+    for (const int mesh : meshes) {
+        const std::span<const std::int32_t> all = index.instances_of(at(mesh));
+        leaves.insert(leaves.end(), all.begin(), all.end());
+    }
+    std::sort(leaves.begin(), leaves.end());
+    leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+    for (const std::int32_t instance : leaves) {
+        bound_leaf(flat, graph, flat.instances[at(instance)].node, mesh_bounds);
+    }
+    return leaves;
 }
 
 std::string path_of(const FlatGraph& flat, const SceneGraph& graph, std::int32_t node) {

@@ -19,24 +19,23 @@ float above(double x) {
 
 } // namespace
 
-std::vector<GraphNodeRecord> pack(const std::vector<HierarchyNode>& nodes, const glm::dvec3& origin) {
-    std::vector<GraphNodeRecord> records;
-    records.reserve(nodes.size());
-    for (const HierarchyNode& node : nodes) {
-        GraphNodeRecord& record = records.emplace_back();
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low = node.bounds.low[axis] - origin[axis];
-            const double high = node.bounds.high[axis] - origin[axis];
-            // More than control points, patches' boxes and grids can be off in single precision.
-            const double slack = 2e-6 * std::max(std::abs(low), std::abs(high));
-            record.low[axis] = below(low - slack);
-            record.high[axis] = above(high + slack);
-        }
-        record.first_child = node.first_child;
-        record.child_count = node.child_count;
-        record.instance = node.instance;
+GraphNodeRecord pack(const HierarchyNode& node, const glm::dvec3& origin) {
+    GraphNodeRecord record{};
+    record.instance = node.instance;
+    if (node.instance < 0 && node.child_count == 0) {
+        return record;
     }
-    return records;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = node.bounds.low[axis] - origin[axis];
+        const double high = node.bounds.high[axis] - origin[axis];
+        // More than control points, patches' boxes and grids can be off in single precision.
+        const double slack = 2e-6 * std::max(std::abs(low), std::abs(high));
+        record.low[axis] = below(low - slack);
+        record.high[axis] = above(high + slack);
+    }
+    record.first_child = node.first_child;
+    record.child_count = node.child_count;
+    return record;
 }
 
 } // namespace razor

@@ -5,13 +5,11 @@
 #include "razor/frame/layout.h"
 #include "razor/scene/graph/hierarchy.h"
 
-#include <vector>
-
 namespace razor {
 
 /// Boxes in scene coordinates (world minus `origin`). They hold the double ones, and whatever becomes of what
 /// lies in those in single precision: patches' boxes as the frame makes them, and their grids. child_count is
 /// 0 for leaves: how many clusters they have is the frame's to say.
-std::vector<GraphNodeRecord> pack(const std::vector<HierarchyNode>& nodes, const glm::dvec3& origin);
+GraphNodeRecord pack(const HierarchyNode& node, const glm::dvec3& origin);
 
 } // namespace razor

@@ -1,0 +1,102 @@
+#include "razor/scene/animation/moving_scene.h"
+
+#include "razor/scene/animation/pose.h"
+
+#include <array>
+#include <cstring>
+#include <span>
+#include <utility>
+
+namespace razor {
+namespace {
+
+std::size_t at(std::int32_t index) {
+    return static_cast<std::size_t>(index);
+}
+
+// To the last bit: zeros have signs.
+
+bool same_vectors(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+bool same_cage(const Mesh& a, const Mesh& b) {
+    return same_vectors(a.points, b.points) && same_vectors(a.rest, b.rest) && a.face_sizes == b.face_sizes &&
+           a.face_vertices == b.face_vertices;
+}
+
+/// Of objects that have keys, and so no matrix.
+bool same_transform(const Transform& a, const Transform& b) {
+    return same_vectors(std::array{a.scale, a.rotate, a.translate},
+                        std::array{b.scale, b.rotate, b.translate});
+}
+
+} // namespace
+
+MovingScene::MovingScene(SceneDescription moving) : moving_(std::move(moving)) {
+    const auto list = [&](const std::vector<ObjectDescription>& objects, std::int32_t group) {
+        for (std::size_t i = 0; i < objects.size(); ++i)
+            if (objects[i].keys.any())
+                objects_.push_back({group, static_cast<std::int32_t>(i)});
+    };
+    list(moving_.objects, -1);
+    for (std::size_t g = 0; g < moving_.groups.size(); ++g)
+        list(moving_.groups[g].objects, static_cast<std::int32_t>(g));
+    for (std::size_t m = 0; m < moving_.meshes.size(); ++m)
+        if (changes_shape(moving_.meshes[m]))
+            meshes_.push_back(m);
+}
+
+void MovingScene::go_to(double seconds) {
+    if (!std::exchange(begun_, false)) { // until this has ended well
+        begin(seconds);
+        begun_ = true;
+        return;
+    }
+    changes_.emplace();
+    for (const std::size_t mesh : meshes_)
+        move_mesh(mesh, seconds);
+    // What build_graph() makes of objects: of those of group g group g + 1 of the graph, of those of none the
+    // last placements of its first.
+    const std::size_t before = scene_.graph.groups.empty()
+                                   ? 0
+                                   : scene_.graph.groups.front().placements.size() - moving_.objects.size();
+    for (const auto& [group, object] : objects_)
+        if (group < 0)
+            move(posed_.objects[at(object)], moving_.objects[at(object)],
+                 {0, static_cast<std::int32_t>(before) + object}, seconds);
+        else
+            move(posed_.groups[at(group)].objects[at(object)], moving_.groups[at(group)].objects[at(object)],
+                 {group + 1, object}, seconds);
+    pose_view(posed_, moving_, seconds);
+    scene_.camera = posed_.camera;
+    scene_.lights = posed_.lights;
+    begun_ = true;
+}
+
+void MovingScene::begin(double seconds) {
+    changes_.reset();
+    posed_ = pose_at(moving_, seconds);
+    scene_ = build_scene(posed_);
+}
+
+void MovingScene::move(ObjectDescription& posed, const ObjectDescription& moving, const PlacementName& name,
+                       double seconds) {
+    const Transform transform = transform_at(moving, seconds);
+    if (same_transform(transform, posed.transform))
+        return;
+    posed.transform = transform;
+    scene_.graph.groups[at(name.group)].placements[at(name.placement)].local = transform;
+    changes_->placements.push_back(name);
+}
+
+void MovingScene::move_mesh(std::size_t mesh, double seconds) {
+    posed_.meshes[mesh] = mesh_at(moving_, mesh, seconds);
+    Mesh cage = build_mesh(posed_, mesh);
+    if (same_cage(cage, scene_.meshes[mesh]))
+        return;
+    scene_.meshes[mesh] = std::move(cage);
+    changes_->meshes.push_back(static_cast<int>(mesh));
+}
+
+} // namespace razor
