@@ -184,8 +184,8 @@ private:
         for (int j = 0; j < side; ++j)
             for (int i = 0; i < side; ++i) {
                 const int low = first + j * (side + 1) + i, high = low + side + 1;
-                // Of a triangle the third and fourth are one, and Embree's second triangle is none.
-                const std::array<int, 4> quad = triangle ? std::array{low, low + 1, high + 1, high + 1}
+                // From the corner that both triangles begin with; of a triangle Embree's second one is none.
+                const std::array<int, 4> quad = triangle ? std::array{high + 1, low, low + 1, low + 1}
                                                          : std::array{high, low, low + 1, high + 1};
                 mesh_.quads.insert(mesh_.quads.end(), quad.begin(), quad.end());
                 mesh_.triangles += triangle ? 1 : 2;

@@ -199,14 +199,16 @@ Surface surface_of(const RenderArguments& a, const Rays& r, const Found& f) {
     vint corner[4];
     for (int k = 0; k < 4; ++k)
         corner[k] = (gather(pointer<const std::int32_t>(a.quads + k), word, m) + first_vertex) * vint(3);
-    // Of a quad Embree hits (0, 1, 3), or beyond their diagonal (2, 3, 1).
+    // Of a quad Embree hits (0, 1, 3), or beyond their diagonal (2, 3, 1); of the corners that begin with 1 the same
+    // triangles are those of Razor, whose normals then agree in the signs of zeros.
     vmask second = (f.u + f.v) > vfloat(1.0F);
-    vint at_a = select(second, corner[2], corner[0]);
-    vint at_b = select(second, corner[3], corner[1]);
-    vint at_c = select(second, corner[1], corner[3]);
+    vint at_a = corner[1];
+    vint at_b = select(second, corner[2], corner[3]);
+    vint at_c = select(second, corner[3], corner[0]);
+    vfloat rest = (vfloat(1.0F) - f.u) - f.v;
     Hits h;
-    h.u = select(second, vfloat(1.0F) - f.u, f.u);
-    h.v = select(second, vfloat(1.0F) - f.v, f.v);
+    h.u = select(second, -rest, f.v);
+    h.v = select(second, vfloat(1.0F) - f.u, rest);
     h.t = f.t;
     Corners k;
     k.a = gather_three(a.positions, at_a, m);
