@@ -1,13 +1,15 @@
-// A frame as `razor render SCENE --frame N` makes it, by Embree, from pose to picture; with --razor in turn with Razor itself.
+// A frame as `razor render SCENE --frame N` makes it, by Embree, from pose to picture; with --razor in turn
+// with Razor itself.
 //   embree_frame configs/scenes/courtyard.toml --frame 40 --threads 2 --repeat 5 --razor --json times.json
-// Both find topology analysed: what a first frame takes beside is told apart. embree_frames.py chooses the level.
+// Both find topology analysed: what a first frame takes beside is told apart. embree_frames.py chooses the
+// level.
 #include "razor/image/output.h"
+#include "razor/image/output_file.h"
 #include "razor/native/render.h"
 #include "razor/program/arguments.h"
 #include "razor/program/scene_options.h"
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/error.h"
-#include "razor/image/output_file.h"
 #include "tests/benchmarks/embree/renderer.h"
 
 #include <fmt/core.h>
@@ -57,7 +59,8 @@ struct Command {
                        "Embree's instances")
             ->type_name("N");
         app.add_option("--most-triangles", most_triangles, "refuse to tessellate into more")->type_name("N");
-        app.add_option("--repeat", repeat, "measure N frames, after one that is not")->type_name("N");
+        app.add_option("--repeat", repeat, "measure N frames, after one that makes what later ones find")
+            ->type_name("N");
         app.add_flag("--razor", razor, "measure Razor's frame in turn, at its own levels of detail");
         app.add_option("-o,--output", output, "Embree's picture, .exr or .png")->type_name("FILE");
         app.add_option("--razor-output", razor_output, "Razor's picture")->type_name("FILE");
@@ -86,12 +89,9 @@ Scene with_levels(Scene scene) {
 
 Json figures(const baseline::Report& r, double pose, double processor) {
     const baseline::Seconds& s = r.seconds;
-    return {{"seconds", pose + s.all()},
-            {"processor_seconds", processor},
-            {"pose", pose + s.place},
-            {"tessellate", s.tessellate},
-            {"build", s.build},
-            {"trace", s.trace},
+    return {{"seconds", pose + s.all()}, {"processor_seconds", processor},
+            {"pose", pose + s.place},    {"tessellate", s.tessellate},
+            {"build", s.build},          {"trace", s.trace},
             {"topology", s.topology}};
 }
 
@@ -145,7 +145,7 @@ private:
 
 int run(const Command& c) {
     const baseline::Options options = c.options();
-    const int repeat = parse_whole("--repeat", c.repeat, {1, 1000000});
+    const int repeat = parse_whole("--repeat", c.repeat, {0, 1000000});
     for (const std::string& name : {c.output, c.razor_output})
         if (!name.empty())
             check_output(name);
@@ -164,7 +164,8 @@ int run(const Command& c) {
         const double pose = all.seconds(), processor = all.processor_seconds();
         film = renderer.render(scene, report);
         Json run = figures(report, pose, processor + report.seconds.processor);
-        fmt::print("{}Embree {:.3f} s: pose {:.3f}, tessellate {:.3f}, build {:.3f}, trace {:.3f}; processor {:.3f}; "
+        fmt::print("{}Embree {:.3f} s: pose {:.3f}, tessellate {:.3f}, build {:.3f}, trace {:.3f}; processor "
+                   "{:.3f}; "
                    "topology beside that {:.3f}\n",
                    n == 0 ? "first: " : "", run["seconds"].get<double>(), run["pose"].get<double>(),
                    report.seconds.tessellate, report.seconds.build, report.seconds.trace,
@@ -176,20 +177,22 @@ int run(const Command& c) {
         if (!ours)
             continue;
         run = ours->frame(moving, number, film);
-        fmt::print("{}Razor  {:.3f} s: pose {:.3f}, render {:.3f}; processor {:.3f}; topology in that {:.3f}\n",
-                   n == 0 ? "first: " : "", run["seconds"].get<double>(), run["pose"].get<double>(),
-                   run["render"].get<double>(), run["processor_seconds"].get<double>(),
-                   run["topology"].get<double>());
+        fmt::print(
+            "{}Razor  {:.3f} s: pose {:.3f}, render {:.3f}; processor {:.3f}; topology in that {:.3f}\n",
+            n == 0 ? "first: " : "", run["seconds"].get<double>(), run["pose"].get<double>(),
+            run["render"].get<double>(), run["processor_seconds"].get<double>(),
+            run["topology"].get<double>());
         if (n == repeat && !c.razor_output.empty())
             write_image(c.razor_output, film, {});
         if (n > 0)
             razor_runs.push_back(std::move(run));
     }
-    fmt::print("{} triangles, {} with instances; {} pieces of {} meshes and levels; {:.1f} MB of BVHs, {:.1f} MB of "
-               "vertices; {} rays\n",
-               report.triangles, report.instanced_triangles, report.pieces, report.grid_meshes,
-               static_cast<double>(report.bvh_bytes) / 1e6, static_cast<double>(report.vertex_bytes) / 1e6,
-               report.rays.camera + report.rays.light + report.rays.sky);
+    fmt::print(
+        "{} triangles, {} with instances; {} pieces of {} meshes and levels; {:.1f} MB of BVHs, {:.1f} MB of "
+        "vertices; {} rays\n",
+        report.triangles, report.instanced_triangles, report.pieces, report.grid_meshes,
+        static_cast<double>(report.bvh_bytes) / 1e6, static_cast<double>(report.vertex_bytes) / 1e6,
+        report.rays.camera + report.rays.light + report.rays.sky);
     if (!c.json.empty()) {
         Json all{{"frame", number}, {"embree", {{"made", what_was_made(report)}, {"runs", embree_runs}}}};
         if (ours)

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include <numeric>
 #include <algorithm>
+#include <numeric>
 
 namespace razor::baseline {
 namespace {
@@ -68,8 +68,8 @@ RTCGeometry EmbreeScenes::make_quads(const Geometry& g) const {
     rtcSetGeometryBuildQuality(geometry, quality_);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, g.positions,
                                g.position_bytes, 12, g.vertices);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, g.quads, g.quad_bytes, 16,
-                               g.quad_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, g.quads, g.quad_bytes,
+                               16, g.quad_count);
     rtcCommitGeometry(geometry);
     return geometry;
 }

@@ -66,8 +66,8 @@ private:
             for (int column = 0; column < strips; ++column) {
                 const std::array<std::int64_t, 2> pages = page(p, exponent, column, row);
                 const int vertices = (side + 1) * (side + 1);
-                mesh_.blocks.push_back(
-                    {pages[0], pages[1], row_floats(vertices), first_control, controls, mesh_.vertices, vertices});
+                mesh_.blocks.push_back({pages[0], pages[1], row_floats(vertices), first_control, controls,
+                                        mesh_.vertices, vertices});
                 add_quads(p, mesh_.vertices, side);
                 mesh_.vertices += vertices;
             }
@@ -114,7 +114,9 @@ private:
         return {first, 4};
     }
 
-    static std::int32_t row_floats(int vertices) { return (vertices + RAZOR_WIDTH - 1) / RAZOR_WIDTH * RAZOR_WIDTH; }
+    static std::int32_t row_floats(int vertices) {
+        return (vertices + RAZOR_WIDTH - 1) / RAZOR_WIDTH * RAZOR_WIDTH;
+    }
 
     /// Positions' and derivatives' weights; alike for all patches of a class.
     std::array<std::int64_t, 2> page(const PatchRecord& p, int exponent, int column, int row) {
@@ -130,7 +132,8 @@ private:
         return found->second;
     }
 
-    std::array<std::int64_t, 2> limit_page(const FaceRecord& face, int sub, int exponent, int column, int row) {
+    std::array<std::int64_t, 2> limit_page(const FaceRecord& face, int sub, int exponent, int column,
+                                           int row) {
         std::array<std::int64_t, 2> at{};
         for (std::size_t k = 0; k < 2; ++k) {
             const PageKey key{.face_class = face.face_class,
@@ -147,7 +150,8 @@ private:
         return at;
     }
 
-    std::array<std::int64_t, 2> bilinear_page(const PatchRecord& p, int size, int exponent, int column, int row) {
+    std::array<std::int64_t, 2> bilinear_page(const PatchRecord& p, int size, int exponent, int column,
+                                              int row) {
         const CornerWeights corner = is_part(p) ? sub_face_corners(p.sub, size) : quad_corners();
         const std::size_t controls = corner[0].size();
         const int side = std::min(block_quads, 1 << exponent);
@@ -199,7 +203,9 @@ private:
             mesh_.welds.push_back({vertex, first});
     }
 
-    std::int32_t& on_curve(int curve, int step) { return curve_vertices_[(index(curve) << mesh_.level) + index(step)]; }
+    std::int32_t& on_curve(int curve, int step) {
+        return curve_vertices_[(index(curve) << mesh_.level) + index(step)];
+    }
 
     void weld_corners(const PatchRecord& p, const std::array<int, 4>& vertex) {
         for (std::size_t k = 0; k < 4; ++k) {

@@ -1,6 +1,6 @@
-// A mesh as grids of one level: every patch 2^n x 2^n quads (sub-faces of n-gons 2^(n-1) x 2^(n-1)), flat patches
-// of bilinear meshes one. What depends on topology alone is made once: which vertices there are, how each follows
-// from control points (limit stencils by OpenSubdiv), how quads join them.
+// A mesh as grids of one level: every patch 2^n x 2^n quads (sub-faces of n-gons 2^(n-1) x 2^(n-1)), flat
+// patches of bilinear meshes one. What depends on topology alone is made once: which vertices there are, how
+// each follows from control points (limit stencils by OpenSubdiv), how quads join them.
 #pragma once
 
 #include "razor/scene/scene.h"
@@ -20,12 +20,12 @@ struct GridMesh {
     std::vector<GridBlock> blocks;
     std::vector<float> weights;
     std::vector<std::int32_t> controls;
-    std::vector<std::int32_t> quads; // four vertices each, for RTC_GEOMETRY_TYPE_QUAD: cut from the second to the
-                                     // fourth, as Razor cuts from (0, 0) to (1, 1)
+    std::vector<std::int32_t> quads; // four vertices each, for RTC_GEOMETRY_TYPE_QUAD: cut from the second to
+                                     // the fourth, as Razor cuts from (0, 0) to (1, 1)
     std::int64_t triangles = 0;
     std::int32_t vertices = 0;
-    /// Where patches meet all have the first one's vertex, so that there are no cracks: `to` becomes `from`. Where
-    /// a flat patch meets a finer one, vertices in between lie on its edge but for rounding.
+    /// Where patches meet all have the first one's vertex, so that there are no cracks: `to` becomes `from`.
+    /// Where a flat patch meets a finer one, vertices in between lie on its edge but for rounding.
     struct Weld {
         std::int32_t to, from;
     };

@@ -112,7 +112,8 @@ Found find_closest(const RenderArguments& a, const Rays& r) {
         if (any_of(valid + packet * i))
             rtcIntersect16(valid + packet * i, a.scene, &context, &rays[i]);
         for (int l = 0; l < packet; ++l) {
-            const unsigned id = hit.instID[0][l] != RTC_INVALID_GEOMETRY_ID ? hit.instID[0][l] : hit.geomID[l];
+            const unsigned id =
+                hit.instID[0][l] != RTC_INVALID_GEOMETRY_ID ? hit.instID[0][l] : hit.geomID[l];
             piece[packet * i + l] = static_cast<std::int32_t>(id);
             quad[packet * i + l] = static_cast<std::int32_t>(hit.primID[l]);
         }
@@ -199,8 +200,8 @@ Surface surface_of(const RenderArguments& a, const Rays& r, const Found& f) {
     vint corner[4];
     for (int k = 0; k < 4; ++k)
         corner[k] = (gather(pointer<const std::int32_t>(a.quads + k), word, m) + first_vertex) * vint(3);
-    // Of a quad Embree hits (0, 1, 3), or beyond their diagonal (2, 3, 1); of the corners that begin with 1 the same
-    // triangles are those of Razor, whose normals then agree in the signs of zeros.
+    // Of a quad Embree hits (0, 1, 3), or beyond their diagonal (2, 3, 1); of the corners that begin with 1
+    // the same triangles are those of Razor, whose normals then agree in the signs of zeros.
     vmask second = (f.u + f.v) > vfloat(1.0F);
     vint at_a = corner[1];
     vint at_b = select(second, corner[2], corner[3]);
@@ -288,11 +289,11 @@ LightRays sky_rays(const Surface& s, const vint& sample) {
     return l;
 }
 
-/// As gather_light() there: packets hold neighbouring hits, four samples of each. `sample` makes the rays of samples
-/// by number.
+/// As gather_light() there: packets hold neighbouring hits, four samples of each. `sample` makes the rays of
+/// samples by number.
 template <class Sample>
-vfloat gather_rays(const RenderArguments& a, const Surface& s, int samples, unsigned flags, std::int64_t& rays,
-                   Sample sample) {
+vfloat gather_rays(const RenderArguments& a, const Surface& s, int samples, unsigned flags,
+                   std::int64_t& rays, Sample sample) {
     constexpr int per_hit = 4, hits_per_packet = isa::width / per_hit;
     alignas(64) lanes sums = {};
     vint order = compress(lane_index(), s.hit);
@@ -358,10 +359,9 @@ void add_sample(const RenderArguments& a, const Rays& r, const vint& pixel, int 
     for (int i = 0; i < a.light_count && view.light_samples > 0; ++i) {
         const LightSource& light = a.lights[i];
         const vint first(number * view.light_samples);
-        vfloat weight = gather_rays(a, s, view.light_samples, RTC_INTERSECT_CONTEXT_FLAG_NONE, counts.light,
-                                    [&](const Surface& here, const vint& k) {
-                                        return light_rays(light, here, k + first);
-                                    });
+        vfloat weight = gather_rays(
+            a, s, view.light_samples, RTC_INTERSECT_CONTEXT_FLAG_NONE, counts.light,
+            [&](const Surface& here, const vint& k) { return light_rays(light, here, k + first); });
         sums.beauty = sums.beauty + select(f.hit, reflected(s, weight, light.radiance), none_yet);
     }
     if (view.sky_samples > 0) {
@@ -374,8 +374,8 @@ void add_sample(const RenderArguments& a, const Rays& r, const vint& pixel, int 
 }
 
 /// As camera_rays() of razor/kernels/render.h.
-Rays rays_from_camera(const FrameView& view, const vint& column, const vint& row, const vint& pixel, int sample,
-                      const vmask& active) {
+Rays rays_from_camera(const FrameView& view, const vint& column, const vint& row, const vint& pixel,
+                      int sample, const vmask& active) {
     vpoint on = sample_square(pixel, vint(sample), dimension_film);
     vfloat x = to_float(column) + on.u;
     vfloat y = to_float(row) + on.v;
@@ -407,7 +407,8 @@ void put_pixels(const RenderArguments& a, const Sums& sums, const vint& pixel, c
     vvec albedo = sums.albedo * share;
     const vfloat* planes[film_planes] = {&beauty.x, &beauty.y, &beauty.z, &normal.x, &normal.y,
                                          &normal.z, &depth,    &albedo.x, &albedo.y, &albedo.z};
-    const std::size_t plane = static_cast<std::size_t>(a.view->width) * static_cast<std::size_t>(a.view->height);
+    const std::size_t plane =
+        static_cast<std::size_t>(a.view->width) * static_cast<std::size_t>(a.view->height);
     for (std::size_t k = 0; k < film_planes; ++k)
         scatter(pointer<float>(a.film + k * plane), pixel, *planes[k], m);
 }

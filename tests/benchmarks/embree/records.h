@@ -74,9 +74,9 @@ struct Kernels {
 
 } // namespace razor::baseline
 
-#define RAZOR_BASELINE_TARGET(target)                                                                                  \
-    namespace razor::target {                                                                                          \
-    extern const razor::baseline::Kernels baseline_kernels;                                                            \
+#define RAZOR_BASELINE_TARGET(target)                                                                        \
+    namespace razor::target {                                                                                \
+    extern const razor::baseline::Kernels baseline_kernels;                                                  \
     }
 RAZOR_BASELINE_TARGET(plain)
 RAZOR_BASELINE_TARGET(sse4)

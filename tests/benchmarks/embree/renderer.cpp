@@ -80,7 +80,8 @@ struct Part {
 };
 
 std::array<double, 9> cofactors(const glm::dmat3& m) {
-    const glm::dvec3 rows[3] = {{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
+    const glm::dvec3 rows[3] = {
+        {m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
     std::array<double, 9> c{};
     for (std::size_t k = 0; k < 3; ++k) {
         const glm::dvec3 row = glm::cross(rows[(k + 1) % 3], rows[(k + 2) % 3]);
@@ -103,7 +104,8 @@ struct Renderer::Impl {
     std::vector<Part> parts;
     std::vector<Piece> pieces;
 
-    explicit Impl(const Options& o) : options(o), kernels(choose_kernels(o.isa)), scenes(o.threads, o.quality) {}
+    explicit Impl(const Options& o)
+        : options(o), kernels(choose_kernels(o.isa)), scenes(o.threads, o.quality) {}
 
     void prepare(const Scene& scene) {
         bool same = scene.meshes.size() == meshes.size();
@@ -142,14 +144,16 @@ struct Renderer::Impl {
         std::int64_t triangles = 0;
         for (Part& part : parts) {
             triangles += part.grid->triangles;
-            const auto [at, fresh] = first_quad.try_emplace(part.grid, static_cast<std::int32_t>(quads.size() / 4));
+            const auto [at, fresh] =
+                first_quad.try_emplace(part.grid, static_cast<std::int32_t>(quads.size() / 4));
             if (fresh)
                 quads.insert(quads.end(), part.grid->quads.begin(), part.grid->quads.end());
             part.first_quad = at->second;
         }
         if (triangles > options.most_triangles)
-            throw UserError(fmt::format("{} million triangles are more than --most-triangles allows; take a coarser level",
-                                        triangles / 1'000'000));
+            throw UserError(fmt::format(
+                "{} million triangles are more than --most-triangles allows; take a coarser level",
+                triangles / 1'000'000));
     }
 
     /// Control points of the parts, pieces of the top scene, and room for vertices.
@@ -192,7 +196,8 @@ struct Renderer::Impl {
                 p.linear[3 * k + c] = static_cast<float>(instance.linear[c][k]);
                 p.cofactors[3 * k + c] = static_cast<float>(turned[static_cast<std::size_t>(3 * k + c)]);
             }
-            p.shift[k] = static_cast<float>(static_cast<double>(instance.origin[k]) + static_cast<double>(instance.offset[k]));
+            p.shift[k] = static_cast<float>(static_cast<double>(instance.origin[k]) +
+                                            static_cast<double>(instance.offset[k]));
         }
         glm::vec3 albedo(0.7F);
         const auto material = static_cast<std::size_t>(instance.material);
@@ -246,8 +251,10 @@ struct Renderer::Impl {
     RayCounts trace(const Scene& scene, const SceneGeometry& geometry, std::vector<float>& film) {
         const FrameView view = view_of_scene(scene, geometry.origin);
         const std::vector<LightSource> lights = lights_of_scene(scene, geometry.origin);
-        const RenderArguments arguments{scenes.top(),     &view,          lights.data(),  static_cast<int>(lights.size()),
-                                        pieces.data(),    positions.data(), normals.data(), quads.data(),
+        const RenderArguments arguments{scenes.top(),   &view,
+                                        lights.data(),  static_cast<int>(lights.size()),
+                                        pieces.data(),  positions.data(),
+                                        normals.data(), quads.data(),
                                         film.data()};
         const auto along = [](int pixels) { return (pixels + tile_side - 1) / tile_side; };
         std::vector<RayCounts> counts(static_cast<std::size_t>(options.threads));
@@ -272,7 +279,8 @@ Film Renderer::render(const Scene& given, Report& report) {
     Impl& r = *impl_;
     const Scene& scene = given;
     if (frame_unit(scene) != 1)
-        throw UserError(fmt::format("{}: the baseline renders scenes of 2^-10 to 2^20 units only", scene.name));
+        throw UserError(
+            fmt::format("{}: the baseline renders scenes of 2^-10 to 2^20 units only", scene.name));
     Seconds& s = report.seconds = {};
     auto begin = Clock::now();
     r.prepare(scene);

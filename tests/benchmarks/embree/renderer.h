@@ -1,4 +1,5 @@
-// The frame that Razor renders, by Embree: cages tessellated at fixed levels, BVHs built anew, packets of sixteen.
+// The frame that Razor renders, by Embree: cages tessellated at fixed levels, BVHs built anew, packets of
+// sixteen.
 #pragma once
 
 #include "razor/image/image.h"
@@ -17,8 +18,8 @@ struct Options {
     std::string isa = "auto"; // of tessellation and shading; Embree takes what it likes best
     Quality quality = Quality::medium;
     int finer = 0; // see levels_of()
-    /// Meshes whose instances have no more triangles together than this are drawn as so many meshes of their own,
-    /// whose rays need no transform; larger ones once, by instances.
+    /// Meshes whose instances have no more triangles together than this are drawn as so many meshes of their
+    /// own, whose rays need no transform; larger ones once, by instances.
     std::int64_t flatten = 0;
     std::int64_t most_triangles = 100'000'000; // of all that is tessellated
 };

@@ -65,7 +65,8 @@ std::vector<LightSource> lights_of_scene(const Scene& scene, const glm::dvec3& o
         put(l.edge_u, light.edge_u);
         put(l.edge_v, light.edge_v);
         put(l.normal, normal / area);
-        put(l.radiance, glm::dvec3(light.radiance) * (area / (pi * std::max(scene.settings.light_samples, 1))));
+        put(l.radiance,
+            glm::dvec3(light.radiance) * (area / (pi * std::max(scene.settings.light_samples, 1))));
         // Of the first light 2, of the others those after the lens'.
         l.dimension = n == 0 ? 2 : 4 + static_cast<int>(n);
     }

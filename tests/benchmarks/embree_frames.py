@@ -1,0 +1,199 @@
+#!/usr/bin/python3
+"""A frame of each scene by Razor and by Embree, pose to picture with every build, in turn.
+
+    tests/benchmarks/embree_frames.py configs/scenes/*.toml --frame 40
+    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --levels=-6:0 --pictures build/pictures
+
+Embree draws the same scene, through the same camera, with the same samples of film, lens, lights and sky and the same shading
+(tests/benchmarks/embree). It gets every advantage that keeps the frame what it is: cages are tessellated at fixed levels, one for
+each instance by its nearest point (--lod object) or one for each mesh by the nearest of them (--lod fixed), K levels beyond what
+Razor's level of that name has; the lowest K is taken whose picture is no further from the reference than Razor's. The reference is
+Razor's picture at a quarter of the edge length (--reference), or with --reference-finer K Embree's at that K; samples are the same, so that pictures differ by geometry
+alone, but for last bits and the few rays that they turn: errors up to --least-error count as none. Of that K
+Embree then draws instances as such and flattened, with BVHs of each --quality, and its fastest way is measured in turn with Razor.
+
+Seconds are medians of --repeat frames (topology analysed, weights of limit points made); in brackets the shortest and longest; processor seconds are
+of all threads. Megabytes: what a frame builds (vertices and BVHs; grids, kd-trees and lists), and what outlives it (weights of limit points).
+"""
+import argparse
+import json
+import os
+import shutil
+import statistics
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../analysis/levels"))
+import view  # noqa: E402
+
+
+def read_json(name):
+    with open(name) as file:
+        return json.load(file)
+
+
+class Scene:
+    """One scene's pictures and figures; pictures that are there already are kept."""
+
+    def __init__(self, options, scene, folder):
+        self.options, self.scene, self.folder = options, scene, folder
+        self.name = os.path.basename(scene).removesuffix(".toml")
+        self.frame = [scene, "--frame", str(options.frame), "--size", options.size, *options.more]
+
+    def file(self, what):
+        return os.path.join(self.folder, f"{self.name}_{what}")
+
+    def razor_picture(self, what, *more):
+        picture = self.file(what + ".exr")
+        if not os.path.exists(picture):
+            view.run([self.options.razor, "render", *self.frame, "--threads", str(self.options.threads), "--quiet",
+                      "-o", picture, *more])
+        return picture
+
+    def embree(self, *more):
+        """Figures of the baseline."""
+        figures = self.file("figures.json")
+        view.run([self.options.embree, *self.frame, "--threads", str(self.options.threads), "--lod", self.options.lod,
+                  "--json", figures, *more])
+        return read_json(figures)
+
+    def embree_picture(self, finer):
+        picture = self.file(f"embree_{self.options.lod}_{finer}.exr")
+        if not os.path.exists(picture):
+            self.embree("--finer", str(finer), "--repeat", "0", "-o", picture)
+        return picture
+
+    def error(self, picture, reference):
+        figures = self.file("compare.json")
+        view.run([self.options.razor, "compare", picture, reference, "--json", figures])
+        found = read_json(figures)
+        return found["rmse"], found["flip"]["mean"]
+
+
+def choose(scene):
+    """The lowest K whose error is not above Razor's: errors of Razor and by K."""
+    options = scene.options
+    if options.reference_finer is None:
+        reference = scene.razor_picture("reference", "--edge-pixels", str(options.reference))
+    else:
+        reference = scene.embree_picture(options.reference_finer)
+    ours = scene.error(scene.razor_picture("razor"), reference)
+    errors = {}
+    for finer in range(options.levels[0], options.levels[1] + 1):
+        errors[finer] = scene.error(scene.embree_picture(finer), reference)
+        if errors[finer][0] <= max(ours[0], options.least_error):
+            return finer, ours, errors
+    view.fail(f"{scene.scene}: no level up to {options.levels[1]} is as near to the reference as Razor; let --levels end later")
+
+
+def median(runs, key):
+    values = [run[key] for run in runs]
+    return statistics.median(values), min(values), max(values)
+
+
+def fastest_way(scene, finer):
+    options = scene.options
+    ways = [["--quality", quality, "--flatten", str(flatten)] for quality in options.quality for flatten in options.flatten]
+    seconds = []
+    for way in ways:
+        made = scene.embree("--finer", str(finer), "--repeat", str(options.tries), *way)
+        seconds.append(median(made["embree"]["runs"], "processor_seconds")[0])
+    return ways[seconds.index(min(seconds))]
+
+
+def study(options, path, folder):
+    scene = Scene(options, path, folder)
+    finer, ours, errors = choose(scene)
+    way = fastest_way(scene, finer)
+    made = scene.embree("--finer", str(finer), "--repeat", str(options.repeat), "--razor", *way)
+    return {"scene": scene.name, "lod": options.lod, "finer": finer, "way": " ".join(way),
+            "rmse": {"razor": ours[0], "embree": {k: e[0] for k, e in errors.items()}},
+            "flip": {"razor": ours[1], "embree": {k: e[1] for k, e in errors.items()}},
+            "embree": made["embree"], "razor": made["razor"]}
+
+
+def spread(runs, key):
+    middle, low, high = median(runs, key)
+    return f"{middle:8.3f} [{low:.3f} {high:.3f}]"
+
+
+def show(row):
+    e, r = row["embree"], row["razor"]
+    finer = row["finer"]
+    errors = "  ".join(f"{k}: {v:.5f}" for k, v in row["rmse"]["embree"].items())
+    print(f"{row['scene']}: RMSE of Razor {row['rmse']['razor']:.5f}, of Embree by level {errors}; FLIP "
+          f"{row['flip']['razor']:.5f} and {row['flip']['embree'][finer]:.5f}")
+    print(f"  Embree, {row['lod']} {finer:+d}, {row['way']}: {e['made']['triangles']:,} triangles, "
+          f"{e['made']['instanced_triangles']:,} with instances; Razor made {r['made']['triangles']:,}")
+    print(f"  {'':8} {'seconds':24} {'processor':24} {'pose':>7} {'tessel.':>7} {'build':>7} {'trace':>7} {'MB a frame':>10} {'MB kept':>8}")
+    part = {key: median(e["runs"], key)[0] for key in ("pose", "tessellate", "build", "trace")}
+    print(f"  {'Embree':8} {spread(e['runs'], 'seconds'):24} {spread(e['runs'], 'processor_seconds'):24} {part['pose']:7.3f} "
+          f"{part['tessellate']:7.3f} {part['build']:7.3f} {part['trace']:7.3f} "
+          f"{(e['made']['bvh_bytes'] + e['made']['vertex_bytes']) / 1e6:10.1f} {e['made']['topology_bytes'] / 1e6:8.1f}")
+    part = {key: median(r["runs"], key)[0] for key in ("pose", "render")}
+    print(f"  {'Razor':8} {spread(r['runs'], 'seconds'):24} {spread(r['runs'], 'processor_seconds'):24} {part['pose']:7.3f} "
+          f"{'':>7} {part['render']:>15.3f} {r['made']['bytes'] / 1e6:10.1f} {r['made']['page_bytes'] / 1e6:8.1f}")
+    ratios = [median(r["runs"], key)[0] / median(e["runs"], key)[0] for key in ("seconds", "processor_seconds")]
+    print(f"  Razor takes {ratios[0]:.2f} times Embree's seconds, {ratios[1]:.2f} times its processor's", flush=True)
+
+
+def integers(text):
+    try:
+        return [int(x) for x in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' are no numbers; write for example 0,1000000") from None
+
+
+def levels(text):
+    ends = text.split(":")
+    try:
+        first, last = (int(x) for x in ends)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is no span of levels; write for example -6:0") from None
+    return first, last
+
+
+def read_options():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+    parser.add_argument("scenes", nargs="+", metavar="SCENE.toml")
+    parser.add_argument("--frame", type=int, default=0)
+    parser.add_argument("--size", default="1024x1024")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--repeat", type=int, default=5, help="frames of each that count")
+    parser.add_argument("--tries", type=int, default=1, help="frames of each way of Embree's, to find its fastest")
+    parser.add_argument("--lod", choices=("object", "fixed"), default="object", help="Embree's levels are those of instances or of meshes")
+    parser.add_argument("--levels", type=levels, default=(-8, 1), metavar="FIRST:LAST", help="K to try, the coarsest first")
+    parser.add_argument("--reference", type=float, default=0.25, metavar="PIXELS", help="edges of Razor's reference")
+    parser.add_argument("--reference-finer", type=int, metavar="K", help="make the reference by Embree at this K")
+    parser.add_argument("--least-error", type=float, default=0.0003, metavar="RMSE", help="what pictures of one geometry may differ by")
+    parser.add_argument("--quality", default="low,medium", type=lambda text: text.split(","), help="of Embree's BVHs: low, medium, high")
+    parser.add_argument("--flatten", default=[0, 100_000_000], type=integers, metavar="N,...", help="triangles up to which instances are flattened")
+    parser.add_argument("--pictures", metavar="FOLDER", help="keep pictures there, and take those that are; of the same options")
+    parser.add_argument("--razor", help="the renderer; without it, that of the PATH or of build/release")
+    parser.add_argument("--embree", default="build/release/tests/benchmarks/embree_frame", metavar="embree_frame")
+    parser.add_argument("--json", metavar="FILE")
+    options, options.more = parser.parse_known_args()
+    options.razor = options.razor or shutil.which("razor") or "build/release/razor/program/razor"
+    return options
+
+
+def main():
+    options = read_options()
+    with tempfile.TemporaryDirectory() as folder:
+        if options.pictures:
+            os.makedirs(options.pictures, exist_ok=True)
+        rows = []
+        for scene in options.scenes:
+            rows.append(study(options, scene, options.pictures or folder))
+            show(rows[-1])
+    if options.json:
+        try:
+            with open(options.json, "w") as file:
+                json.dump(rows, file, indent=1)
+                file.write("\n")
+        except OSError as error:
+            view.fail(f"{options.json}: {error.strerror}; give a file in a folder that is there")
+
+
+if __name__ == "__main__":
+    view.run_program(main)
