@@ -39,8 +39,8 @@ struct Stopwatch {
 
 struct Command {
     SceneOptions scene;
-    std::string threads = "2", isa = "auto", quality = "medium", finer = "0", flatten = "0", repeat = "1",
-                most_triangles = "100000000", output, razor_output, json;
+    std::string threads = "2", isa = "auto", quality = "medium", levels = "instance", finer = "0",
+                flatten = "0", repeat = "1", most_triangles = "100000000", output, razor_output, json;
     bool razor = false;
 
     void add_to(CLI::App& app) {
@@ -50,10 +50,12 @@ struct Command {
             ->type_name("NAME");
         app.add_option("--quality", quality, "of Embree's BVHs: low (Morton codes), medium or high")
             ->type_name("NAME");
-        app.add_option("--finer", finer,
-                       "each mesh, or with --lod object each instance, so many levels finer than its nearest "
-                       "point asks for; negative: coarser")
-            ->type_name("K");
+        app.add_option(
+               "--levels", levels,
+               "what has a level of its own: instance, by its nearest point, or mesh, by the nearest of its "
+               "instances; as --lod object and fixed of Razor's")
+            ->type_name("NAME");
+        app.add_option("--finer", finer, "all so many levels finer; negative: coarser")->type_name("K");
         app.add_option("--flatten", flatten,
                        "meshes whose instances have at most so many triangles together are drawn without "
                        "Embree's instances")
@@ -73,19 +75,14 @@ struct Command {
         o.threads = parse_whole("--threads", threads, {1, 1024});
         o.isa = isa;
         o.quality = static_cast<baseline::Quality>(parse_choice("--quality", quality, qualities));
+        constexpr std::array<std::string_view, 2> levels_words{"instance", "mesh"};
+        o.lod = parse_choice("--levels", levels, levels_words) == 0 ? Lod::object : Lod::fixed;
         o.finer = parse_whole("--finer", finer, {-20, 20});
         o.flatten = parse_whole("--flatten", flatten, {0, 1000000000});
         o.most_triangles = parse_whole("--most-triangles", most_triangles, {1, 1000000000});
         return o;
     }
 };
-
-/// The scene as the options have it, but levels of detail of one kind: one a mesh, or one an instance.
-Scene with_levels(Scene scene) {
-    if (!one_level(scene.settings.lod.lod))
-        scene.settings.lod = Lod::object;
-    return scene;
-}
 
 Json figures(const baseline::Report& r, double pose, double processor) {
     const baseline::Seconds& s = r.seconds;
@@ -160,7 +157,7 @@ int run(const Command& c) {
     for (int n = 0; n <= repeat; ++n) {
         Film film;
         const Stopwatch all;
-        const Scene scene = with_levels(build_scene(pose_of_frame(moving, number)));
+        const Scene scene = build_scene(pose_of_frame(moving, number));
         const double pose = all.seconds(), processor = all.processor_seconds();
         film = renderer.render(scene, report);
         Json run = figures(report, pose, processor + report.seconds.processor);

@@ -2,12 +2,12 @@
 """A frame of each scene by Razor and by Embree, pose to picture with every build, in turn.
 
     tests/benchmarks/embree_frames.py configs/scenes/*.toml --frame 40
-    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --levels=-6:0 --pictures build/pictures
+    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --finer=-6:0 --pictures build/pictures
 
 Embree draws the same scene, through the same camera, with the same samples of film, lens, lights and sky and the same shading
 (tests/benchmarks/embree). It gets every advantage that keeps the frame what it is: cages are tessellated at fixed levels, one for
-each instance by its nearest point (--lod object) or one for each mesh by the nearest of them (--lod fixed), K levels beyond what
-Razor's level of that name has; the lowest K is taken whose picture is no further from the reference than Razor's. The reference is
+each instance by its nearest point (edges of a pixel there) or, with --levels mesh, one for each mesh by the nearest of them, K
+levels beyond that; the lowest K is taken whose picture is no further from the reference than Razor's. The reference is
 Razor's picture at a quarter of the edge length (--reference), or with --reference-finer K Embree's at that K; samples are the same, so that pictures differ by geometry
 alone, but for last bits and the few rays that they turn: errors up to --least-error count as none. Of that K
 Embree then draws instances as such and flattened, with BVHs of each --quality, and its fastest way is measured in turn with Razor.
@@ -53,12 +53,12 @@ class Scene:
     def embree(self, *more):
         """Figures of the baseline."""
         figures = self.file("figures.json")
-        view.run([self.options.embree, *self.frame, "--threads", str(self.options.threads), "--lod", self.options.lod,
+        view.run([self.options.embree, *self.frame, "--threads", str(self.options.threads), "--levels", self.options.levels,
                   "--json", figures, *more])
         return read_json(figures)
 
     def embree_picture(self, finer):
-        picture = self.file(f"embree_{self.options.lod}_{finer}.exr")
+        picture = self.file(f"embree_{self.options.levels}_{finer}.exr")
         if not os.path.exists(picture):
             self.embree("--finer", str(finer), "--repeat", "0", "-o", picture)
         return picture
@@ -79,11 +79,11 @@ def choose(scene):
         reference = scene.embree_picture(options.reference_finer)
     ours = scene.error(scene.razor_picture("razor"), reference)
     errors = {}
-    for finer in range(options.levels[0], options.levels[1] + 1):
+    for finer in range(options.finer[0], options.finer[1] + 1):
         errors[finer] = scene.error(scene.embree_picture(finer), reference)
         if errors[finer][0] <= max(ours[0], options.least_error):
             return finer, ours, errors
-    view.fail(f"{scene.scene}: no level up to {options.levels[1]} is as near to the reference as Razor; let --levels end later")
+    view.fail(f"{scene.scene}: no level up to {options.finer[1]} is as near to the reference as Razor; let --finer end later")
 
 
 def median(runs, key):
@@ -106,7 +106,7 @@ def study(options, path, folder):
     finer, ours, errors = choose(scene)
     way = fastest_way(scene, finer)
     made = scene.embree("--finer", str(finer), "--repeat", str(options.repeat), "--razor", *way)
-    return {"scene": scene.name, "lod": options.lod, "finer": finer, "way": " ".join(way),
+    return {"scene": scene.name, "levels": options.levels, "finer": finer, "way": " ".join(way),
             "rmse": {"razor": ours[0], "embree": {k: e[0] for k, e in errors.items()}},
             "flip": {"razor": ours[1], "embree": {k: e[1] for k, e in errors.items()}},
             "embree": made["embree"], "razor": made["razor"]}
@@ -123,7 +123,7 @@ def show(row):
     errors = "  ".join(f"{k}: {v:.5f}" for k, v in row["rmse"]["embree"].items())
     print(f"{row['scene']}: RMSE of Razor {row['rmse']['razor']:.5f}, of Embree by level {errors}; FLIP "
           f"{row['flip']['razor']:.5f} and {row['flip']['embree'][finer]:.5f}")
-    print(f"  Embree, {row['lod']} {finer:+d}, {row['way']}: {e['made']['triangles']:,} triangles, "
+    print(f"  Embree, each {row['levels']} {finer:+d}, {row['way']}: {e['made']['triangles']:,} triangles, "
           f"{e['made']['instanced_triangles']:,} with instances; Razor made {r['made']['triangles']:,}")
     print(f"  {'':8} {'seconds':24} {'processor':24} {'pose':>7} {'tessel.':>7} {'build':>7} {'trace':>7} {'MB a frame':>10} {'MB kept':>8}")
     part = {key: median(e["runs"], key)[0] for key in ("pose", "tessellate", "build", "trace")}
@@ -144,7 +144,7 @@ def integers(text):
         raise argparse.ArgumentTypeError(f"'{text}' are no numbers; write for example 0,1000000") from None
 
 
-def levels(text):
+def span(text):
     ends = text.split(":")
     try:
         first, last = (int(x) for x in ends)
@@ -161,8 +161,8 @@ def read_options():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--repeat", type=int, default=5, help="frames of each that count")
     parser.add_argument("--tries", type=int, default=1, help="frames of each way of Embree's, to find its fastest")
-    parser.add_argument("--lod", choices=("object", "fixed"), default="object", help="Embree's levels are those of instances or of meshes")
-    parser.add_argument("--levels", type=levels, default=(-8, 1), metavar="FIRST:LAST", help="K to try, the coarsest first")
+    parser.add_argument("--levels", choices=("instance", "mesh"), default="instance", help="what Embree tessellates at a level of its own")
+    parser.add_argument("--finer", type=span, default=(-8, 1), metavar="FIRST:LAST", help="K to try, the coarsest first")
     parser.add_argument("--reference", type=float, default=0.25, metavar="PIXELS", help="edges of Razor's reference")
     parser.add_argument("--reference-finer", type=int, metavar="K", help="make the reference by Embree at this K")
     parser.add_argument("--least-error", type=float, default=0.0003, metavar="RMSE", help="what pictures of one geometry may differ by")

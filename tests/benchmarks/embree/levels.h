@@ -12,8 +12,8 @@ namespace razor::baseline {
 double mean_edge(const Mesh& mesh);
 
 /// For each instance the n of GridMesh: the mean edge, cut into 2^n, comes nearest in the logarithm to the
-/// length that the frame asks for of the instance (with --lod object; of all of its mesh with --lod fixed),
-/// which with object:K and fixed:K is 2^K times as long. `finer`: steps beyond that.
+/// length that the frame asks for of the instance (Lod::object), or of all of its mesh (Lod::fixed). `finer`:
+/// steps beyond that.
 std::vector<int> levels_of(const Scene& scene, const SceneGeometry& geometry, int finer);
 
 } // namespace razor::baseline

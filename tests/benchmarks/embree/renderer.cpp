@@ -275,9 +275,9 @@ struct Renderer::Impl {
 Renderer::Renderer(const Options& options) : impl_(std::make_unique<Impl>(options)) {}
 Renderer::~Renderer() = default;
 
-Film Renderer::render(const Scene& given, Report& report) {
+Film Renderer::render(Scene scene, Report& report) {
     Impl& r = *impl_;
-    const Scene& scene = given;
+    scene.settings.lod = r.options.lod;
     if (frame_unit(scene) != 1)
         throw UserError(
             fmt::format("{}: the baseline renders scenes of 2^-10 to 2^20 units only", scene.name));

@@ -17,7 +17,8 @@ struct Options {
     int threads = 1;
     std::string isa = "auto"; // of tessellation and shading; Embree takes what it likes best
     Quality quality = Quality::medium;
-    int finer = 0; // see levels_of()
+    Lod lod = Lod::object; // one level each instance, or (Lod::fixed) each mesh; whatever the scene says
+    int finer = 0;         // see levels_of()
     /// Meshes whose instances have no more triangles together than this are drawn as so many meshes of their
     /// own, whose rays need no transform; larger ones once, by instances.
     std::int64_t flatten = 0;
@@ -53,7 +54,7 @@ public:
     Renderer& operator=(const Renderer&) = delete;
 
     /// Everything but topology is made anew. Throws UserError for scenes that cannot be rendered.
-    Film render(const Scene& scene, Report& report);
+    Film render(Scene scene, Report& report);
 
 private:
     struct Impl;
