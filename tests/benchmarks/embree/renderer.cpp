@@ -1,6 +1,5 @@
 #include "tests/benchmarks/embree/renderer.h"
 
-#include "isa/cpu.h"
 #include "razor/frame/layout.h"
 #include "razor/frame/scene_geometry.h"
 #include "razor/frame/unit.h"
@@ -9,6 +8,7 @@
 #include "tests/benchmarks/embree/grid_mesh.h"
 #include "tests/benchmarks/embree/levels.h"
 #include "tests/benchmarks/embree/parallel.h"
+#include "tests/benchmarks/embree/tessellation.h"
 #include "tests/benchmarks/embree/view.h"
 
 #include <fmt/core.h>
@@ -25,29 +25,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-const Kernels& choose_kernels(const std::string& isa) {
-    std::vector<const Kernels*> there;
-#ifdef RAZOR_HAS_PLAIN
-    there.push_back(&plain::baseline_kernels);
-#endif
-#ifdef RAZOR_HAS_SSE4
-    there.push_back(&sse4::baseline_kernels);
-#endif
-#ifdef RAZOR_HAS_AVX2
-    there.push_back(&avx2::baseline_kernels);
-#endif
-#ifdef RAZOR_HAS_AVX512
-    there.push_back(&avx512::baseline_kernels);
-#endif
-    const Kernels* chosen = nullptr;
-    for (const Kernels* k : there)
-        if (isa::cpu_runs(k->name) && (isa == "auto" || isa == k->name))
-            chosen = k;
-    if (chosen == nullptr)
-        throw UserError(fmt::format("--isa {}: this build or processor has no such kernels", isa));
-    return *chosen;
 }
 
 /// What depends on a mesh's topology, and its grids at the levels asked for so far.
@@ -207,31 +184,12 @@ struct Renderer::Impl {
             p.albedo[k] = albedo[k];
     }
 
-    void tessellate() {
-        constexpr int at_once = 512; // blocks
-        struct Task {
-            const Part* part;
-            int first;
-        };
-        std::vector<Task> tasks;
+    void make_vertices() {
+        std::vector<Tessellation> all;
         for (const Part& part : parts)
-            for (int first = 0; first < static_cast<int>(part.grid->blocks.size()); first += at_once)
-                tasks.push_back({&part, first});
-        share_out(options.threads, static_cast<int>(tasks.size()), [&](int n, int) {
-            const Task& task = tasks[static_cast<std::size_t>(n)];
-            const GridMesh& grid = *task.part->grid;
-            kernels.tessellate({grid.blocks.data() + task.first,
-                                std::min(at_once, static_cast<int>(grid.blocks.size()) - task.first),
-                                grid.weights.data(), grid.controls.data(), task.part->points.data(),
-                                positions.data() + 3 * task.part->first_vertex,
-                                normals.data() + 3 * task.part->first_vertex});
-        });
-        share_out(options.threads, static_cast<int>(parts.size()), [&](int n, int) {
-            const Part& part = parts[static_cast<std::size_t>(n)];
-            float* xyz = positions.data() + 3 * part.first_vertex;
-            for (const GridMesh::Weld& w : part.grid->welds)
-                std::copy_n(xyz + 3 * w.from, 3, xyz + 3 * w.to);
-        });
+            all.push_back({part.grid, part.points.data(), positions.data() + 3 * part.first_vertex,
+                           normals.data() + 3 * part.first_vertex});
+        tessellate(all, kernels, options.threads);
     }
 
     void build() {
@@ -305,7 +263,7 @@ Film Renderer::render(Scene scene, Report& report) {
     r.place(scene, geometry);
     s.place += seconds_since(begin);
     begin = Clock::now();
-    r.tessellate();
+    r.make_vertices();
     s.tessellate = seconds_since(begin);
     begin = Clock::now();
     r.build();
