@@ -1,6 +1,7 @@
 // The baseline draws what Razor draws.
 #include "razor/native/render.h"
 #include "razor/scene/scene_file.h"
+#include "razor/scene/shapes/shapes.h"
 #include "tests/benchmarks/embree/renderer.h"
 #include "tests/benchmarks/embree/tessellation.h"
 
@@ -168,6 +169,36 @@ TEST_P(Baseline, ComesNearerLevelByLevel) {
         EXPECT_LT(mean, before * 0.7) << finer;
         before = mean;
     }
+}
+
+/// A cube's faces are alike, so that both cut them into the same triangles, coarse ones, whose normals and
+/// shadows are all but those of the surface.
+TEST(CoarseBaseline, DrawsTheTrianglesThatRazorDraws) {
+    Scene scene = scene_of("catmark");
+    Mesh& mesh = scene.meshes[1];
+    const Mesh cube =
+        make_shape("box", {{"width", 2.0}, {"height", 2.0}, {"depth", 2.0}, {"sharpness", 0.0}});
+    mesh.points = cube.points;
+    mesh.face_sizes = cube.face_sizes;
+    mesh.face_vertices = cube.face_vertices;
+    mesh.creases = cube.creases;
+    mesh.edge_length = 0.3;
+    scene.meshes.resize(2);
+    scene.graph = {};
+    for (glm::dvec3& p : scene.meshes[0].points)
+        p.y -= 1.2;
+    const Film ours = by_razor(scene);
+    Difference least{1, 1, 1};
+    for (const int finer : {-2, -1, 0, 1}) {
+        Options options = options_of(Lod::fixed, 0, Quality::medium);
+        options.finer = finer;
+        const Difference d = compare(by_embree(scene, options), ours);
+        if (d.mean < least.mean)
+            least = d;
+    }
+    EXPECT_LT(least.mean, 2e-5);
+    EXPECT_LT(least.wrong, 1e-3);
+    EXPECT_LT(least.hits, 1e-3);
 }
 
 /// What was rendered before leaves no trace.
