@@ -135,10 +135,10 @@ Film by_embree(const Scene& scene, const Options& options) {
     return Renderer(options).render(scene, report);
 }
 
-Options options_of(Lod lod, std::int64_t flatten, Quality quality) {
+Options options_of(Levels levels, std::int64_t flatten, Quality quality) {
     Options o;
     o.threads = 2;
-    o.lod = lod;
+    o.levels = levels;
     o.flatten = flatten;
     o.quality = quality;
     return o;
@@ -149,8 +149,8 @@ class Baseline : public testing::TestWithParam<std::string> {};
 TEST_P(Baseline, DrawsWhatRazorDraws) {
     const Scene scene = scene_of(GetParam());
     const Film ours = by_razor(scene);
-    for (const Options& options :
-         {options_of(Lod::fixed, 0, Quality::medium), options_of(Lod::fixed, 1'000'000'000, Quality::low)}) {
+    for (const Options& options : {options_of(Levels::mesh, 0, Quality::medium),
+                                   options_of(Levels::mesh, 1'000'000'000, Quality::low)}) {
         const Difference d = compare(by_embree(scene, options), ours);
         EXPECT_LT(d.mean, 3e-4);
         EXPECT_LT(d.wrong, 0.003);
@@ -161,13 +161,21 @@ TEST_P(Baseline, DrawsWhatRazorDraws) {
 TEST_P(Baseline, ComesNearerLevelByLevel) {
     const Scene scene = scene_of(GetParam());
     const Film ours = by_razor(scene);
-    Options options = options_of(Lod::object, 0, Quality::medium);
-    double before = 1;
-    for (const int finer : {-4, -2, 0}) {
-        options.finer = finer;
-        const double mean = compare(by_embree(scene, options), ours).mean;
-        EXPECT_LT(mean, before * 0.7) << finer;
-        before = mean;
+    struct Steps {
+        Levels levels;
+        std::array<int, 3> finer;
+    };
+    for (const auto& [levels, steps] :
+         {Steps{Levels::instance, {-4, -2, 0}}, Steps{Levels::deviation, {-5, -1, 1}},
+          Steps{Levels::uniform, {0, 2, 4}}}) {
+        Options options = options_of(levels, 0, Quality::medium);
+        double before = 1;
+        for (const int finer : steps) {
+            options.finer = finer;
+            const double mean = compare(by_embree(scene, options), ours).mean;
+            EXPECT_LT(mean, before * 0.7) << finer;
+            before = mean;
+        }
     }
 }
 
@@ -190,7 +198,7 @@ TEST(CoarseBaseline, DrawsTheTrianglesThatRazorDraws) {
     const Film ours = by_razor(scene);
     Difference least{1, 1, 1};
     for (const int finer : {-2, -1, 0, 1}) {
-        Options options = options_of(Lod::fixed, 0, Quality::medium);
+        Options options = options_of(Levels::mesh, 0, Quality::medium);
         options.finer = finer;
         const Difference d = compare(by_embree(scene, options), ours);
         if (d.mean < least.mean)
@@ -209,7 +217,7 @@ TEST_P(Baseline, FramesDoNotDependOnFramesBefore) {
         p = glm::dvec3(0.5, 1.5, 0) + 0.3 * p;
     other.camera.position.x += 2;
     other.settings.edge_pixels = 4;
-    const Options options = options_of(Lod::object, 0, Quality::medium);
+    const Options options = options_of(Levels::instance, 0, Quality::medium);
     Renderer renderer(options);
     Report report;
     renderer.render(other, report);

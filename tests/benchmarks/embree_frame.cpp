@@ -52,8 +52,9 @@ struct Command {
             ->type_name("NAME");
         app.add_option(
                "--levels", levels,
-               "what has a level of its own: instance, by its nearest point, or mesh, by the nearest of its "
-               "instances; as --lod object and fixed of Razor's")
+               "how finely Embree's meshes are cut: instance (each its own level, by edges at its nearest "
+               "point), mesh (one level a mesh, that of its nearest instance) or deviation (each instance by "
+               "how far from the surface it is then)")
             ->type_name("NAME");
         app.add_option("--finer", finer, "all so many levels finer; negative: coarser")->type_name("K");
         app.add_option("--flatten", flatten,
@@ -75,8 +76,8 @@ struct Command {
         o.threads = parse_whole("--threads", threads, {1, 1024});
         o.isa = isa;
         o.quality = static_cast<baseline::Quality>(parse_choice("--quality", quality, qualities));
-        constexpr std::array<std::string_view, 2> levels_words{"instance", "mesh"};
-        o.lod = parse_choice("--levels", levels, levels_words) == 0 ? Lod::object : Lod::fixed;
+        constexpr std::array<std::string_view, 4> rules{"instance", "mesh", "deviation", "uniform"};
+        o.levels = static_cast<baseline::Levels>(parse_choice("--levels", levels, rules));
         o.finer = parse_whole("--finer", finer, {-20, 20});
         o.flatten = parse_whole("--flatten", flatten, {0, 1000000000});
         o.most_triangles = parse_whole("--most-triangles", most_triangles, {1, 1000000000});

@@ -2,14 +2,15 @@
 """A frame of each scene by Razor and by Embree, pose to picture with every build, in turn.
 
     tests/benchmarks/embree_frames.py configs/scenes/*.toml --frame 40
-    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --finer=-6:0 --pictures build/pictures
+    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --levels deviation --pictures build/pictures
 
 Embree draws the same scene, through the same camera, with the same samples of film, lens, lights and sky and the same shading
-(tests/benchmarks/embree). It gets every advantage that keeps the frame what it is: cages are tessellated at fixed levels, one for
-each instance by its nearest point (edges of a pixel there) or, with --levels mesh, one for each mesh by the nearest of them, K
-levels beyond that; the lowest K is taken whose picture is no further from the reference than Razor's. The reference is
-Razor's picture at a quarter of the edge length (--reference), or with --reference-finer K Embree's at that K; samples are the same, so that pictures differ by geometry
-alone, but for last bits and the few rays that they turn: errors up to --least-error count as none. Of that K
+(tests/benchmarks/embree). It gets every advantage that keeps the frame what it is: cages are tessellated at fixed levels, by each
+of several rules (--levels): uniform, every patch 2^K x 2^K quads; deviation, each instance as its mesh deviates from the surface, in pixels
+at its nearest point; instance and mesh, by the length of edges there. Of each rule the lowest K is taken whose picture is no
+further from the reference than Razor's, neither by RMSE nor by the mean of HDR-FLIP. The reference is
+Razor's picture at a quarter of the edge length (--reference), or with --reference-finer Embree's; samples are the same, so that pictures differ by geometry
+alone, but for last bits and the few rays that they turn: errors up to --least-error count as none. Of these Ks
 Embree then draws instances as such and flattened, with BVHs of each --quality, and its fastest way is measured in turn with Razor.
 
 Seconds are medians of --repeat frames (topology analysed, weights of limit points made); in brackets the shortest and longest; processor seconds are
@@ -53,14 +54,13 @@ class Scene:
     def embree(self, *more):
         """Figures of the baseline."""
         figures = self.file("figures.json")
-        view.run([self.options.embree, *self.frame, "--threads", str(self.options.threads), "--levels", self.options.levels,
-                  "--json", figures, *more])
+        view.run([self.options.embree, *self.frame, "--threads", str(self.options.threads), "--json", figures, *more])
         return read_json(figures)
 
-    def embree_picture(self, finer):
-        picture = self.file(f"embree_{self.options.levels}_{finer}.exr")
+    def embree_picture(self, levels, finer):
+        picture = self.file(f"embree_{levels}_{finer}.exr")
         if not os.path.exists(picture):
-            self.embree("--finer", str(finer), "--repeat", "0", "-o", picture)
+            self.embree("--levels", levels, "--finer", str(finer), "--repeat", "0", "-o", picture)
         return picture
 
     def error(self, picture, reference):
@@ -70,20 +70,16 @@ class Scene:
         return found["rmse"], found["flip"]["mean"]
 
 
-def choose(scene):
-    """The lowest K whose error is not above Razor's: errors of Razor and by K."""
+def choose(scene, levels, ours, reference):
+    """The lowest K of a rule whose error is not above Razor's, if there is one, and the errors on the way."""
     options = scene.options
-    if options.reference_finer is None:
-        reference = scene.razor_picture("reference", "--edge-pixels", str(options.reference))
-    else:
-        reference = scene.embree_picture(options.reference_finer)
-    ours = scene.error(scene.razor_picture("razor"), reference)
     errors = {}
-    for finer in range(options.finer[0], options.finer[1] + 1):
-        errors[finer] = scene.error(scene.embree_picture(finer), reference)
-        if errors[finer][0] <= max(ours[0], options.least_error):
-            return finer, ours, errors
-    view.fail(f"{scene.scene}: no level up to {options.finer[1]} is as near to the reference as Razor; let --finer end later")
+    first, last = (0, 8) if levels == "uniform" else options.finer
+    for finer in range(first, last + 1):
+        errors[finer] = scene.error(scene.embree_picture(levels, finer), reference)
+        if all(theirs <= max(mine, options.least_error) for theirs, mine in zip(errors[finer], ours)):
+            return finer, errors
+    return None, errors
 
 
 def median(runs, key):
@@ -91,24 +87,32 @@ def median(runs, key):
     return statistics.median(values), min(values), max(values)
 
 
-def fastest_way(scene, finer):
+def fastest_way(scene, chosen):
     options = scene.options
-    ways = [["--quality", quality, "--flatten", str(flatten)] for quality in options.quality for flatten in options.flatten]
+    ways = [["--levels", levels, "--finer", str(finer), "--quality", quality, "--flatten", str(flatten)]
+            for levels, finer in chosen.items() if finer is not None for quality in options.quality for flatten in options.flatten]
+    if not ways:
+        view.fail(f"{scene.scene}: no level is as near to the reference as Razor; let --finer end later")
     seconds = []
     for way in ways:
-        made = scene.embree("--finer", str(finer), "--repeat", str(options.tries), *way)
+        made = scene.embree("--repeat", str(options.tries), *way)
         seconds.append(median(made["embree"]["runs"], "processor_seconds")[0])
-    return ways[seconds.index(min(seconds))]
+    return ways[seconds.index(min(seconds))], {" ".join(way): s for way, s in zip(ways, seconds)}
 
 
 def study(options, path, folder):
     scene = Scene(options, path, folder)
-    finer, ours, errors = choose(scene)
-    way = fastest_way(scene, finer)
-    made = scene.embree("--finer", str(finer), "--repeat", str(options.repeat), "--razor", *way)
-    return {"scene": scene.name, "levels": options.levels, "finer": finer, "way": " ".join(way),
-            "rmse": {"razor": ours[0], "embree": {k: e[0] for k, e in errors.items()}},
-            "flip": {"razor": ours[1], "embree": {k: e[1] for k, e in errors.items()}},
+    if options.reference_finer is None:
+        reference = scene.razor_picture("reference", "--edge-pixels", str(options.reference))
+    else:
+        reference = scene.embree_picture("instance", options.reference_finer)
+    ours = scene.error(scene.razor_picture("razor"), reference)
+    found = {levels: choose(scene, levels, ours, reference) for levels in options.levels}
+    way, tried = fastest_way(scene, {levels: finer for levels, (finer, _) in found.items()})
+    made = scene.embree("--repeat", str(options.repeat), "--razor", *way)
+    return {"scene": scene.name, "way": way, "tried": tried, "rmse": ours[0], "flip": ours[1],
+            "levels": {levels: {"finer": finer, "rmse": {k: e[0] for k, e in errors.items()}, "flip": {k: e[1] for k, e in errors.items()}}
+                       for levels, (finer, errors) in found.items()},
             "embree": made["embree"], "razor": made["razor"]}
 
 
@@ -119,11 +123,13 @@ def spread(runs, key):
 
 def show(row):
     e, r = row["embree"], row["razor"]
-    finer = row["finer"]
-    errors = "  ".join(f"{k}: {v:.5f}" for k, v in row["rmse"]["embree"].items())
-    print(f"{row['scene']}: RMSE of Razor {row['rmse']['razor']:.5f}, of Embree by level {errors}; FLIP "
-          f"{row['flip']['razor']:.5f} and {row['flip']['embree'][finer]:.5f}")
-    print(f"  Embree, each {row['levels']} {finer:+d}, {row['way']}: {e['made']['triangles']:,} triangles, "
+    print(f"{row['scene']}: RMSE of Razor {row['rmse']:.5f}, FLIP {row['flip']:.5f}")
+    for levels, of in row["levels"].items():
+        last = list(of["rmse"])[-3:]
+        print(f"  Embree {levels}: RMSE " + ", ".join(f"{of['rmse'][k]:.5f} at {k}" for k in last) +
+              (f", FLIP {of['flip'][of['finer']]:.5f}; fastest " + "{:.3f} s".format(
+                  min(s for way, s in row["tried"].items() if f"--levels {levels} " in way)) if of["finer"] is not None else "; too far"))
+    print(f"  {' '.join(row['way'])}: {e['made']['triangles']:,} triangles, "
           f"{e['made']['instanced_triangles']:,} with instances; Razor made {r['made']['triangles']:,}")
     print(f"  {'':8} {'seconds':24} {'processor':24} {'pose':>7} {'tessel.':>7} {'build':>7} {'trace':>7} {'MB a frame':>10} {'MB kept':>8}")
     part = {key: median(e["runs"], key)[0] for key in ("pose", "tessellate", "build", "trace")}
@@ -161,11 +167,11 @@ def read_options():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--repeat", type=int, default=5, help="frames of each that count")
     parser.add_argument("--tries", type=int, default=1, help="frames of each way of Embree's, to find its fastest")
-    parser.add_argument("--levels", choices=("instance", "mesh"), default="instance", help="what Embree tessellates at a level of its own")
-    parser.add_argument("--finer", type=span, default=(-8, 1), metavar="FIRST:LAST", help="K to try, the coarsest first")
+    parser.add_argument("--levels", default="uniform,deviation", type=lambda text: text.split(","), help="rules to try: uniform, deviation, instance, mesh")
+    parser.add_argument("--finer", type=span, default=(-5, 2), metavar="FIRST:LAST", help="K to try, the coarsest first; of uniform 0:8")
     parser.add_argument("--reference", type=float, default=0.25, metavar="PIXELS", help="edges of Razor's reference")
-    parser.add_argument("--reference-finer", type=int, metavar="K", help="make the reference by Embree at this K")
-    parser.add_argument("--least-error", type=float, default=0.0003, metavar="RMSE", help="what pictures of one geometry may differ by")
+    parser.add_argument("--reference-finer", type=int, metavar="K", help="make the reference by Embree at this K of --levels instance")
+    parser.add_argument("--least-error", type=float, default=0.0003, metavar="X", help="RMSE and FLIP that pictures of one geometry may have")
     parser.add_argument("--quality", default="low,medium", type=lambda text: text.split(","), help="of Embree's BVHs: low, medium, high")
     parser.add_argument("--flatten", default=[0, 100_000_000], type=integers, metavar="N,...", help="triangles up to which instances are flattened")
     parser.add_argument("--pictures", metavar="FOLDER", help="keep pictures there, and take those that are; of the same options")

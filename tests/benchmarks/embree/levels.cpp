@@ -1,7 +1,5 @@
 #include "tests/benchmarks/embree/levels.h"
 
-#include "tests/benchmarks/embree/grid_mesh.h"
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -35,6 +33,19 @@ std::vector<int> levels_of(const Scene& scene, const SceneGeometry& geometry, in
         const double parts = edges[static_cast<std::size_t>(i.mesh)] / i.mesh_edge_length;
         const long level = parts > 0 ? std::lround(std::log2(parts)) + finer : 0;
         levels.push_back(static_cast<int>(std::clamp(level, 0L, static_cast<long>(finest_level))));
+    }
+    return levels;
+}
+
+std::vector<int> levels_by_deviation(const SceneGeometry& geometry,
+                                     const std::vector<std::array<double, finest_level + 1>>& deviations,
+                                     int finer) {
+    std::vector<int> levels;
+    for (const Instance& i : geometry.instances) {
+        const auto& of = deviations[static_cast<std::size_t>(i.mesh)];
+        const double allowed = std::ldexp(i.mesh_edge_length, -4 - 2 * finer);
+        const auto* const first = std::find_if(of.begin(), of.end(), [&](double d) { return d <= allowed; });
+        levels.push_back(std::min(static_cast<int>(first - of.begin()), finest_level));
     }
     return levels;
 }

@@ -4,6 +4,7 @@
 #include "razor/frame/scene_geometry.h"
 #include "razor/frame/unit.h"
 #include "razor/scene/error.h"
+#include "tests/benchmarks/embree/deviation.h"
 #include "tests/benchmarks/embree/embree_scenes.h"
 #include "tests/benchmarks/embree/grid_mesh.h"
 #include "tests/benchmarks/embree/levels.h"
@@ -75,7 +76,8 @@ struct Renderer::Impl {
     const Kernels& kernels;
     EmbreeScenes scenes;
     std::vector<std::unique_ptr<MeshTables>> meshes;
-    std::vector<std::int32_t> quads; // of all grids in use
+    std::vector<std::array<double, finest_level + 1>> deviations; // of meshes, if asked for
+    std::vector<std::int32_t> quads;                              // of all grids in use
     std::map<const GridMesh*, std::int32_t> first_quad;
     std::vector<float> positions, normals;
     std::vector<Part> parts;
@@ -91,12 +93,23 @@ struct Renderer::Impl {
         if (same)
             return;
         meshes.clear();
+        deviations.clear();
         quads.clear();
         first_quad.clear();
         for (const Mesh& mesh : scene.meshes) {
             validate_mesh(mesh);
-            meshes.push_back(std::make_unique<MeshTables>(mesh));
+            const MeshTables& made = *meshes.emplace_back(std::make_unique<MeshTables>(mesh));
+            if (options.levels == Levels::deviation)
+                deviations.push_back(baseline::deviations(made.topology, made.pages.get(), mesh.points));
         }
+    }
+
+    std::vector<int> choose_levels(const Scene& scene, const SceneGeometry& geometry) const {
+        if (options.levels == Levels::uniform)
+            return std::vector<int>(geometry.instances.size(), std::clamp(options.finer, 0, finest_level));
+        if (options.levels == Levels::deviation)
+            return levels_by_deviation(geometry, deviations, options.finer);
+        return levels_of(scene, geometry, options.finer);
     }
 
     /// Which tessellations there are, and what draws them.
@@ -235,7 +248,7 @@ Renderer::~Renderer() = default;
 
 Film Renderer::render(Scene scene, Report& report) {
     Impl& r = *impl_;
-    scene.settings.lod = r.options.lod;
+    scene.settings.lod = r.options.levels == Levels::mesh ? Lod::fixed : Lod::object;
     if (frame_unit(scene) != 1)
         throw UserError(
             fmt::format("{}: the baseline renders scenes of 2^-10 to 2^20 units only", scene.name));
@@ -250,7 +263,7 @@ Film Renderer::render(Scene scene, Report& report) {
     for (const auto& mesh : r.meshes)
         drawn.push_back(!mesh->topology.patches.empty());
     const SceneGeometry geometry = locate_scene(scene, drawn);
-    const std::vector<int> levels = levels_of(scene, geometry, r.options.finer);
+    const std::vector<int> levels = r.choose_levels(scene, geometry);
     s.place = seconds_since(begin);
     std::clock_t spent = std::clock() - processor;
 

@@ -13,12 +13,20 @@ namespace razor::baseline {
 
 enum class Quality { low, medium, high }; // of BVHs: Embree's build quality
 
+/// How finely what is tessellated, whatever the scene says (levels.h).
+enum class Levels {
+    instance,  // by edges, at the nearest point of each instance
+    mesh,      // ... of all instances of a mesh
+    deviation, // of each instance's from the surface; as meshes are when they first appear
+    uniform,   // one for all
+};
+
 struct Options {
     int threads = 1;
     std::string isa = "auto"; // of tessellation and shading; Embree takes what it likes best
     Quality quality = Quality::medium;
-    Lod lod = Lod::object; // one level each instance, or (Lod::fixed) each mesh; whatever the scene says
-    int finer = 0;         // see levels_of()
+    Levels levels = Levels::instance;
+    int finer = 0; // than levels_of() or levels_by_deviation() else
     /// Meshes whose instances have no more triangles together than this are drawn as so many meshes of their
     /// own, whose rays need no transform; larger ones once, by instances.
     std::int64_t flatten = 0;
