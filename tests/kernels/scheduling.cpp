@@ -12,7 +12,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <barrier>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -152,6 +155,14 @@ public:
         }
     }
     using Range = std::pair<int, int>;
+    Range take_back(int worker, int least) {
+        Range& mine = left_[frame_.header().workers.get()[worker].place];
+        if (mine.second - mine.first < least)
+            return {0, 0};
+        const Range run{mine.first + down(mine.second - mine.first - 1), mine.second};
+        mine.second = run.first;
+        return run;
+    }
     const std::map<int, Range>& left() const { return left_; }
     Range take(int worker) {
         const FrameHeader& h = frame_.header();
@@ -235,9 +246,10 @@ TEST(Stretches, EqualAModel) {
                 // The first is faster than the others, so that it becomes a thief early.
                 const int worker =
                     random() % 2 == 0 ? 0 : static_cast<int>(random() % static_cast<unsigned>(workers));
-                TakeArguments a{&frame.header(), worker, &counters, taken.data(), 1};
+                const int least = random() % 8 == 0 ? 1 + static_cast<int>(random() % 6) : 0;
+                TakeArguments a{&frame.header(), worker, &counters, taken.data(), 1, least};
                 target.take(a);
-                const auto [first, end] = model.take(worker);
+                const auto [first, end] = least != 0 ? model.take_back(worker, least) : model.take(worker);
                 ASSERT_EQ(a.last, first < end ? end - 1 : -1) << target.name << " " << width;
                 if (first < end) {
                     ASSERT_EQ(a.first_run, first) << target.name << " " << width;
@@ -272,8 +284,11 @@ TEST(Stretches, EveryTileIsTakenOnce) {
                         for (int w = 0; w < workers; ++w)
                             threads.emplace_back([&, w] {
                                 TakeArguments a{&frame.header(), w, &counters[static_cast<std::size_t>(w)],
-                                                taken.data(), std::numeric_limits<int>::max()};
-                                target.take(a);
+                                                taken.data(), 1};
+                                do {
+                                    a.least = a.least == 0 ? 4 : 0;
+                                    target.take(a);
+                                } while (a.last >= 0 || a.least != 0);
                             });
                     }
                     for (std::size_t tile = 0; tile < tiles; ++tile)
@@ -283,6 +298,39 @@ TEST(Stretches, EveryTileIsTakenOnce) {
                 }
             }
     }
+}
+
+// Small stretches, again and again, so that takes and steals of one word meet.
+TEST(Stretches, EveryTileIsTakenOnceWhereThievesMeet) {
+    constexpr int workers = 4, rounds = 400;
+    const Target target = probes().front();
+    Frame frame(picture_of(128, 128), {.workers = workers});
+    std::vector<isa::shared<std::int32_t>> taken(256);
+    std::vector<Counters> counters(workers);
+    int round = 0;
+    std::barrier<> all(workers);
+    {
+        std::vector<std::jthread> threads;
+        for (int w = 0; w < workers; ++w)
+            threads.emplace_back([&, w] {
+                for (int n = 0; n < rounds; ++n) {
+                    if (w == 0) {
+                        round += std::all_of(taken.begin(), taken.end(),
+                                             [n](const auto& times) { return times.word == n; })
+                                     ? 1
+                                     : 0;
+                        frame.take_tiles(0, 256);
+                    }
+                    all.arrive_and_wait();
+                    TakeArguments a{&frame.header(), w, &counters[static_cast<std::size_t>(w)], taken.data(),
+                                    std::numeric_limits<int>::max()};
+                    target.take(a);
+                    all.arrive_and_wait();
+                }
+            });
+    }
+    EXPECT_EQ(round, rounds) << "rounds before which all tiles had been taken once a round";
+    EXPECT_TRUE(std::all_of(taken.begin(), taken.end(), [](const auto& n) { return n.word == rounds; }));
 }
 
 // More tiles than a word could number one by one, and a worker that is slow to begin.
@@ -364,6 +412,52 @@ TEST(Scheduling, WhoComesAloneDoesAll) {
                           there.contains({x / 8, y / 8}) ? whole.find(plane)->values[at] : -1)
                     << x << " " << y;
             }
+}
+
+// Another worker is splitting all nodes that are left to split, and takes its time: tiles from the back of
+// the stretch are rendered first, once each, and no tile's time is counted as another's.
+TEST(Scheduling, OtherTilesAreRenderedInPlaceOfAWait) {
+    const Scene scene = small_default_scene(96, 72);
+    for (const KernelTable* kernels : native_targets()) {
+        Frame whole(scene, {});
+        whole.render(*kernels, 0);
+        Frame frame(scene, {});
+        frame.take_tiles(50, 51);
+        frame.render(*kernels, 0);
+        const FrameHeader& h = frame.header();
+        const FrameStatistics first = frame.statistics();
+        std::vector<std::int32_t*> held;
+        for (int n = h.trees.get()->root; n < h.workers.get()->node_next; ++n)
+            if (std::int32_t& state = h.nodes.get()[n].state.word; state == node_unsplit) {
+                state = node_busy;
+                held.push_back(&state);
+            }
+        frame.take_tiles(0, 108);
+        const auto begin = std::chrono::steady_clock::now();
+        {
+            const std::jthread worker([&] { frame.render(*kernels, 0); });
+            while (frame.progress() < 1.9 / 108)
+                std::this_thread::yield();
+            std::this_thread::sleep_for(std::chrono::milliseconds(300));
+            for (std::int32_t* state : held)
+                std::atomic_ref(*state).store(node_unsplit, std::memory_order_release);
+        }
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const FrameStatistics s = frame.statistics();
+        EXPECT_GE(s.counters.meanwhile_runs, 1);
+        EXPECT_LE(s.counters.meanwhile_runs, 20) << "what waits in a tile begun meanwhile only waits";
+        EXPECT_GE(s.counters.waits, 1);
+        EXPECT_GT(s.wait_seconds, 0.02);
+        EXPECT_EQ(s.tiles, 1 + 108);
+        EXPECT_LT(s.tile_seconds - first.tile_seconds, seconds);
+        EXPECT_EQ(s.by_kind.kind[kind_camera].rays - first.by_kind.kind[kind_camera].rays,
+                  96 * 72 * scene.settings.samples);
+        EXPECT_EQ(std::memcmp(h.film.get(), whole.header().film.get(),
+                              std::size_t{96} * 72 * film_planes * sizeof(float)),
+                  0)
+            << kernels->name;
+    }
 }
 
 TEST(Scheduling, StopsUntilTilesAreDealtAgain) {

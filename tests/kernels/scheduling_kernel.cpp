@@ -32,7 +32,7 @@ void take(TakeArguments& a) {
     c.counters = a.counters;
     a.last = -1;
     for (int n = 0; n < a.runs; ++n) {
-        Run run = take_run(c);
+        Run run = a.least != 0 ? take_back(c, sint(a.least)) : take_run(c);
         if (branch(run.first == run.end))
             return;
         a.first_run = value(run.first);

@@ -21,6 +21,7 @@ struct TakeArguments {
     /// Times each tile was taken, by all workers.
     isa::shared<std::int32_t>* taken = nullptr;
     int runs = 0;                 // taken at most
+    int least = 0;                // not 0: take_back() with it; else take_run()
     int first_run = 0, last = -1; // results: the last run's strides, first to last; -1: there was none
 };
 
