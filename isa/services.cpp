@@ -44,10 +44,14 @@ double stopwatch::seconds(int event) const {
     return static_cast<double>(first_[static_cast<std::size_t>(event)].load(std::memory_order_relaxed)) * 1e-9;
 }
 
-void lap_timer::begin() { begin_ = std::chrono::steady_clock::now(); }
+void lap_timer::begin() { begun_.push_back(std::chrono::steady_clock::now()); }
 
 void lap_timer::end(std::int64_t lap) {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const auto passed = std::chrono::steady_clock::now() - begun_.back();
+    begun_.pop_back();
+    for (std::chrono::steady_clock::time_point& outer : begun_)
+        outer += passed;
+    const double seconds = std::chrono::duration<double>(passed).count();
     ++laps_.count;
     laps_.seconds += seconds;
     if (seconds > laps_.slowest_seconds) {

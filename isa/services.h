@@ -58,12 +58,13 @@ public:
         std::int64_t slowest = -1; // the number of that lap
     };
 
+    /// A lap begun before the last one has ended takes none of that one's time.
     void begin();
     void end(std::int64_t lap);
     const figures& laps() const { return laps_; }
 
 private:
-    std::chrono::steady_clock::time_point begin_;
+    std::vector<std::chrono::steady_clock::time_point> begun_;
     figures laps_;
 };
 

@@ -21,6 +21,11 @@ struct Counters {
     std::int64_t finest_blocks = 0;  // of the blocks made, those of level 0
     std::int64_t normal_blocks = 0;  // blocks whose normals were asked for
     std::int64_t pages_requested = 0;
+    std::int64_t waits = 0;          // for what another worker was building
+    std::int64_t steals = 0;         // of other workers' stretches of the screen ...
+    std::int64_t stolen_strides = 0; // ... so much together
+    std::int64_t meanwhile_runs = 0; // of tiles rendered in place of a wait
+    std::int64_t lost_races = 0;     // takes and steals tried again, as another worker was faster
 
     Counters& operator+=(const Counters& o);
     Counters& operator-=(const Counters& o);
@@ -58,6 +63,11 @@ template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("finest_blocks", c.finest_blocks);
     visit("normal_blocks", c.normal_blocks);
     visit("pages_requested", c.pages_requested);
+    visit("waits", c.waits);
+    visit("steals", c.steals);
+    visit("stolen_strides", c.stolen_strides);
+    visit("meanwhile_runs", c.meanwhile_runs);
+    visit("lost_races", c.lost_races);
 }
 
 } // namespace razor

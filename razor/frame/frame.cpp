@@ -39,6 +39,9 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     for (const Mesh& mesh : meshes)
         topologies.push_back(analyse_topology(mesh));
     trees = count_trees(options);
+    if (!options.place_of_worker.empty() &&
+        options.place_of_worker.size() != static_cast<std::size_t>(options.workers))
+        throw std::invalid_argument("a frame's place_of_worker must have one entry a worker");
     for (const Topology& t : topologies)
         drawn.push_back(!t.patches.empty());
     geometry = locate_scene(scene, drawn);
@@ -76,7 +79,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
 
 void Frame::Impl::reset() {
     *header->queues.get() = QueueRecord{};
-    std::atomic_ref(header->tiles_end).store(header->tiles, std::memory_order_relaxed);
+    deal_tiles(0, header->tiles_x * header->tiles_y);
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
         tree.root_state.word = absent;
@@ -87,6 +90,7 @@ void Frame::Impl::reset() {
     }
     watch.restart();
     tiles.assign(static_cast<std::size_t>(options.workers), {});
+    waits.assign(static_cast<std::size_t>(options.workers), {});
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
         r.grid_next = first_grid_line(w);
@@ -95,7 +99,8 @@ void Frame::Impl::reset() {
         r.node_end = r.node_next + nodes_each;
         r.list_next = first_list_line(w);
         r.list_end = r.list_next + list_lines_each;
-        std::fill_n(reinterpret_cast<std::int32_t*>(r.stack.get() + scratch_free_lists), list_sizes, -1);
+        for (float* stack : {r.stack.get(), r.stack.get() + spare_stack})
+            std::fill_n(reinterpret_cast<std::int32_t*>(stack + scratch_free_lists), list_sizes, -1);
         r.next_field = 1; // 0: the camera's
         counters[static_cast<std::size_t>(w)] = {};
     }
@@ -211,14 +216,11 @@ void Frame::set_reach(double distance) {
 }
 
 void Frame::take_tiles(int first, int end) {
-    // Who shows progress looks at them.
-    std::atomic_ref(impl_->header->tiles_end).store(end, std::memory_order_relaxed);
-    std::atomic_ref(impl_->header->queues.get()->next_tile.word).store(first, std::memory_order_relaxed);
+    impl_->deal_tiles(first, end);
 }
 
 void Frame::stop() {
-    auto& word = impl_->header->queues.get()->next_tile.word;
-    std::atomic_ref(word).fetch_or(1 << 30, std::memory_order_relaxed);
+    std::atomic_ref(impl_->header->queues.get()->stopped.word).store(1, std::memory_order_relaxed);
 }
 
 isa::page_service& Frame::pages() {
@@ -251,10 +253,7 @@ std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) 
 }
 
 double Frame::progress() const {
-    auto& word = impl_->header->queues.get()->next_tile.word;
-    int taken = std::atomic_ref(word).load(std::memory_order_relaxed);
-    const int end = std::atomic_ref(impl_->header->tiles_end).load(std::memory_order_relaxed);
-    return std::min(1.0, static_cast<double>(taken) / end);
+    return impl_->taken();
 }
 
 FrameStatistics Frame::statistics() const {
@@ -292,6 +291,8 @@ FrameStatistics Frame::statistics() const {
             s.slowest_tile = static_cast<int>(laps.slowest);
         }
     }
+    for (const isa::lap_timer& worker : impl_->waits)
+        s.wait_seconds += worker.laps().seconds;
     for (const isa::region& r : impl_->memory->regions()) {
         const auto bytes = static_cast<std::int64_t>(r.end - r.begin);
         s.scene_graph_bytes += r.structure == "scene graph" ? bytes : 0;

@@ -22,6 +22,10 @@ struct FrameOptions {
     int workers = 1;
     /// The kd-tree (with its grids) that each worker uses, numbered from 0 without gaps; empty: all use one.
     std::vector<int> tree_of_worker = {};
+    /// Where each worker is: workers of near places share caches. Empty: by their numbers.
+    std::vector<int> place_of_worker = {};
+    /// Tiles are taken row by row, to compare with the order along a curve.
+    bool tiles_in_rows = false;
     /// Each worker's arenas; 0: as large as 32-bit references allow.
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
     /// The frame may be posed anew.
@@ -54,11 +58,12 @@ struct FrameStatistics {
     /// Host time from the frame's begin until all boxes were refitted, and until the first packet of camera
     /// rays was traced and shaded. 0: unknown.
     double refit_seconds = 0, first_packet_seconds = 0;
-    /// Screen tiles rendered, the host time they took together, and the slowest (numbered row by row; -1:
-    /// unknown). How long it takes bounds a frame on many workers from below.
+    /// Screen tiles rendered, the host time they took together, and the slowest (by its number along the
+    /// curve; -1: unknown). How long it takes bounds a frame on many workers from below.
     std::int64_t tiles = 0;
     double tile_seconds = 0, slowest_tile_seconds = 0;
     int slowest_tile = -1;
+    double wait_seconds = 0;     // of all workers, for what others were building (counters.waits times)
     std::int64_t page_bytes = 0; // topology pages made so far; they outlive the frame
     double page_seconds = 0;     // host time spent on them
     Touched touched;
@@ -89,8 +94,8 @@ public:
     /// be of any scene.
     bool pose(const Scene& scene, const SceneChanges& changes);
     /// Until the next reset() workers take the screen tiles from `first` up to, not including, `end` alone.
-    /// They are numbered row by row. After the workers have returned they may run again on other tiles, and
-    /// find what is built; the statistics go on.
+    /// They are numbered along the screen's curve (razor/kernels/screen_curve.h). After the workers have
+    /// returned they may run again on other tiles, and find what is built; the statistics go on.
     void take_tiles(int first, int end);
     /// Runs one worker's share; every worker of options.workers must run, each in its own thread or fibre.
     /// Throws UserError if an arena is exhausted.
@@ -109,7 +114,7 @@ public:
     /// Rays may start or end so much further from the scene's centre (in the frame's unit).
     void set_reach(double distance);
 
-    /// Lets the workers end early: no tile is taken from the queue any more.
+    /// Lets the workers end early: no tile is begun any more.
     void stop();
     isa::page_service& pages();
     isa::address_space& memory();
@@ -122,7 +127,7 @@ public:
     int workers() const;
     /// How many: header().instances.
     int instances() const;
-    /// Fraction of the tiles taken from the queue.
+    /// Fraction of the tiles that workers have taken.
     double progress() const;
     /// The film as it stands; depth is in world units.
     Film film() const;

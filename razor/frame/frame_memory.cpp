@@ -10,8 +10,11 @@
 #include <fmt/core.h>
 #include <glm/geometric.hpp>
 
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace razor {
@@ -311,6 +314,7 @@ void Frame::Impl::place_workers() {
     // All of it lives for one frame.
     auto n = static_cast<std::size_t>(options.workers);
     header->queues.set(region<QueueRecord>("queues", -1, 1, true));
+    header->stretches.set(region<StretchRecord>("queues", -1, n, true));
     header->trees.set(region<TreeRecord>("kd nodes", -1, static_cast<std::size_t>(trees), true));
     header->workers.set(region<WorkerRecord>("stack", -1, n, true));
     for (int t = 0; t < trees; ++t) {
@@ -341,11 +345,70 @@ void Frame::Impl::place_workers() {
     }
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
-        r.stack.set(coloured<float>("stack", w, stack_floats, colour_stack));
-        r.packets.set(coloured<float>("packets", w, packet_floats, colour_packets));
+        r.stack.set(coloured<float>("stack", w, 2 * spare_stack, colour_stack));
+        r.packets.set(coloured<float>("packets", w, 2 * spare_packets, colour_packets));
         r.blends.set(coloured<float>("blended blocks", w, blends_floats, colour_blends));
         r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
     }
+    order_workers();
+}
+
+void Frame::Impl::order_workers() {
+    const auto key = [this](int worker) {
+        const auto w = static_cast<std::size_t>(worker);
+        return std::tuple(options.tree_of_worker[w],
+                          options.place_of_worker.empty() ? worker : options.place_of_worker[w], worker);
+    };
+    std::vector<int> order(static_cast<std::size_t>(options.workers));
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&key](int a, int b) { return key(a) < key(b); });
+    header->worker_count = options.workers;
+    header->tile_rows = options.tiles_in_rows ? 1 : 0;
+    header->place_span = static_cast<std::int32_t>(std::bit_ceil(static_cast<unsigned>(options.workers)));
+    for (int place = options.workers - 1; place >= 0; --place) {
+        WorkerRecord& r = header->workers.get()[order[static_cast<std::size_t>(place)]];
+        r.place = place;
+        TreeRecord& tree = header->trees.get()[r.tree];
+        tree.first_place = place;
+        if (tree.end_place == 0)
+            tree.end_place = place + 1;
+    }
+}
+
+void Frame::Impl::deal_tiles(int first, int end) {
+    // Who shows progress looks at them.
+    const auto put = [](std::int32_t& word, std::int32_t value) {
+        std::atomic_ref(word).store(value, std::memory_order_relaxed);
+    };
+    const std::int64_t tiles = std::max(end - first, 0);
+    const std::int64_t strides =
+        (tiles + (std::int64_t{1} << header->stride_log2) - 1) >> header->stride_log2;
+    const std::int64_t workers = options.workers;
+    // Whole multiples of a power of two, few enough that all lengths can be written; what is beyond the last
+    // tile is nothing.
+    std::int64_t grain = 1;
+    const auto grains = [&] { return (strides + grain - 1) / grain; };
+    while (grains() > workers * ((2 << stretch_mantissa) - 1))
+        grain *= 2;
+    put(header->tiles_first, first);
+    put(header->tiles_end, end);
+    put(header->queues.get()->stopped.word, 0);
+    const auto begin = [&](std::int64_t place) { return grains() * place / workers * grain; };
+    for (std::int64_t place = 0; place < workers; ++place)
+        put(header->stretches.get()[place].left.word,
+            pack_stretch(static_cast<std::int32_t>(begin(place)),
+                         static_cast<std::int32_t>(begin(place + 1) - begin(place))));
+    dealt.store(grains() * grain, std::memory_order_relaxed);
+}
+
+double Frame::Impl::taken() const {
+    std::int64_t left = 0;
+    for (int place = 0; place < options.workers; ++place) {
+        std::int32_t& word = header->stretches.get()[place].left.word;
+        left += stretch_length(std::atomic_ref(word).load(std::memory_order_relaxed));
+    }
+    const std::int64_t all = dealt.load(std::memory_order_relaxed);
+    return all > 0 ? 1 - static_cast<double>(left) / static_cast<double>(all) : 1;
 }
 
 void Frame::Impl::place_view(const Scene& scene) {
@@ -369,7 +432,10 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.samples = s.samples;
     h.packet_samples_log2 = packet_samples_log2(s.samples);
     h.tiles_x = (s.width + tile_side - 1) / tile_side;
-    h.tiles = screen_tiles(s);
+    h.tiles_y = (s.height + tile_side - 1) / tile_side;
+    h.stride_log2 = 0;
+    while ((screen_tiles(s) - 1) >> h.stride_log2 >= most_strides)
+        ++h.stride_log2;
     const View v = view_of(scene.camera);
     const FilmExtent film = film_extent(scene.camera, s);
     const double pixel = 2 * film.half_height / s.height;

@@ -8,6 +8,7 @@
 #include "razor/surface/topology.h"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -68,7 +69,9 @@ struct Frame::Impl {
     std::int64_t patches = 0, clusters = 0;              // over the instances
     std::vector<std::unique_ptr<isa::mark_set>> opened;  // one a tree: graph nodes, then instances' clusters
     isa::stopwatch watch{moment_count};
-    std::vector<isa::lap_timer> tiles; // one a worker
+    std::vector<isa::lap_timer> tiles;   // one a worker
+    std::vector<isa::lap_timer> waits;   // likewise
+    std::atomic<std::int64_t> dealt = 0; // strides
 
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];
@@ -108,6 +111,7 @@ struct Frame::Impl {
     void place_topology();
     void place_blend_table();
     void place_workers();
+    void order_workers();
     void place_view(const Scene& scene);
     void fill_instances(const Scene& scene);
     void fill_instance(const Scene& scene, std::size_t n);
@@ -124,10 +128,16 @@ struct Frame::Impl {
     /// Of a scene in units of 1, as is the frame. False: everything is to be posed.
     bool follow(const Scene& scene, const SceneChanges& changes);
     void reset();
+    /// Divides the tiles from `first` up to `end` among the workers, in stretches that follow each other as
+    /// their places do.
+    void deal_tiles(int first, int end);
+    /// The fraction of what was dealt that somebody has taken.
+    double taken() const;
     WorkerArguments arguments(int worker) {
         const auto w = static_cast<std::size_t>(worker);
         const auto tree = static_cast<std::size_t>(options.tree_of_worker[w]);
-        return {header, worker, pages.get(), counters[w].kind, opened[tree].get(), &watch, &tiles[w]};
+        return {header, worker,    pages.get(), counters[w].kind, opened[tree].get(),
+                &watch, &tiles[w], &waits[w]};
     }
 };
 

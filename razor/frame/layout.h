@@ -14,6 +14,7 @@
 #pragma once
 
 #include "isa/memory_types.h"
+#include "razor/frame/stretches.h"
 
 #include <cstdint>
 
@@ -370,6 +371,7 @@ struct alignas(line_bytes) TreeRecord {
     float low[3], high[3]; // of everything, scene coordinates
     isa::ref<OpenPatch> patches;
     isa::ref<isa::shared<std::int32_t>> curve_lengths; // floats, mesh units; 0: nobody asked for it yet
+    std::int32_t first_place, end_place;               // of the workers that use it: WorkerRecord::place
 };
 
 /// What one worker allocates from: lines or nodes, counted from the base of the family.
@@ -382,12 +384,13 @@ struct alignas(line_bytes) WorkerRecord {
     isa::ref<float> stack;   // traversal stack and builders' scratch
     isa::ref<float> packets; // the rays in flight
     isa::ref<float> blends;  // blocks lately blended
+    std::int32_t place;      // among the workers: who share a tree, and then who are near, have near ones
 };
 
 // --- the frame
 // --------------------------------------------------------------------------------------------------------
 struct alignas(line_bytes) QueueRecord {
-    isa::shared<std::int32_t> next_tile;
+    isa::shared<std::int32_t> stopped; // not 0: workers take no tile any more
     std::int32_t padding[15];
     isa::shared<std::int32_t> next_refit;
     std::int32_t padding2[15];
@@ -430,8 +433,12 @@ enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
-    std::int32_t tiles_x, tiles;
-    std::int32_t tiles_end; // workers take tiles before this one
+    std::int32_t tiles_x, tiles_y;
+    std::int32_t tiles_first, tiles_end; // those to be rendered, by their numbers along the curve
+    std::int32_t stride_log2;            // a stride is 2^stride_log2 tiles, the first one from tiles_first
+    std::int32_t tile_rows;              // not 0: tiles are numbered row by row
+    std::int32_t worker_count;
+    std::int32_t place_span; // the next power of two, or the same
     std::int32_t light_count, sky_samples;
     std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
     std::int32_t cluster_count; // of all meshes
@@ -465,6 +472,7 @@ struct FrameHeader {
     isa::ref<Line> lists;
     isa::ref<Line> grids;
     isa::ref<QueueRecord> queues;
+    isa::ref<StretchRecord> stretches; // one a place
     isa::ref<float> film;
     isa::ref<std::int32_t> blend_table;
     float field_origin[3];            // of the field of all camera rays (razor/kernels/morph.h): where the
@@ -481,7 +489,10 @@ struct FrameHeader {
     std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
 };
 
-inline constexpr int tile_side = 16; // pixels
+/// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in
+/// razor/kernels/shade.h), so pictures depend on it: it is the same for all pictures and workers. A packet of
+/// 64 rays fills it.
+inline constexpr int tile_side = 8;
 
 // --- scratch of a worker, in floats
 // -----------------------------------------------------------------------------------

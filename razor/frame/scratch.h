@@ -78,4 +78,9 @@ enum LeftField : int {
 inline constexpr int packet_left_next = packet_left + left_fields * left_floats;
 inline constexpr int packet_floats = packet_left_next + 16;
 
+/// So much further lies the scratch for tiles that are rendered in place of a wait (render_meanwhile() in
+/// razor/kernels/render.h).
+inline constexpr int spare_stack = (stack_floats + 15) / 16 * 16;
+inline constexpr int spare_packets = (packet_floats + 15) / 16 * 16;
+
 } // namespace razor

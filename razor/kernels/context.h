@@ -41,6 +41,11 @@ struct Context {
     isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
     isa::stopwatch* watch = nullptr;
     isa::lap_timer* tiles = nullptr;
+    isa::lap_timer* waits = nullptr; // for others
+    Counters* by_kind = nullptr;     // all of the worker's, of kind_none first
+    /// What else there is to do for a worker that must wait and holds nothing others wait for; false:
+    /// nothing. Null: it only waits.
+    bool (*other_work)(const Context&) = nullptr;
 };
 
 inline Context make_context(pointer<FrameHeader> frame, sint worker) {
@@ -99,8 +104,24 @@ private:
     bool published_ = false;
 };
 
+/// Waits until another worker has changed the word from `value`; returns what it is then.
+[[gnu::noinline]] inline sint await_other(const Context& c, pointer<shared_int> word, sint value) {
+    tally(c.counters->waits, 1);
+    begin_lap(*c.waits);
+    sint seen = wait_while(word, value);
+    end_lap(*c.waits, 0);
+    return seen;
+}
+
+/// The same, but does other work first if there is some, a piece of it; the word may still be `value` then.
+inline sint work_while(const Context& c, pointer<shared_int> word, sint value) {
+    if (c.other_work != nullptr && c.other_work(c))
+        return load_acquire(word);
+    return await_other(c, word, value);
+}
+
 /// Returns once `state` is ready: by `build`, if nobody else has built or is building.
-template <class Build> inline void build_once(pointer<shared_int> state, Build build) {
+template <class Build> inline void build_once(const Context& c, pointer<shared_int> state, Build build) {
     sint seen = load_acquire(state);
     while (branch(seen != ready)) {
         if (branch(seen == absent)) {
@@ -112,7 +133,7 @@ template <class Build> inline void build_once(pointer<shared_int> state, Build b
                 return;
             }
         } else {
-            seen = wait_while(state, busy);
+            seen = await_other(c, state, busy);
         }
     }
 }

@@ -288,7 +288,8 @@ inline sint count_closed(const List& l) {
     }
 }
 
-/// Returns the state of a node that is no longer unsplit, splitting it if nobody else does.
+/// Returns the state of a node that is no longer unsplit, splitting it if nobody else does. The caller builds
+/// nothing meanwhile that others could wait for.
 inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
     pointer<shared_int> state = field(node, &KdNode::state);
     while (branch(seen < node_inner)) {
@@ -300,7 +301,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
                 guard.publish(seen);
             }
         } else {
-            seen = wait_while(state, node_busy);
+            seen = work_while(c, state, node_busy);
         }
     }
     return seen;
@@ -331,7 +332,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
 
 /// Returns once the worker's tree has a root, making it if nobody else does.
 inline void ensure_root(const Context& c) {
-    build_once(field(c.tree, &TreeRecord::root_state), [&] { build_root(c); });
+    build_once(c, field(c.tree, &TreeRecord::root_state), [&] { build_root(c); });
 }
 
 } // namespace build_kernel

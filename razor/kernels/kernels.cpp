@@ -8,15 +8,18 @@ namespace {
 Context begin(const WorkerArguments& a) {
     Context c = make_context(pointer<FrameHeader>(a.frame), sint(a.worker));
     c.pages = a.pages;
-    c.counters = a.counters;
+    c.counters = c.by_kind = a.counters;
     c.opened = a.opened;
     c.watch = a.watch;
     c.tiles = a.tiles;
+    c.waits = a.waits;
     return c;
 }
 
 template <Features F> void render(const WorkerArguments& a) {
-    render_worker<F>(begin(a));
+    Context c = begin(a);
+    c.other_work = render_meanwhile<F>;
+    render_worker<F>(c);
 }
 
 template <Features F> void trace_all(const WorkerArguments& w, const TraceArguments& a) {

@@ -58,7 +58,7 @@ inline void refit_cluster(const Context& c, const Cage& g, sint cluster) {
     }
     sint done = load_acquire(field(queues, &QueueRecord::refitted));
     while (branch(done != clusters))
-        done = wait_while(field(queues, &QueueRecord::refitted), done);
+        done = await_other(c, field(queues, &QueueRecord::refitted), done);
     note_time(*c.watch, moment_refitted);
 }
 

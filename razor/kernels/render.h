@@ -3,7 +3,9 @@
 #pragma once
 
 #include "razor/kernels/refit.h"
+#include "razor/kernels/screen_curve.h"
 #include "razor/kernels/shade.h"
+#include "razor/kernels/stretches.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -172,14 +174,14 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     sint height = load(field(c.frame, &FrameHeader::height));
     sint samples = load(field(c.frame, &FrameHeader::samples));
     sint tiles_x = load(field(c.frame, &FrameHeader::tiles_x));
+    sint tiles_y = load(field(c.frame, &FrameHeader::tiles_y));
     Camera camera = load_camera(c);
     forget_fields(c); // so that it does not matter which tiles a worker had before
-    vfloat exact = to_float(vint(tile)) + 0.5F;
-    exact = exact / to_float(vint(tiles_x));
-    sint tile_row = extract(to_int(exact), 0);
-    sint tile_column = tile - tile_row * tiles_x;
-    sint x0 = tile_column * tile_side;
-    sint y0 = tile_row * tile_side;
+    sint in_rows = load(field(c.frame, &FrameHeader::tile_rows));
+    TilePlace corner =
+        branch(in_rows != 0) ? place_in_rows(tiles_x, tile) : place_on_curve(tiles_x, tiles_y, tile);
+    sint x0 = corner.column * tile_side;
+    sint y0 = corner.row * tile_side;
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
@@ -214,17 +216,51 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     }
 }
 
-template <Features F> inline void render_worker(const Context& c) {
-    refit(c);
-    clear_blends(c);
+/// Renders the run's tiles; false: the workers are to stop.
+template <Features F> inline bool render_run(const Context& c, const Run& run) {
     pointer<QueueRecord> queues = load(field(c.frame, &FrameHeader::queues));
-    sint end = load(field(c.frame, &FrameHeader::tiles_end));
-    sint tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
-    while (branch(tile < end)) {
+    Run tiles = tiles_of(c, run);
+    for (sint tile = tiles.first; branch(tile < tiles.end); ++tile) {
+        sint stopped = load_acquire(field(queues, &QueueRecord::stopped));
+        if (branch(stopped != 0))
+            return false;
         begin_lap(*c.tiles);
         render_tile<F>(c, tile);
         end_lap(*c.tiles, tile);
-        tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
+    }
+    return true;
+}
+
+/// Of a worker's own tiles so many at least are left to it and to thieves, whoever waits: what is begun in
+/// place of a wait delays the tile that waits.
+inline constexpr int meanwhile_least = 4;
+
+/// Renders other tiles in place of a wait, in scratch memory of their own; false: there are none. While these
+/// wait, nothing else is begun.
+template <Features F> [[gnu::noinline]] inline bool render_meanwhile(const Context& outer) {
+    Run run = take_back(outer, meanwhile_least);
+    if (branch(run.first == run.end))
+        return false;
+    kind_scope kind(kind_none);
+    Context c = outer;
+    c.other_work = nullptr;
+    c.counters = c.by_kind;
+    c.stack = c.stack + spare_stack;
+    c.packets = c.packets + spare_packets;
+    tally(c.counters->meanwhile_runs, 1);
+    render_run<F>(c, run);
+    return true;
+}
+
+template <Features F> inline void render_worker(const Context& c) {
+    refit(c);
+    clear_blends(c);
+    for (;;) {
+        Run run = take_run(c);
+        if (branch(run.first == run.end))
+            return;
+        if (!render_run<F>(c, run))
+            return;
     }
 }
 

@@ -113,6 +113,7 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
         frame_ = std::make_unique<Frame>(
             scene, FrameOptions{.workers = options_.threads,
                                 .tree_of_worker = tree_groups(options_.threads, options_.share),
+                                .tiles_in_rows = options_.tiles_in_rows,
                                 .moves = moves_});
     }
     load_seconds_ = seconds_since(begin);

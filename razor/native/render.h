@@ -26,7 +26,8 @@ struct RenderOptions {
     /// The frame is rendered so many times, everything built anew each time but topology pages: what a later
     /// frame of an animation costs. The film and all figures but the times are those of the last.
     int frames = 1;
-    int tiles = 0; // screen tiles rendered, row by row; pixels of others stay 0. 0: all
+    int tiles = 0;              // screen tiles rendered, along the curve; pixels of others stay 0. 0: all
+    bool tiles_in_rows = false; // their order
     /// Called now and then with the fraction of tiles begun, from the calling thread.
     std::function<void(double fraction)> progress;
     /// Set to true from anywhere to stop early; render_native then throws Cancelled.

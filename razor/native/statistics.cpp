@@ -77,7 +77,8 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                      {{"count", f.tiles},
                       {"seconds", f.tile_seconds},
                       {"slowest_seconds", f.slowest_tile_seconds},
-                      {"slowest", f.slowest_tile}}}};
+                      {"slowest", f.slowest_tile}}},
+                    {"wait_seconds", f.wait_seconds}};
     for (const FrameTime& t : s.times)
         json["host"]["frames"].push_back({{"render_seconds", t.render_seconds},
                                           {"render_processor_seconds", t.render_processor_seconds},

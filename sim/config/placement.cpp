@@ -53,4 +53,11 @@ std::vector<int> Placement::trees(int workers, const std::string& share) const {
     return tree;
 }
 
+std::vector<int> Placement::places(int workers) const {
+    std::vector<int> place;
+    for (int w = 0; w < workers; ++w)
+        place.push_back(static_cast<int>(number(of(w))));
+    return place;
+}
+
 } // namespace sim

@@ -32,6 +32,8 @@ public:
     /// the workers in the order of their hardware threads, n by n. Throws std::invalid_argument for anything
     /// else.
     std::vector<int> trees(int workers, const std::string& share) const;
+    /// The number of each worker's hardware thread: near ones share caches.
+    std::vector<int> places(int workers) const;
 
 private:
     integer tiles_, cores_, threads_;

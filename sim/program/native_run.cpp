@@ -25,9 +25,10 @@ bool same_bits(const razor::Film& a, const razor::Film& b) {
 } // namespace
 
 NativeRun run_native(const razor::Scene& scene, const razor::Film& simulated, const std::atomic<bool>& cancel,
-                     int tiles) {
+                     int tiles, bool in_rows) {
     razor::RenderOptions options;
     options.tiles = tiles;
+    options.tiles_in_rows = in_rows;
     options.threads = 1;
     options.cancel = &cancel;
     const razor::RenderResult result = razor::render_native(scene, options);

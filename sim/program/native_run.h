@@ -19,10 +19,10 @@ struct NativeRun {
     double slowdown(double simulated_seconds) const { return seconds > 0 ? simulated_seconds / seconds : 0; }
 };
 
-/// Renders the scene's first `tiles` screen tiles (0: all) on one thread with the best native target, and
-/// compares them. Throws razor::Cancelled.
+/// Renders the scene's first `tiles` screen tiles (0: all), along the curve or row by row, on one thread with
+/// the best native target, and compares them. Throws razor::Cancelled.
 NativeRun run_native(const razor::Scene& scene, const razor::Film& simulated, const std::atomic<bool>& cancel,
-                     int tiles = 0);
+                     int tiles = 0, bool in_rows = false);
 /// A line of the report.
 std::string native_text(const NativeRun& native, double simulated_seconds);
 nlohmann::ordered_json native_json(const NativeRun& native, double simulated_seconds);

@@ -183,10 +183,13 @@ void RunCommand::add_to(CLI::App& app) {
         ->type_name("N");
     run.add_option(
            "--tiles", tiles_,
-           "count these screen tiles of 16 x 16 pixels alone, numbered row by row from 0: those before them "
+           "count these screen tiles of 8 x 8 pixels alone, numbered from 0 along the curve by which workers "
+           "take them (each beside the one before): those before them "
            "are rendered first, by all workers, and what they leave in caches and trees is there; those "
            "after them are not rendered; without it, all")
         ->type_name("FIRST..LAST");
+    run.add_flag("--tiles-in-rows", tiles_in_rows_,
+                 "number and render screen tiles row by row, to compare with the order along a curve");
     run.add_option("--jitter", jitter_,
                    "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later; runs that "
                    "differ in the seed alone say how far results must lie apart to mean anything; 0: none; "
@@ -249,7 +252,10 @@ int RunCommand::run() const {
 
     const std::atomic<bool>& interrupted = razor::watch_interrupts();
     const razor::Scene built = razor::build_scene(description);
-    razor::Frame frame(built, {.workers = workers, .tree_of_worker = trees});
+    razor::Frame frame(built, {.workers = workers,
+                               .tree_of_worker = trees,
+                               .place_of_worker = Placement(config.chip).places(workers),
+                               .tiles_in_rows = tiles_in_rows_});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
     run_options.stop = &interrupted;
@@ -281,7 +287,7 @@ int RunCommand::run() const {
                 run_options);
         }
         if (!no_native_)
-            native = run_native(built, frame.film(), interrupted, counted.last_tile + 1);
+            native = run_native(built, frame.film(), interrupted, counted.last_tile + 1, tiles_in_rows_);
     } catch (const Stopped&) {
         // said below
     } catch (const razor::Cancelled&) {

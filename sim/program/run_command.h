@@ -31,6 +31,7 @@ private:
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,
         tiles_;
+    bool tiles_in_rows_ = false;
     bool quiet_ = false, no_native_ = false, no_calibration_ = false;
 };
 

@@ -72,7 +72,8 @@ Simulated simulate(const razor::Scene& scene, const Config& config, int host_thr
     const Machine machine(config);
     const int workers = machine.threads();
     razor::Frame frame(scene, {.workers = workers,
-                               .tree_of_worker = Placement(config.chip).trees(workers, config.kdtree.share)});
+                               .tree_of_worker = Placement(config.chip).trees(workers, config.kdtree.share),
+                               .place_of_worker = Placement(config.chip).places(workers)});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
     Report r = machine.run(

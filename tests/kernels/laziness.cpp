@@ -237,7 +237,7 @@ TEST(Laziness, FirstPacketAndTilesAreTimed) {
     EXPECT_GT(s.refit_seconds, 0);
     EXPECT_GT(s.first_packet_seconds, s.refit_seconds);
     EXPECT_LT(s.first_packet_seconds, 60);
-    EXPECT_EQ(s.tiles, frame.header().tiles);
+    EXPECT_EQ(s.tiles, frame.header().tiles_end);
     EXPECT_GE(s.slowest_tile_seconds * static_cast<double>(s.tiles), s.tile_seconds);
     EXPECT_LE(s.slowest_tile_seconds, s.tile_seconds);
     EXPECT_GT(s.tile_seconds, s.first_packet_seconds - s.refit_seconds) << "which lies in the first tile";

@@ -348,13 +348,13 @@ TEST_F(Simulator, CountsSomeTilesAlone) {
     };
     const nlohmann::json whole = run("");
     const Film picture = read_exr(folder_ / "a.exr");
-    EXPECT_EQ(run("--tiles 0..8").at("cycles"), whole.at("cycles"));
-    const nlohmann::json first = run("--tiles 0..3"), rest = run("--tiles 4..8"), one = run("--tiles 4..4");
+    EXPECT_EQ(run("--tiles 0..24").at("cycles"), whole.at("cycles"));
+    const nlohmann::json first = run("--tiles 0..3"), rest = run("--tiles 4..24"), one = run("--tiles 4..4");
     EXPECT_EQ(first.at("warm_up_cycles"), 0);
     EXPECT_GE(rest.at("warm_up_cycles"), first.at("cycles"));
     EXPECT_EQ(one.at("warm_up_cycles"), rest.at("warm_up_cycles"));
-    EXPECT_EQ(rest.at("options").at("tiles"), nlohmann::json({4, 8}));
-    EXPECT_EQ(rest.at("renderer").at("screen_tiles"), 5);
+    EXPECT_EQ(rest.at("options").at("tiles"), nlohmann::json({4, 24}));
+    EXPECT_EQ(rest.at("renderer").at("screen_tiles"), 21);
     for (const auto& [name, count] : whole.at("renderer").at("counters").items()) {
         const auto of = [&name = name](const nlohmann::json& a) {
             return a.at("renderer").at("counters").at(name).get<std::int64_t>();
@@ -366,18 +366,18 @@ TEST_F(Simulator, CountsSomeTilesAlone) {
     EXPECT_GT(vops(first) + vops(rest), vops(whole)) << "a worker begins twice";
     EXPECT_LT(vops(first) + vops(rest), vops(whole) + 1000);
     EXPECT_LT(vops(one), vops(rest));
-    // Rows of tiles that were rendered, and none of the others.
+    // Tiles that were rendered, the first five along the curve, and none of the others.
     const Film part = read_exr(folder_ / "a.exr");
     for (const Plane& plane : picture.planes) {
         const std::vector<float>& values = part.find(plane.name)->values;
         for (std::size_t y = 0; y < 40; ++y)
             for (std::size_t x = 0; x < 40; ++x) {
-                const bool there = y < 16 || (y < 32 && x < 32);
+                const bool there = (x < 16 && y < 16) || (x < 8 && y < 24);
                 ASSERT_EQ(values[y * 40 + x], there ? plane.values[y * 40 + x] : 0) << plane.name;
             }
     }
     // Of the last frame.
-    const nlohmann::json warm = run("--frames 2 --tiles 4..8");
+    const nlohmann::json warm = run("--frames 2 --tiles 4..24");
     EXPECT_GT(warm.at("warm_up_cycles"), whole.at("cycles"));
     nlohmann::json counters = warm.at("renderer").at("counters"), cold = rest.at("renderer").at("counters");
     EXPECT_EQ(counters.at("pages_requested"), 0);
@@ -529,7 +529,7 @@ TEST_F(Simulator, RefusesBadMachinesAndOptions) {
         {"--machine good.toml --frames two", "--frames 'two'"},
         {"--machine good.toml --size 40x17 --tiles 2", "give FIRST..LAST, for example 0..9"},
         {"--machine good.toml --size 40x17 --tiles 3..2", "--tiles '3..2' ends before it begins"},
-        {"--machine good.toml --size 40x17 --tiles 2..6", "the last of --tiles '6'"},
+        {"--machine good.toml --size 40x17 --tiles 2..15", "the last of --tiles '15'"},
         {"--machine good.toml --size 40x17 --tiles x..2", "the first of --tiles 'x'"},
         {"--machine good.toml --jitter -1", "--jitter '-1'"},
         {"--machine good.toml --jitter 1.5", "give a whole number from 0 to 2147483647"},

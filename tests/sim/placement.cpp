@@ -138,6 +138,17 @@ TEST(TreeSharing, OfTinyByHand) {
         EXPECT_THROW(Placement(c.chip).trees(8, bad), std::invalid_argument) << bad;
 }
 
+TEST(Placement, PlacesAreHardwareThreads) {
+    Config c;
+    c.chip.tiles = 2;
+    c.chip.cores = 2;
+    c.chip.threads = 2;
+    c.chip.placement = "pack";
+    EXPECT_EQ(Placement(c.chip).places(8), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+    c.chip.placement = "spread";
+    EXPECT_EQ(Placement(c.chip).places(6), (std::vector<int>{0, 4, 2, 6, 1, 5}));
+}
+
 TEST(TreeSharing, IsAWordOrANumberInAMachineFile) {
     EXPECT_EQ(parse_machine("", "m").kdtree.share, "chip");
     EXPECT_EQ(parse_machine("[kdtree]\nshare = \"tile\"\n", "m").kdtree.share, "tile");
