@@ -294,7 +294,12 @@ void Coherence::pass_on(const Shared& a, cycle t) {
             hears(bus, t);
         } else {
             ++counters_.passed_on;
-            send(ways_.telling_bus(a->r.read, bus), t, a, [hears, bus](cycle there) { hears(bus, there); });
+            const auto there_hear = [hears, bus](cycle there) { hears(bus, there); };
+            // A line that its owner brings waits for nobody else.
+            if (a->out.from != Outcome::owner || topology.bus_of(tile_of(a->owner.front().cache)) == bus)
+                send(ways_.telling_bus(a->r.read, bus), t, a, there_hear);
+            else
+                send_(ways_.telling_bus(a->r.read, bus), t, there_hear);
         }
     }
 }
