@@ -341,6 +341,8 @@ struct alignas(line_bytes) TreeRecord {
     float low[3], high[3]; // of everything, scene coordinates
     isa::ref<OpenPatch> patches;
     isa::ref<isa::shared<std::int32_t>> curve_lengths; // floats, mesh units; 0: nobody asked for it yet
+    isa::shared<std::int32_t> left;                    // workers that are done with it ...
+    std::int32_t sharers;                              // ... of so many
 };
 
 /// What one worker allocates from: lines or nodes, counted from the base of the family.
@@ -400,9 +402,10 @@ enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 
 struct FrameHeader {
     std::int32_t width, height, samples;
-    std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
-    std::int32_t tiles_x, tiles;
-    std::int32_t tiles_end; // workers take tiles before this one
+    std::int32_t packet_samples_log2;     // samples of one pixel that a packet of camera rays takes together
+    std::int32_t tiles_x, tiles;          // of the part that is rendered, in its rows; all
+    std::int32_t first_column, first_row; // of its tiles, in the whole picture
+    std::int32_t tiles_end;               // workers take tiles before this one
     std::int32_t light_samples, sky_samples;
     std::int32_t patch_count;   // numbers of patches; where one instance follows another some are unused
     std::int32_t cluster_count; // of all meshes
@@ -450,6 +453,8 @@ struct FrameHeader {
     float fixed_target;        // not 0: what all rays ask for, everywhere
     std::int32_t level_choice; // a LevelChoice
     std::int32_t sample_seed;  // added to the numbers of pixels: razor/kernels/sampling.h
+    std::int32_t discards;     // not 0: see razor/kernels/dead.h
+    std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
 };
 
 inline constexpr int tile_side = 16; // pixels

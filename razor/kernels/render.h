@@ -180,6 +180,8 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     exact = exact / to_float(vint(tiles_x));
     sint tile_row = extract(to_int(exact), 0);
     sint tile_column = tile - tile_row * tiles_x;
+    tile_column = tile_column + load(field(c.frame, &FrameHeader::first_column));
+    tile_row = tile_row + load(field(c.frame, &FrameHeader::first_row));
     sint x0 = tile_column * tile_side;
     sint y0 = tile_row * tile_side;
     sint x1 = min(x0 + tile_side, width);
@@ -228,6 +230,8 @@ template <Features F> inline void render_worker(const Context& c) {
         end_lap(*c.tiles, tile);
         tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
     }
+    if (branch(c.discards))
+        discard_all(c);
 }
 
 } // namespace shade_kernel
