@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What is it worth to tell caches which data are dead, and what does it cost to make them again, by the size of the caches.
 
-    analysis/sharing/discard.py FOLDER [--scenes courtyard,interior,forest,showcase] [--l2 256KiB..8MiB] [--share tile]
+    analysis/sharing/discard.py FOLDER [--scenes courtyard,interior,forest,showcase] [--l2 256KiB,1MiB,4MiB] [--share tile]
                                 [--memory 4MiB,16MiB] [--full] [--jobs 2] [-- more options of razor-sim run]
 
 For each scene and size of the L2s of two tiles of copernicus: lines of what a frame builds (grids, item lists, kd nodes, blended

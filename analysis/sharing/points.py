@@ -21,16 +21,16 @@ TILE = 16  # pixels of a screen tile, along a side
 KIB, MIB = 1 << 10, 1 << 20
 SCENES = ("courtyard", "interior", "forest", "showcase")
 # Of frames of 1024 x 1024, in their middle: so that nobody sharing a tree takes most_operations at most.
-CROPS = {"courtyard": (64, 64), "interior": (64, 64), "forest": (32, 32), "showcase": (48, 48)}
+CROPS = {"courtyard": (64, 32), "interior": (64, 32), "forest": (32, 32), "showcase": (48, 32)}
 TRANSIENT = ("grids", "item lists", "kd nodes", "blended blocks")  # what a frame builds
-# Workers of the small chip, which keeps copernicus's cores and tiles but has fewer of them, and of a whole part of it.
-COPERNICUS = {"file": "configs/machines/copernicus.toml", "ways": ("worker", "core", "tile", "chip")}
+# Two tiles of copernicus, with a core of two threads each, or all of it; their part of its memory channels.
 MACHINES = {
-    "copernicus": {**COPERNICUS, "workers": (1, 4, 8),
-                   "settings": ("chip.tiles=2", "chip.cores=2", "chip.threads=2", "memory.channels=1")},
+    "copernicus": {"file": "configs/machines/copernicus.toml", "ways": ("worker", "tile", "chip"), "workers": (1, 4),
+                   "settings": ("chip.tiles=2", "chip.cores=1", "chip.threads=2", "memory.channels=1")},
     "zen4-2c": {"file": "configs/machines/zen4-2c.toml", "ways": ("worker", "chip"), "workers": (1, 2), "settings": ()},
 }
-FULL = {**MACHINES, "copernicus": {**COPERNICUS, "workers": (1, 16, 64), "settings": ("chip.tiles=2", "memory.channels=1")}}
+FULL = {**MACHINES, "copernicus": {**MACHINES["copernicus"], "ways": ("worker", "core", "tile", "chip"), "workers": (1, 16, 64),
+                                   "settings": ("chip.tiles=2", "memory.channels=1")}}
 FULL_CROPS = {"courtyard": (128, 128), "interior": (128, 128), "forest": (64, 64), "showcase": (96, 96)}
 
 
@@ -198,12 +198,13 @@ def best_of(ways, key):
 def add_options(p, folder):
     p.add_argument("folder", metavar="FOLDER", help=folder)
     p.add_argument("--scenes", default=",".join(SCENES), metavar="NAMES", help="of configs/scenes, or scene files, with commas")
-    p.add_argument("--l2", default="256KiB..8MiB", metavar="SIZES", help="per tile: 256KiB..8MiB doubles, or a list with commas")
+    p.add_argument("--l2", metavar="SIZES", help="per tile: 256KiB..8MiB doubles, or a list with commas; without it, 256KiB,1MiB,4MiB,"
+                   " with --full 256KiB..8MiB")
     p.add_argument("--crop", metavar="WxH", help="of each scene's picture, in its middle; without it, some for each scene")
-    p.add_argument("--seeds", default="1,2,3", metavar="NUMBERS", help="of noise: a run for each (--jitter)")
+    p.add_argument("--seeds", metavar="NUMBERS", help="of noise: a run for each (--jitter); without it 1,2, with --full 1,2,3")
     p.add_argument("--frame", type=int, default=40, help="of the scenes' motion")
     p.add_argument("--most-operations", type=float, default=300e6, metavar="N", help="points that take more are named")
-    p.add_argument("--full", action="store_true", help="whole tiles of 32 threads, larger crops")
+    p.add_argument("--full", action="store_true", help="whole tiles of 32 threads, larger crops, more sizes and seeds")
     p.add_argument("--jobs", type=int, default=1, metavar="N", help="runs side by side")
     p.add_argument("--simulator", metavar="PATH", help="razor-sim; else from the PATH or build/release")
     p.add_argument("--csv", metavar="FILE", help="the table, for programs; without it, in the folder")
@@ -223,8 +224,8 @@ def checked(options, more, name):
     if options.jobs < 1:
         raise Mistake(f"--jobs {options.jobs}: give a number from 1")
     options.more = more
-    options.sizes = sizes_of(options.l2)
-    options.seeds = numbers_of("--seeds", options.seeds)
+    options.sizes = sizes_of(options.l2 or ("256KiB..8MiB" if options.full else "256KiB,1MiB,4MiB"))
+    options.seeds = numbers_of("--seeds", options.seeds or ("1,2,3" if options.full else "1,2"))
     options.scenes = options.scenes.split(",")
     crops = FULL_CROPS if options.full else CROPS
     wanted = None

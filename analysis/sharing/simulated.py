@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Who should share a kd-tree, by machine, workers and the size of its caches, in the simulator.
 
-    analysis/sharing/simulated.py FOLDER [--scenes courtyard,interior,forest,showcase] [--l2 256KiB..8MiB] [--seeds 1,2,3]
+    analysis/sharing/simulated.py FOLDER [--scenes courtyard,interior,forest,showcase] [--l2 256KiB,1MiB,4MiB] [--seeds 1,2]
                                   [--full] [--jobs 2] [-- more options of razor-sim run]
 
 A table: for two tiles of copernicus and for zen4-2c, numbers of workers and ways of sharing (nobody, a core's, a tile's, all):
@@ -13,7 +13,7 @@ noise, and ways that lie no farther apart than these runs leave open are not tol
 
 FOLDER keeps the figures of each point: a study that was stopped goes on where it was, one with other options runs what is
 missing. The plot, CSV and JSON go there too (simulated.svg, .csv, .json), unless --output, --csv, --json say where else.
-Without --full chips are two tiles of two cores of two threads; with it, of eight cores of four. Exit code: 0; 2 on a mistake;
+Without --full copernicus's tiles have one core of two threads; with it, eight of four. Exit code: 0; 2 on a mistake;
 130 after Ctrl-C.
 """
 import math
