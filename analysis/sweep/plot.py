@@ -153,19 +153,23 @@ def parse(arguments):
 KINDS = {"errors": draw_errors, "tornado": draw_tornado}
 
 
-def main():
-    options = parse(sys.argv[1:])
-    figure = KINDS[options.kind](drawing(), options)
-    begun = options.output + ".part" + os.path.splitext(options.output)[1]
+def save(figure, output):
+    """A picture, whole or not at all; equal figures give equal bytes."""
+    begun = output + ".part" + os.path.splitext(output)[1]
     try:
-        about = {"Date": None} if options.output.endswith(".svg") else {"Software": None}
+        about = {"Date": None} if output.endswith(".svg") else {"Software": None}
         figure.savefig(begun, dpi=150, bbox_inches="tight", metadata=about)
-        os.replace(begun, options.output)
+        os.replace(begun, output)
     except OSError as why:
-        raise Mistake(f"{options.output}: {why.strerror}; give a place that can be written") from None
+        raise Mistake(f"{output}: {why.strerror}; give a place that can be written") from None
     finally:
         if os.path.exists(begun):
             os.remove(begun)
+
+
+def main():
+    options = parse(sys.argv[1:])
+    save(KINDS[options.kind](drawing(), options), options.output)
 
 
 if __name__ == "__main__":

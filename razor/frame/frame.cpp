@@ -83,6 +83,7 @@ void Frame::Impl::reset() {
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
         tree.root_state.word = absent;
+        tree.left.word = 0;
         // Reads as zero again, which is an absent patch, wherever something was written.
         memory->clear(*memory->find(memory->offset(tree.patches.get())));
         memory->clear(*memory->find(memory->offset(tree.curve_lengths.get())));
@@ -107,8 +108,11 @@ void Frame::Impl::reset() {
 }
 
 int screen_tiles(const Settings& settings) {
-    const auto along = [](int pixels) { return (pixels + tile_side - 1) / tile_side; };
-    return along(settings.width) * along(settings.height);
+    const Crop part = shown_part(settings);
+    const auto along = [](int first, int pixels) {
+        return (first + pixels + tile_side - 1) / tile_side - first / tile_side;
+    };
+    return along(part.x, part.width) * along(part.y, part.height);
 }
 
 Frame::Frame(const Scene& scene, const FrameOptions& options) {
@@ -328,12 +332,15 @@ FrameStatistics Frame::statistics() const {
 
 Film Frame::film() const {
     const FrameHeader& h = *impl_->header;
-    Film film(h.width, h.height);
-    std::size_t pixels = film.pixel_count();
+    const Crop& part = impl_->part;
+    Film film(part.width, part.height);
     const float* values = h.film.get();
     for (const char* name : film_names) {
-        film.add(name).values.assign(values, values + pixels);
-        values += pixels;
+        float* to = film.add(name).values.data();
+        const float* row = values + static_cast<std::ptrdiff_t>(part.y) * h.width + part.x;
+        for (int y = 0; y < part.height; ++y, row += h.width)
+            to = std::copy_n(row, part.width, to);
+        values += static_cast<std::ptrdiff_t>(h.width) * h.height;
     }
     if (impl_->unit != 1)
         for (float& depth : film.find("depth.Z")->values)

@@ -30,6 +30,8 @@ struct FrameOptions {
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
     /// The frame may be posed anew.
     bool moves = false;
+    /// Kernels say of memory that is done with that its contents are dead (razor/kernels/dead.h).
+    bool discards = false;
     /// Room for topology pages; 0: 64 GiB of addresses, which take memory as pages are made.
     std::uint64_t page_bytes = 0;
 };
@@ -70,7 +72,7 @@ struct FrameStatistics {
     std::string plan; // which kernels the scene needs
 };
 
-/// How many screen tiles a picture has.
+/// How many screen tiles the part of the picture has that is rendered; those on its rim are rendered whole.
 int screen_tiles(const Settings& settings);
 
 class Frame {
@@ -129,7 +131,8 @@ public:
     int instances() const;
     /// Fraction of the tiles that workers have taken.
     double progress() const;
-    /// The film as it stands; depth is in world units.
+    /// The film as it stands, of the part of the picture that the settings crop it to; depth is in world
+    /// units.
     Film film() const;
     /// What lies in frame memory is in a unit of its own, so many world units long (razor/frame/unit.h), and
     /// scene coordinates begin here in the world: world = origin + unit * scene.

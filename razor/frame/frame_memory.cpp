@@ -349,7 +349,12 @@ void Frame::Impl::place_workers() {
         r.packets.set(coloured<float>("packets", w, 2 * spare_packets, colour_packets));
         r.blends.set(coloured<float>("blended blocks", w, blends_floats, colour_blends));
         r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
+        ++header->trees.get()[r.tree].sharers;
     }
+    header->discards = options.discards ? 1 : 0;
+    header->grid_lines = grid_lines_each;
+    header->node_count = nodes_each;
+    header->list_lines = list_lines_each;
     order_workers();
 }
 
@@ -431,10 +436,14 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.height = s.height;
     h.samples = s.samples;
     h.packet_samples_log2 = packet_samples_log2(s.samples);
-    h.tiles_x = (s.width + tile_side - 1) / tile_side;
-    h.tiles_y = (s.height + tile_side - 1) / tile_side;
+    part = shown_part(s);
+    h.first_column = part.x / tile_side;
+    h.first_row = part.y / tile_side;
+    h.tiles_x = (part.x + part.width + tile_side - 1) / tile_side - h.first_column;
+    h.tiles_y = (part.y + part.height + tile_side - 1) / tile_side - h.first_row;
+    h.tiles = screen_tiles(s);
     h.stride_log2 = 0;
-    while ((screen_tiles(s) - 1) >> h.stride_log2 >= most_strides)
+    while ((h.tiles - 1) >> h.stride_log2 >= most_strides)
         ++h.stride_log2;
     const View v = view_of(scene.camera);
     const FilmExtent film = film_extent(scene.camera, s);

@@ -43,6 +43,7 @@ struct Frame::Impl {
     /// Of valid meshes, in the frame's unit.
     Impl(const Scene& scene, const FrameOptions& options);
 
+    Crop part;                // of the picture: what is rendered
     double unit = 1;          // see frame_unit()
     double topology_unit = 1; // that of `meshes`
     std::vector<Mesh> meshes;

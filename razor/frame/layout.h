@@ -372,6 +372,8 @@ struct alignas(line_bytes) TreeRecord {
     isa::ref<OpenPatch> patches;
     isa::ref<isa::shared<std::int32_t>> curve_lengths; // floats, mesh units; 0: nobody asked for it yet
     std::int32_t first_place, end_place;               // of the workers that use it: WorkerRecord::place
+    isa::shared<std::int32_t> left;                    // workers that are done with it ...
+    std::int32_t sharers;                              // ... of so many
 };
 
 /// What one worker allocates from: lines or nodes, counted from the base of the family.
@@ -434,6 +436,8 @@ struct FrameHeader {
     std::int32_t width, height, samples;
     std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
     std::int32_t tiles_x, tiles_y;
+    std::int32_t first_column, first_row; // of the tiles of the part that is rendered, in the whole picture
+    std::int32_t tiles;                   // all of that part
     std::int32_t tiles_first, tiles_end; // those to be rendered, by their numbers along the curve
     std::int32_t stride_log2;            // a stride is 2^stride_log2 tiles, the first one from tiles_first
     std::int32_t tile_rows;              // not 0: tiles are numbered row by row
@@ -487,6 +491,8 @@ struct FrameHeader {
     float fixed_target;         // not 0: what all rays ask for, everywhere
     std::int32_t level_choice;  // a LevelChoice
     std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
+    std::int32_t discards;     // not 0: see razor/kernels/dead.h
+    std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

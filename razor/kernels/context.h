@@ -36,6 +36,7 @@ struct Context {
     pointer<float> stack;   // traversal stack, then builders' scratch (scratch.h)
     pointer<float> packets; // rays in flight (scratch.h)
     pointer<float> blends;  // blocks lately blended (scratch.h)
+    sbool discards;         // what is done with is said to be dead
     isa::page_service* pages = nullptr;
     Counters* counters = nullptr;    // of kind_none, or of the rays that are traced
     isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
@@ -68,6 +69,8 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     c.stack = load(field(c.self, &WorkerRecord::stack));
     c.packets = load(field(c.self, &WorkerRecord::packets));
     c.blends = load(field(c.self, &WorkerRecord::blends));
+    sint discards = load(field(frame, &FrameHeader::discards));
+    c.discards = discards != 0;
     return c;
 }
 

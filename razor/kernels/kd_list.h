@@ -1,6 +1,7 @@
 // Item lists of unsplit kd nodes and leaves (layout.h): items with their boxes, as arrays.
 #pragma once
 
+#include "razor/kernels/dead.h"
 #include "razor/kernels/reach.h"
 
 namespace razor::ISA_TARGET {
@@ -36,12 +37,19 @@ inline sint list_size(sint stride) {
     return size;
 }
 
+inline sint list_lines(sint stride) {
+    sint words = stride * 7 + 15;
+    return (words >> 4) + item_list_words / 16;
+}
+
 /// Gives a list back that nobody will read again: it was split, or opened or refined into another.
 inline void free_list(const Context& c, sint line, sint stride) {
     pointer<std::int32_t> first = as<std::int32_t>(c.stack + scratch_free_lists) + list_size(stride);
     sint next = load(first);
     store(as<std::int32_t>(c.lists + line), next);
     store(first, line);
+    if (branch(c.discards))
+        discard_lines(c.lists + (line + 1), list_lines(stride) - 1);
 }
 
 /// Room for `count` items, for rays with target edge lengths up to `most`; the header is written by
@@ -61,9 +69,8 @@ inline List make_list(const Context& c, sint count, sint depth, sfloat most, con
         sint next = load(as<std::int32_t>(c.lists + l.line));
         store(first, next);
     } else {
-        sint words = l.stride * 7 + 15;
-        sint lines = (words >> 4) + item_list_words / 16;
-        l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, lines, trap_lists_full);
+        l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, list_lines(l.stride),
+                          trap_lists_full);
     }
     l.header = as<ItemList>(c.lists + l.line);
     pointer<float> arrays = as<float>(l.header) + item_list_words;

@@ -180,8 +180,10 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
     sint in_rows = load(field(c.frame, &FrameHeader::tile_rows));
     TilePlace corner =
         branch(in_rows != 0) ? place_in_rows(tiles_x, tile) : place_on_curve(tiles_x, tiles_y, tile);
-    sint x0 = corner.column * tile_side;
-    sint y0 = corner.row * tile_side;
+    sint tile_column = corner.column + load(field(c.frame, &FrameHeader::first_column));
+    sint tile_row = corner.row + load(field(c.frame, &FrameHeader::first_row));
+    sint x0 = tile_column * tile_side;
+    sint y0 = tile_row * tile_side;
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
@@ -258,10 +260,12 @@ template <Features F> inline void render_worker(const Context& c) {
     for (;;) {
         Run run = take_run(c);
         if (branch(run.first == run.end))
-            return;
+            break;
         if (!render_run<F>(c, run))
             return;
     }
+    if (branch(c.discards))
+        discard_all(c);
 }
 
 } // namespace shade_kernel

@@ -99,6 +99,22 @@ std::pair<int, int> parse_size(std::string_view option, std::string_view text, R
             parse_whole(fmt::format("the height of {}", option), text.substr(cross + 1), range)};
 }
 
+std::array<int, 4> parse_four(std::string_view option, std::string_view text, Range range) {
+    std::array<int, 4> result{};
+    std::string_view rest = text;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t comma = rest.find(',');
+        if ((comma == std::string_view::npos) != (i == 3)) {
+            throw UserError(fmt::format("{} '{}' is not possible; give four whole numbers with commas "
+                                        "between them, for example 512,256,64,64",
+                                        option, printable(text)));
+        }
+        result[i] = parse_whole(option, rest.substr(0, comma), range);
+        rest = i == 3 ? "" : rest.substr(comma + 1);
+    }
+    return result;
+}
+
 std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range,
                                std::string_view between) {
     const std::size_t at = text.find(between);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -21,6 +22,8 @@ int parse_whole(std::string_view option, std::string_view text, Range range);
 double parse_number(std::string_view option, std::string_view text, Range range);
 /// "640x480" as width and height, each in the range.
 std::pair<int, int> parse_size(std::string_view option, std::string_view text, Range range);
+/// "640,480,16,16" as four numbers in the range.
+std::array<int, 4> parse_four(std::string_view option, std::string_view text, Range range);
 /// "3..17" (or with another word between) as first and last, each in the range, in order.
 std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range,
                                std::string_view between = "..");

@@ -2,9 +2,13 @@
 
 #include "razor/program/arguments.h"
 #include "razor/scene/animation/pose.h"
+#include "razor/scene/crop.h"
 #include "razor/scene/default_scene.h"
+#include "razor/scene/error.h"
 #include "razor/scene/scene_file.h"
 #include "razor/scene/words.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -37,6 +41,10 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
                    "scene")
         ->type_name("FILE");
     app.add_option("--size", size_, "the picture's size in pixels")->type_name("WxH");
+    app.add_option("--crop", crop_,
+                   "render this part of the picture alone, pixels from its top left corner, to a file of its "
+                   "size")
+        ->type_name("X,Y,W,H");
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
     app.add_option("--light-samples", light_samples_, "shadow rays a hit to each light")->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
@@ -75,6 +83,10 @@ SceneDescription SceneOptions::describe_moving() const {
         if (!size_.empty()) {
             std::tie(settings.width, settings.height) = parse_size("--size", size_, size_range);
         }
+        if (!crop_.empty()) {
+            const auto [x, y, width, height] = parse_four("--crop", crop_, crop_range);
+            settings.crop = {x, y, width, height};
+        }
         if (!samples_.empty()) {
             settings.samples = parse_whole("--spp", samples_, samples_range);
         }
@@ -105,6 +117,11 @@ SceneDescription SceneOptions::describe_moving() const {
     const bool built_in = scene_.empty();
     SceneDescription scene = built_in ? default_scene() : razor::describe(scene_, framing);
     override_settings(scene.settings);
+    // Of either the file or the options, the other may have changed what it must lie in.
+    const std::string wrong = mistake_of_crop(scene.settings);
+    if (!wrong.empty()) {
+        throw UserError(fmt::format("{}: {}", crop_.empty() ? scene_ : "--crop", wrong));
+    }
     const bool model = !built_in && is_model_file(scene_);
     if (!scheme_.empty() && !model) { // a model's own scheme is set; its floor stays bilinear
         for (MeshDescription& mesh : scene.meshes) {

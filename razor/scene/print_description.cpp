@@ -91,6 +91,9 @@ std::string to_toml(const SceneDescription& description) {
                    "= {}\nseed = {}\n",
                    toml_text(description.name), settings.width, settings.height, settings.samples,
                    settings.light_samples, settings.sky_samples, settings.seed);
+    if (const Crop& crop = settings.crop; crop != Crop{}) {
+        fmt::format_to(out, "crop = [{}, {}, {}, {}]\n", crop.x, crop.y, crop.width, crop.height);
+    }
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
     print_camera(text, description.camera, description.camera_keys, "camera");

@@ -126,15 +126,28 @@ struct LevelOfDetail {
     constexpr LevelOfDetail(Lod l, int c = 0) : lod(l), coarser(c) {}
 };
 
+/// A part of a picture, pixels from its top left corner.
+struct Crop {
+    int x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(const Crop&) const = default;
+};
+
 struct Settings {
     LevelOfDetail lod{};
     int width = 512, height = 512; // pixels
+    Crop crop{};                   // what is rendered of them; without width and height: all
     int samples = 4;               // camera samples a pixel
     int light_samples = 4;         // shadow rays a hit to each light; 0: lights are left out
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
     int seed = 0;                  // another takes other samples of the same picture
     double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
 };
+
+/// What is rendered of the picture, all of it where no crop is set.
+constexpr Crop shown_part(const Settings& s) {
+    return s.crop == Crop{} ? Crop{0, 0, s.width, s.height} : s.crop;
+}
 
 struct Scene {
     std::string name;

@@ -3,6 +3,7 @@
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/animation/read_keys.h"
 #include "razor/scene/animation/read_playback.h"
+#include "razor/scene/crop.h"
 #include "razor/scene/error.h"
 #include "razor/scene/framing.h"
 #include "razor/scene/models/cage_source.h"
@@ -33,6 +34,13 @@ Settings read_settings(TomlTable table) {
     const auto [width, height] = table.whole_pair("size", {settings.width, settings.height}, size_range);
     settings.width = width;
     settings.height = height;
+    if (const auto crop = table.four_whole("crop", crop_range)) {
+        settings.crop = {(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
+        const std::string wrong = mistake_of_crop(settings);
+        if (!wrong.empty()) {
+            table.fail("crop", wrong);
+        }
+    }
     settings.samples = table.whole("samples", settings.samples, samples_range);
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);

@@ -107,6 +107,23 @@ std::pair<int, int> TomlTable::whole_pair(std::string_view key, std::pair<int, i
     return {checked_whole((*array)[0], full(key), range), checked_whole((*array)[1], full(key), range)};
 }
 
+std::optional<std::array<int, 4>> TomlTable::four_whole(std::string_view key, Range range) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return std::nullopt;
+    }
+    const toml::array* const array = node->as_array();
+    if (array == nullptr || array->size() != 4) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write four whole numbers [a, b, c, d]", full(key), described(*node)));
+    }
+    std::array<int, 4> result{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        result[i] = checked_whole((*array)[i], full(key), range);
+    }
+    return result;
+}
+
 std::string TomlTable::text(std::string_view key, std::string_view preset) {
     const toml::node* const node = find(key);
     if (node == nullptr) {

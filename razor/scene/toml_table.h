@@ -35,6 +35,8 @@ public:
     double number(std::string_view key, double preset, Range range);
     int whole(std::string_view key, int preset, Range range);
     std::pair<int, int> whole_pair(std::string_view key, std::pair<int, int> preset, Range range);
+    /// Four whole numbers, where `key` is stated.
+    std::optional<std::array<int, 4>> four_whole(std::string_view key, Range range);
     std::string text(std::string_view key, std::string_view preset);
     /// Three numbers.
     glm::dvec3 vector(std::string_view key, const glm::dvec3& preset, Range range);

@@ -112,6 +112,9 @@ struct NetworkConfig {
 struct KdTreeConfig {
     std::string share;
 };
+struct RendererConfig {
+    std::string discard;
+};
 
 /// Energies of events, in pJ, and powers that flow whatever happens, in mW; those of memory are with it.
 struct EnergyConfig {
@@ -124,7 +127,7 @@ struct EnergyConfig {
 };
 
 struct SimulationConfig {
-    std::string mode, miss_causes;
+    std::string mode, miss_causes, frame_end;
     integer quantum = 0, window = 0, jitter = 0, stack_kib = 0;
 };
 
@@ -140,6 +143,7 @@ struct Config {
     NetworkConfig network;
     MemoryConfig memory;
     KdTreeConfig kdtree;
+    RendererConfig renderer;
     EnergyConfig energy;
     SimulationConfig sim;
 

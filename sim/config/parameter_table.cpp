@@ -483,6 +483,13 @@ void add_kdtree(Table& t) {
         integer{1} << 20);
 }
 
+void add_renderer(Table& t) {
+    t.add(
+        "renderer.discard", &Config::renderer, &RendererConfig::discard, {"off", "on"},
+        "on: item lists that are done with, and at the frame's end all that its workers have built, are said "
+        "to be dead, an instruction a line, so that caches need not write them back");
+}
+
 void apply_mode(Config& config, const std::string& name) {
     const bool reference = name == "reference";
     config.memory.controller = reference ? "queued" : "immediate";
@@ -515,6 +522,10 @@ void add_simulation(Table& t) {
         "way to memory and back");
     t.add("sim.miss_causes", s, &C::miss_causes, {"off", "on"},
           "on: misses are told apart by cause, with a fully associative cache beside each; takes host time");
+    t.add(
+        "sim.frame_end", s, &C::frame_end, {"drop", "write"},
+        "what of dead data caches have not written back when the frame has ended: drop: the next frame would "
+        "write over it first; write: something else would have it written back");
     t.add("sim.jitter", s, &C::jitter, "", 0, 0, (integer{1} << 31) - 1,
           "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later, by this; 0: none");
     t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 64, 65536, "host stack of a simulated thread");
@@ -533,6 +544,7 @@ std::vector<Parameter> make_parameter_table() {
     add_network(t);
     add_memory(t);
     add_kdtree(t);
+    add_renderer(t);
     add_energy(t);
     add_simulation(t);
     return std::move(t.rows);

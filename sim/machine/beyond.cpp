@@ -38,13 +38,18 @@ Beyond::Beyond(const Config& config, Reply reply)
 void Beyond::connect(std::deque<Tile>& tiles) {
     tiles_ = &tiles;
     if (config_.coherence.kept())
-        coherence_ = std::make_unique<Coherence>(config_, ways_, tiles, [this](Request w) {
-            w.at = std::max(w.at, served_);
-            if (config_.coherence.snoops()) // memory has it as it passes
-                return push(w);
-            const Ways::Leg leg = ways_.writing(asker(w), w.write, w.bytes);
-            return caches_.empty() ? send_on(w, leg, w.at) : send_to_bank(w, leg, w.at);
-        });
+        coherence_ = std::make_unique<Coherence>(
+            config_, ways_, tiles,
+            [this](Request w) {
+                w.at = std::max(w.at, served_);
+                if (config_.coherence.snoops()) // memory has it as it passes
+                    return push(w);
+                const Ways::Leg leg = ways_.writing(asker(w), w.write, w.bytes);
+                return caches_.empty() ? send_on(w, leg, w.at) : send_to_bank(w, leg, w.at);
+            },
+            [this](const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) {
+                send_word(leg, t, arrives);
+            });
     const unsigned level = config_.tile_levels();
     if (level == config_.cache_levels())
         return;

@@ -98,6 +98,7 @@ public:
     virtual MemoryCounters counters() const = 0;
     virtual std::vector<MemoryCounters> rank_counters() const = 0;
     const Network& network() const { return ways_.network(); }
+    void note_messages(std::vector<Network::Sent>* messages) { ways_.network().note_in(messages); }
     const std::deque<SharedCache>& caches() const { return caches_; }
     std::uint64_t misplaced() const;
     /// Null where plain data are not kept coherent.
@@ -116,6 +117,8 @@ protected:
     virtual void send_on(const Request& r, const Ways::Leg& leg, cycle t) = 0;
     /// ... for the bank of a cache here, which it takes.
     virtual void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) = 0;
+    /// A message of the directory's, or to it.
+    virtual void send_word(const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) = 0;
     void take_bank(Request r, cycle there);
     void charge(const Request& r);
     Attribution& attribution_of(const Request& r);

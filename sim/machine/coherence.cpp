@@ -5,13 +5,14 @@
 
 namespace sim {
 
-Coherence::Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, WriteBack write_back)
+Coherence::Coherence(const Config& config, const Ways& ways, std::deque<Tile>& tiles, WriteBack write_back,
+                     Send send)
     : exits_(tiles.front().exits.size()), level_(config.tile_levels() - 1),
       line_bytes_(static_cast<std::uint32_t>(config.cache(level_).line_bytes)),
       snoops_(config.coherence.snoops()),
       look_up_(snoops_ ? 0 : static_cast<std::uint64_t>(config.coherence.directory_cycles)),
       snoop_(snoops_ ? static_cast<std::uint64_t>(config.coherence.snoop_cycles) : 0), ways_(ways),
-      tiles_(tiles), write_back_(std::move(write_back)),
+      tiles_(tiles), write_back_(std::move(write_back)), send_(std::move(send)),
       directory_(snoops_ || config.coherence.directory_entries == 0
                      ? 0
                      : static_cast<std::size_t>(config.coherence.directory_ways),
@@ -19,8 +20,7 @@ Coherence::Coherence(const Config& config, Ways& ways, std::deque<Tile>& tiles, 
                   sets = static_cast<std::uint64_t>(config.coherence.directory_entries /
                                                     config.coherence.directory_ways)](std::uint64_t address) {
                      return ways.home(address) * sets + Directory::set_of(address / bytes, sets);
-                 }),
-      heard_(ways_.network().topology().buses()) {}
+                 }) {}
 
 bool Coherence::grants_silently(const Request& r) {
     const Directory::Line* l = directory_.find(r.read);
@@ -31,44 +31,57 @@ bool Coherence::grants_silently(const Request& r) {
     return true;
 }
 
-Coherence::Outcome Coherence::ask(const Request& r, cycle t) {
+// --- what is decided
+
+void Coherence::ask(const Request& r, cycle t, Hears hears) {
     const bool upgrade = r.kind == Request::upgrade;
     const std::uint32_t who = number_of(r);
+    const auto a = std::make_shared<Asking>();
+    a->r = r;
+    a->hears = std::move(hears);
     under_way(who).asked(r.read, upgrade);
-    t = make_room(r, t);
+    make_room(*a);
     Directory::Line& l = directory_.line(r.read);
     ++(upgrade ? counters_.upgrades : r.exclusive ? counters_.writes : counters_.reads);
-    Outcome out;
-    out.at = t;
-    if (snoops_) {
-        pass_on(r, t);
+    if (snoops_)
         forget_dropped(r, l);
-        out.known = said_;
-    }
-    if (upgrade && l.has(who)) {
-        out.from = Outcome::nobody;
-        out.at = snoops_ ? said_ : ways_.tell_tile(r.read, r.tile, t);
-    } else if (upgrade) {
+    a->granted = upgrade && l.has(who);
+    if (a->granted)
+        a->out.from = Outcome::nobody;
+    else if (upgrade)
         ++counters_.lost_upgrades;
-    }
     if (l.owner != Directory::nobody && l.owner != who)
-        forward(r, l, t, out);
+        plan_forward(*a, l);
     else if (r.exclusive)
-        out.finished = invalidate(r, l, t);
-    give(r, l);
-    if (out.from != Outcome::below)
-        arrives(r, std::max(out.at, out.finished));
-    else
-        l.coming = l.owner == who;
-    return out;
+        plan_invalidation(*a, l);
+    a->writes_back = give(r, l);
+    l.coming = l.owner == who;
+    recall(a, t);
 }
 
-/// Of a directory with room for some lines: until it has room for this one. Where it had none for an earlier
-/// one, several leave.
-cycle Coherence::make_room(const Request& r, cycle t) {
-    cycle ready = t;
-    while (directory_.is_crowded_for(r.read)) {
-        const auto leaving = directory_.leaving(r.read, [&](std::uint64_t line) {
+void Coherence::claim(const Request& r, cycle t, std::function<void(const Outcome&)> over) {
+    ++counters_.claims;
+    const auto a = std::make_shared<Asking>();
+    a->r = r;
+    a->r.read = r.write / line_bytes_ * line_bytes_;
+    a->r.exclusive = true;
+    a->hears.over = std::move(over);
+    a->out.from = Outcome::nobody;
+    const Directory::Line* known = directory_.find(a->r.read);
+    a->changes_owner = known != nullptr && known->shared_by(number_of(r));
+    if (a->changes_owner) {
+        Directory::Line& l = directory_.line(a->r.read);
+        plan_invalidation(*a, l);
+        give(a->r, l);
+        l.coming = true;
+    }
+    carry_out(a, t);
+}
+
+/// Of a directory with room for some lines: others leave. Where it had none for an earlier one, several do.
+void Coherence::make_room(Asking& a) {
+    while (directory_.is_crowded_for(a.r.read)) {
+        const auto leaving = directory_.leaving(a.r.read, [&](std::uint64_t line) {
             const Directory::Line& l = *directory_.find(line);
             const auto asks = [&](std::uint32_t cache) { return under_way(cache).asks(line); };
             return !is_coming(line) && !(l.owner != Directory::nobody && asks(l.owner)) &&
@@ -78,55 +91,33 @@ cycle Coherence::make_room(const Request& r, cycle t) {
             ++counters_.crowded;
             break;
         }
-        ready = std::max(ready, recall(r, *leaving, t));
+        plan_recall(a, *leaving);
     }
-    return ready;
 }
 
-/// All that have the line drop it; returns when they have said so.
-cycle Coherence::recall(const Request& r, std::uint64_t line, cycle t) {
+/// All that have the line drop it.
+void Coherence::plan_recall(Asking& a, std::uint64_t line) {
     const Directory::Line l = *directory_.find(line);
     directory_.forget(line);
     ++counters_.recalled_lines;
-    cycle told = t;
     const auto take = [&](std::uint32_t holder) {
-        const cycle there = ways_.tell_tile(line, tile_of(holder), t);
         Cache& at = cache(holder);
         ++counters_.recalls;
-        cycle done = there + at.latency();
-        if (at.holds(line)) {
+        Told told{holder, line, holder == l.owner ? l.since : 0, at.holds(line), false};
+        if (told.holds) {
             ++counters_.recalls_received;
-            if (holder == l.owner)
-                done = std::max(there, l.since) + at.latency();
             // A sharer's too: who writes a shared word has changed the line before the directory hears of it.
-            if (at.share(line, line_bytes_, r.column)) {
-                ++counters_.written_back;
-                write_back(holder, r, line, done);
-            }
+            told.changed = at.share(line, line_bytes_, a.r.column);
+            counters_.written_back += told.changed ? 1 : 0;
             at.lose(line, line_bytes_);
         } else {
             ++counters_.recalls_stale;
         }
-        told = std::max(told, ways_.answer_directory(tile_of(holder), line, done));
+        a.recalled.push_back(told);
     };
     if (l.owner != Directory::nobody)
         take(l.owner);
     std::for_each(l.sharers.begin(), l.sharers.end(), take);
-    return told;
-}
-
-/// The request is on its own bus at `t`: to the others.
-void Coherence::pass_on(const Request& r, cycle t) {
-    const Topology& topology = ways_.network().topology();
-    const std::size_t own = topology.bus_of(r.tile);
-    said_ = t;
-    for (std::size_t bus = 0; bus < heard_.size(); ++bus) {
-        heard_[bus] = bus == own ? t : ways_.tell_bus(r.read, bus, t);
-        counters_.passed_on += bus == own ? 0 : 1;
-        said_ = std::max(said_, heard_[bus]);
-    }
-    said_ += snoop_;
-    counters_.snoops += tiles_.size() * exits_ - 1;
 }
 
 /// Caches that hear of a request say what they have then: what they dropped without a word is known now.
@@ -139,70 +130,50 @@ void Coherence::forget_dropped(const Request& r, Directory::Line& l) {
     std::erase_if(l.sharers, dropped);
 }
 
-/// When a cache hears of the request that the directory has looked up, or the hub has, at `t`.
-cycle Coherence::hears(const Request& r, std::uint32_t cache, cycle t) {
-    const std::uint32_t tile = tile_of(cache);
-    return snoops_ ? heard_[ways_.network().topology().bus_of(tile)] + snoop_
-                   : ways_.tell_tile(r.read, tile, t);
-}
-
 /// Another cache may write the line.
-void Coherence::forward(const Request& r, Directory::Line& l, cycle t, Outcome& out) {
+void Coherence::plan_forward(Asking& a, Directory::Line& l) {
+    const Request& r = a.r;
     const std::uint32_t owner = std::exchange(l.owner, Directory::nobody);
-    const cycle there = hears(r, owner, t);
     Cache& from = cache(owner);
     ++counters_.forwards;
-    if (!from.holds(r.read) || under_way(owner).asks_line(r.read)) {
+    Told told{owner, r.read, l.since, from.holds(r.read) && !under_way(owner).asks_line(r.read), false};
+    if (!told.holds) {
         ++counters_.forwards_stale;
-        if (!snoops_)
-            out.at = ways_.answer_directory(tile_of(owner), r.read, there + from.latency());
-        return;
-    }
-    const cycle start = std::max(there, l.since) + from.latency();
-    counters_.wait_cycles += start - from.latency() - there;
-    out.from = Outcome::owner;
-    out.at = ways_.pass(tile_of(owner), r.tile, line_bytes_, start); // before it is written back
-    bool dirty = false;
-    if (!r.exclusive) {
-        dirty = from.share(r.read, line_bytes_, r.column);
-        l.sharers.push_back(owner);
-        if (dirty) {
-            ++counters_.written_back;
-            write_back(owner, r, r.read, start);
+    } else {
+        a.out.from = Outcome::owner;
+        bool dirty = false;
+        if (!r.exclusive) {
+            dirty = told.changed = from.share(r.read, line_bytes_, r.column);
+            l.sharers.push_back(owner);
+            counters_.written_back += dirty ? 1 : 0;
+        } else if (!under_way(owner).asks(r.read)) {
+            dirty = from.lose(r.read, line_bytes_);
         }
-    } else if (!under_way(owner).asks(r.read)) {
-        dirty = from.lose(r.read, line_bytes_);
+        ++(dirty ? counters_.forwards_dirty : counters_.forwards_clean);
     }
-    ++(dirty ? counters_.forwards_dirty : counters_.forwards_clean);
+    a.owner.push_back(told);
 }
 
-/// All sharers but the writer drop the line; returns when the writer knows.
-cycle Coherence::invalidate(const Request& r, const Directory::Line& l, cycle t) {
-    cycle told = snoops_ ? said_ : 0;
+/// All sharers but the writer drop the line.
+void Coherence::plan_invalidation(Asking& a, const Directory::Line& l) {
+    a.invalidates = true;
     for (const std::uint32_t sharer : l.sharers) {
-        if (sharer == number_of(r))
+        if (sharer == number_of(a.r))
             continue;
-        const cycle there = hears(r, sharer, t);
         Cache& at = cache(sharer);
         ++counters_.invalidations;
-        if (at.holds(r.read) && !under_way(sharer).asks(r.read)) {
-            ++counters_.invalidations_received;
-            at.lose(r.read, line_bytes_);
-        } else {
-            ++counters_.invalidations_stale;
-        }
-        if (snoops_)
-            continue;
-        ++counters_.acknowledgements;
-        told = std::max(told, ways_.tell_writer(tile_of(sharer), r.tile, there + at.latency()));
+        const bool holds = at.holds(a.r.read) && !under_way(sharer).asks(a.r.read);
+        ++(holds ? counters_.invalidations_received : counters_.invalidations_stale);
+        if (holds)
+            at.lose(a.r.read, line_bytes_);
+        a.sharers.push_back({sharer, a.r.read, 0, holds, false});
     }
-    return told;
 }
 
-/// The line is the asker's.
-void Coherence::give(const Request& r, Directory::Line& l) {
+/// The line is the asker's. Returns whether it writes back what it had changed before: a right that was given
+/// before, and taken while the line was asked for again.
+bool Coherence::give(const Request& r, Directory::Line& l) {
     const std::uint32_t who = number_of(r);
-    l.coming = false;
     if (r.exclusive) {
         l.sharers.clear();
         l.owner = who;
@@ -217,14 +188,142 @@ void Coherence::give(const Request& r, Directory::Line& l) {
         if (!l.shared_by(who))
             l.sharers.push_back(who);
         ++counters_.shared;
-        // A right that was given before, and taken while the line was asked for again.
-        if (cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.column)) {
-            ++counters_.written_back;
-            write_back(who, r, r.read, r.at);
-        }
-        return;
+        return cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.column);
     }
     cache(who).grant(r.read, line_bytes_);
+    return false;
+}
+
+// --- messages
+
+void Coherence::send(const Ways::Leg& leg, cycle t, const Shared& a, std::function<void(cycle)> then) {
+    ++a->unheard;
+    send_(leg, t, [this, a, then = std::move(then)](cycle there) {
+        then(there);
+        heard(a);
+    });
+}
+
+/// One message less is on its way.
+void Coherence::heard(const Shared& a) {
+    if (--a->unheard != 0)
+        return;
+    if (a->out.from != Outcome::below && a->changes_owner)
+        arrives(a->r, std::max(a->out.at, a->out.finished));
+    if (a->hears.over)
+        a->hears.over(a->out);
+}
+
+/// Lines that leave the directory, at `t`; what else is to be done follows when all of them have left.
+void Coherence::recall(const Shared& a, cycle t) {
+    if (a->recalled.empty())
+        return carry_out(a, t);
+    struct Left {
+        std::size_t messages;
+        cycle ready;
+    };
+    const auto left = std::make_shared<Left>(Left{a->recalled.size(), t});
+    for (const Told& told : a->recalled) {
+        const std::uint32_t tile = tile_of(told.cache);
+        send(ways_.telling_tile(told.line, tile), t, a, [this, a, told, tile, left](cycle there) {
+            const cycle done =
+                (told.holds ? std::max(there, told.since) : there) + cache(told.cache).latency();
+            if (told.changed)
+                write_back(told.cache, a->r, told.line, done);
+            send(ways_.answering_directory(tile, told.line), done, a, [this, a, left](cycle back) {
+                left->ready = std::max(left->ready, back);
+                if (--left->messages == 0)
+                    carry_out(a, left->ready);
+            });
+        });
+    }
+}
+
+/// The directory, or the hub, says what is to be done.
+void Coherence::carry_out(const Shared& a, cycle t) {
+    const Request& r = a->r;
+    const auto latest = [](cycle& at) { return [&at](cycle there) { at = std::max(at, there); }; };
+    a->out.at = t;
+    if (snoops_)
+        pass_on(a, t);
+    else {
+        if (a->granted)
+            send(ways_.telling_tile(r.read, r.tile), t, a, [a](cycle there) { a->out.at = there; });
+        for (const Told& owner : a->owner)
+            send(ways_.telling_tile(r.read, tile_of(owner.cache)), t, a,
+                 [this, a](cycle there) { owner_hears(a, there); });
+        for (const Told& sharer : a->sharers) {
+            ++counters_.acknowledgements;
+            send(ways_.telling_tile(r.read, tile_of(sharer.cache)), t, a,
+                 [this, a, number = sharer.cache, latest](cycle there) {
+                     send(ways_.telling_writer(tile_of(number), a->r.tile), there + cache(number).latency(),
+                          a, latest(a->out.finished));
+                 });
+        }
+    }
+    if (a->writes_back) {
+        ++counters_.written_back;
+        write_back(number_of(r), r, r.read, r.at);
+    }
+    if (a->out.from == Outcome::below && (snoops_ || a->owner.empty()))
+        a->hears.below(t);
+    heard(a);
+}
+
+/// The request is on its own bus at `t`: to the others.
+void Coherence::pass_on(const Shared& a, cycle t) {
+    const Topology& topology = ways_.network().topology();
+    const std::size_t own = topology.bus_of(a->r.tile), buses = topology.buses();
+    counters_.snoops += tiles_.size() * exits_ - 1;
+    a->deaf_buses = buses;
+    const auto hears = [this, a](std::size_t bus, cycle there) {
+        a->said = std::max(a->said, there + snoop_);
+        for (const Told& owner : a->owner)
+            if (ways_.network().topology().bus_of(tile_of(owner.cache)) == bus)
+                owner_hears(a, there + snoop_);
+        if (--a->deaf_buses != 0)
+            return;
+        a->out.known = a->said;
+        if (a->granted)
+            a->out.at = a->said;
+        if (a->invalidates)
+            a->out.finished = a->said;
+    };
+    for (std::size_t bus = 0; bus < buses; ++bus) {
+        if (bus == own) {
+            hears(bus, t);
+        } else {
+            ++counters_.passed_on;
+            const auto there_hear = [hears, bus](cycle there) { hears(bus, there); };
+            // A line that its owner brings waits for nobody else.
+            if (a->out.from != Outcome::owner || topology.bus_of(tile_of(a->owner.front().cache)) == bus)
+                send(ways_.telling_bus(a->r.read, bus), t, a, there_hear);
+            else
+                send_(ways_.telling_bus(a->r.read, bus), t, there_hear);
+        }
+    }
+}
+
+/// The owner of the line brings it, or says that it has it no more.
+void Coherence::owner_hears(const Shared& a, cycle there) {
+    const Request& r = a->r;
+    const Told& owner = a->owner.front();
+    const std::uint32_t tile = tile_of(owner.cache);
+    const std::uint64_t latency = cache(owner.cache).latency();
+    if (!owner.holds) {
+        if (!snoops_)
+            send(ways_.answering_directory(tile, r.read), there + latency, a, [a](cycle back) {
+                a->out.at = back;
+                a->hears.below(back);
+            });
+        return;
+    }
+    const cycle ready = std::max(there, owner.since);
+    counters_.wait_cycles += ready - there;
+    // Before it is written back.
+    send(ways_.passing(tile, r.tile, line_bytes_), ready + latency, a, [a](cycle back) { a->out.at = back; });
+    if (owner.changed)
+        write_back(owner.cache, r, r.read, ready + latency);
 }
 
 void Coherence::write_back(std::uint32_t from, const Request& r, std::uint64_t line, cycle t) {
@@ -262,21 +361,6 @@ void Coherence::written(const Request& r) {
     const bool again = under_way(who).written(r.write, r.sequence);
     if (!again && !r.stays)
         directory_.remove(r.write, who);
-}
-
-void Coherence::claim(const Request& r, cycle t) {
-    ++counters_.claims;
-    Request line = r;
-    line.read = r.write / line_bytes_ * line_bytes_;
-    if (snoops_)
-        pass_on(line, t);
-    const Directory::Line* known = directory_.find(line.read);
-    if (known == nullptr || !known->shared_by(number_of(r)))
-        return;
-    line.exclusive = true;
-    Directory::Line& l = directory_.line(line.read);
-    l.since = std::max(t, invalidate(line, l, t));
-    give(line, l);
 }
 
 std::uint64_t Coherence::incoherent() const {

@@ -140,6 +140,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
         order_.push_back(&tile);
         follow_events(tile);
     }
+    beyond_->note_messages(options.messages);
     beyond_->connect(tiles_);
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)

@@ -125,11 +125,13 @@ void Engine::judge_prefetches() {
     beyond_->judge_prefetches();
 }
 
-/// Dirty lines of data that outlives the frame are written back; those of transient data are dropped.
+/// Dirty lines of data that outlives the frame are written back; those of transient data as sim.frame_end
+/// says.
 void Engine::finish_frame() {
-    auto lasting = [this](std::uint64_t address) {
+    const bool all = config_.sim.frame_end == "write";
+    auto lasting = [this, all](std::uint64_t address) {
         const isa::region* r = space_.find(address);
-        return r != nullptr && !r->transient;
+        return all || (r != nullptr && !r->transient);
     };
     std::size_t frame_end = labels_.phases.size() - 1; // of the first kind
     for (Tile& tile : tiles_)

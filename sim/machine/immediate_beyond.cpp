@@ -125,8 +125,8 @@ void ImmediateBeyond::leave(Queue& queue, const Request& r, OrderedPool& pool) {
 /// Of a coherent machine: what needs no MSHR, and no place in the buffer.
 bool ImmediateBeyond::serves_alone(const Request& r) {
     if (r.kind == Request::claim) {
-        const cycle there = ways_.answer_directory(r.tile, r.write, r.at);
-        coherence_->claim(r, there + coherence_->look_up());
+        const cycle there = ways_.send(ways_.telling_directory(r.tile, r.write), r.at);
+        coherence_->claim(r, there + coherence_->look_up(), {});
         return true;
     }
     if (r.kind == Request::upgrade && r.stage == Request::arrives && coherence_->grants_silently(r)) {
@@ -144,10 +144,18 @@ bool ImmediateBeyond::serves_alone(const Request& r) {
     return true;
 }
 
+/// All messages are there at once, as far as it goes here.
+Coherence::Outcome ImmediateBeyond::ask_others(const Request& r, cycle t) {
+    Coherence::Outcome out;
+    coherence_->ask(
+        r, t, {[&out](cycle at) { out.at = at; }, [&out](const Coherence::Outcome& all) { out = all; }});
+    return out;
+}
+
 /// A line, or the right to write it, from memory or another tile.
 Answer ImmediateBeyond::read_coherently(const Request& r) {
     const cycle there = ways_.ask(asker(r), r.read, r.at) + coherence_->look_up();
-    const Coherence::Outcome out = coherence_->ask(r, there);
+    const Coherence::Outcome out = ask_others(r, there);
     cycle ready = out.at;
     if (out.from == Coherence::Outcome::below) {
         ++attribution_of(r).cell(r.read, r.column).memory_reads;
@@ -234,7 +242,7 @@ void ImmediateBeyond::read(Request r) {
     Answer answer{r.at, Cause::coherence};
     if (coherence_ && !r.found) { // the directory lies beside the cache's tags
         const cycle known = r.at + cache_of(r).cache.latency() + coherence_->look_up();
-        const Coherence::Outcome out = coherence_->ask(r, known);
+        const Coherence::Outcome out = ask_others(r, known);
         r.found = true;
         r.finished = out.finished;
         answer.ready = std::max(out.at, out.finished);

@@ -54,6 +54,10 @@ private:
     void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
         take_bank(r, ways_.send(leg, t));
     }
+    void send_word(const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) override {
+        arrives(ways_.send(leg, t));
+    }
+    Coherence::Outcome ask_others(const Request& r, cycle t);
     void serve_from_memory(Request r);
     void wait(Queue& queue, Request r, cycle until);
     void leave(Queue& queue, const Request& r, OrderedPool& pool);

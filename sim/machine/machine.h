@@ -4,6 +4,7 @@
 #include "isa/address_space.h"
 #include "sim/config/config.h"
 #include "sim/machine/report.h"
+#include "sim/network/network.h"
 
 #include <atomic>
 #include <functional>
@@ -36,6 +37,8 @@ struct RunOptions {
     /// Another than 0: in each window all that the host may do in any order (tiles, what leaves them, who
     /// wakes) is done in one drawn with this seed. No report depends on it.
     std::uint32_t host_order = 0;
+    /// Filled with all messages of the network, for who compares.
+    std::vector<Network::Sent>* messages = nullptr;
     /// Ends the run at the next window's beginning once it is true.
     const std::atomic<bool>* stop = nullptr;
 };

@@ -49,15 +49,14 @@ void QueuedBeyond::serve(cycle end) {
         }
         // All that memory has decided before this cycle is known: what it will decide is answered later.
         tickets_.set_floors({next + unknown_, next + unknown_});
-        if (message == next) {
-            if (const auto there = flights_.step())
-                arrive(there->id, there->at);
-        } else if (event == next) {
+        if (event == next) {
             const Event e = events_.top();
             events_.pop();
             act(e);
-        } else {
+        } else if (request == next) {
             act(pop());
+        } else if (const auto there = flights_.step()) { // all that are sent at this cycle have been
+            arrive(there->id, there->at);
         }
         take_answers();
         take_lines();
@@ -109,6 +108,11 @@ void QueuedBeyond::arrive(std::uint64_t id, cycle there) {
         free_.push_back(id);
         r.at = there;
         return push(r);
+    }
+    case Transfer::word: {
+        const Coherence::Arrives arrives = std::move(arrives_[id]);
+        free_.push_back(id);
+        return arrives(there);
     }
     case Transfer::back:
         const Transfer t = transfers_[id];
@@ -250,7 +254,9 @@ void QueuedBeyond::enter_mshr(Request r) {
 /// A shared word was written: the directory, or who else is on the bus, hears of it.
 void QueuedBeyond::claim(Request r) {
     if (r.stage != Request::arrives)
-        return coherence_->claim(r, r.at + coherence_->look_up());
+        return coherence_->claim(r, r.at + coherence_->look_up(),
+                                 [this, line = r.write / line_bytes_ * line_bytes_](
+                                     const Coherence::Outcome&) { known_.push_back(line); });
     r.stage = Request::writes;
     send_on(r, ways_.telling_directory(r.tile, r.write), r.at);
 }
@@ -272,21 +278,48 @@ bool QueuedBeyond::is_blocked(const Request& r) {
 }
 
 /// Without caches beyond the tiles: the directory beside the line's channel has the request, or the bus.
-void QueuedBeyond::ask_others(const Request& r) {
+void QueuedBeyond::ask_others(Request r) {
     if (is_blocked(r))
         return;
-    const Coherence::Outcome out = coherence_->ask(r, r.at + coherence_->look_up());
-    if (out.from != Coherence::Outcome::below)
+    r.decision = new_decision();
+    coherence_->ask(r, r.at + coherence_->look_up(),
+                    {[this, r](cycle at) {
+                         ++attribution_of(r).cell(r.read, r.column).memory_reads;
+                         arrive(keep({.goes = Transfer::to_be_read,
+                                      .who = asker(r),
+                                      .address = r.read,
+                                      .bytes = line_bytes_,
+                                      .request = r}),
+                                at);
+                     },
+                     [this, r](const Coherence::Outcome& out) { is_over(r, out); }});
+}
+
+std::uint32_t QueuedBeyond::new_decision() {
+    if (free_decisions_.empty()) {
+        free_decisions_.push_back(static_cast<std::uint32_t>(decisions_.size()));
+        decisions_.emplace_back();
+    }
+    const std::uint32_t number = free_decisions_.back();
+    free_decisions_.pop_back();
+    decisions_[number] = {};
+    return number;
+}
+
+/// All that others have to say of a request is known.
+void QueuedBeyond::is_over(const Request& r, const Coherence::Outcome& out) {
+    if (out.from != Coherence::Outcome::below) {
+        free_decisions_.push_back(r.decision);
+        known_.push_back(r.read);
         return reply(r, {std::max(out.at, out.finished), Cause::coherence});
-    ++attribution_of(r).cell(r.read, r.column).memory_reads;
-    Transfer line{.goes = Transfer::to_be_read,
-                  .who = asker(r),
-                  .address = r.read,
-                  .bytes = line_bytes_,
-                  .request = r,
-                  .known = out.known};
-    line.request.finished = out.finished;
-    arrive(keep(line), out.at);
+    }
+    Decision& d = decisions_[r.decision];
+    d.over = true;
+    d.out = out;
+    if (d.leaves != nothing)
+        send_back(d.leaves, std::max(d.at, out.known));
+    else if (d.is_back)
+        is_back(r, {d.at, d.from});
 }
 
 /// What an owner had changed comes to memory, as others read it.
@@ -327,14 +360,16 @@ void QueuedBeyond::look_up(Request r) {
         if (is_blocked(r))
             return;
         const cycle known = r.at + cache.latency() + coherence_->look_up();
-        const Coherence::Outcome out = coherence_->ask(r, known);
-        if (out.from != Coherence::Outcome::below)
-            return reply(r, {std::max(out.at, out.finished), Cause::coherence});
-        r.found = true;
-        r.finished = out.finished;
-        r.at =
-            out.at > known ? out.at : r.at + coherence_->look_up(); // if who was thought to have it has not
-        return push(r);
+        r.decision = new_decision();
+        return coherence_->ask(r, known,
+                               {[this, r, known](cycle at) {
+                                    Request found = r;
+                                    found.found = true;
+                                    // Later if who was thought to have it has not.
+                                    found.at = at > known ? at : r.at + coherence_->look_up();
+                                    push(found);
+                                },
+                                [this, r](const Coherence::Outcome& out) { is_over(r, out); }});
     }
     const Answer a = write ? cache.serve_booked({r.write, r.bytes, r.at, r.column, r.whole}, true)
                            : cache.serve_booked({r.read, line_bytes_, r.at, r.column}, false);
@@ -367,18 +402,26 @@ void QueuedBeyond::answer(const Request& r, const Answer& a) {
               a.ready);
 }
 
-void QueuedBeyond::is_back(const Request& r, Answer a) {
-    if (r.finished > a.ready)
-        a = {r.finished, Cause::coherence};
-    if (coherence_) {
-        coherence_->arrives(r, a.ready);
-        known_.push_back(r.read);
+void QueuedBeyond::is_back(const Request& r, const Answer& a) {
+    if (!coherence_)
+        return reply(r, a);
+    Decision& d = decisions_[r.decision];
+    if (!d.over) { // others have not yet dropped it
+        d.is_back = true;
+        d.at = a.ready;
+        d.from = a.from;
+        return;
     }
-    reply(r, a);
+    free_decisions_.push_back(r.decision);
+    const bool waits = d.out.finished > a.ready;
+    const Answer all = waits ? Answer{d.out.finished, Cause::coherence} : a;
+    coherence_->arrives(r, all.ready);
+    known_.push_back(r.read);
+    reply(r, all);
 }
 
 /// The tile has what it asked for.
-void QueuedBeyond::reply(const Request& r, Answer a) {
+void QueuedBeyond::reply(const Request& r, const Answer& a) {
     reply_(r.tile, r.ticket, a);
     foresee(std::max(a.ready, served_), Event::frees_mshr, port_of(r));
 }
@@ -389,7 +432,18 @@ void QueuedBeyond::take_answers() {
         return;
     for (const WaitingMemory::Done& d : memory_.reads()) {
         const Transfer& t = transfers_[d.id];
-        send_back(d.id, std::max(d.at, t.known));
+        if (!coherence_ || !config_.coherence.snoops() || t.who.kind != Ways::Asker::tile) {
+            send_back(d.id, d.at);
+            continue;
+        }
+        // It leaves when caches have said what they have.
+        Decision& decision = decisions_[t.request.decision];
+        if (decision.over) {
+            send_back(d.id, std::max(d.at, decision.out.known));
+        } else {
+            decision.leaves = d.id;
+            decision.at = d.at;
+        }
     }
     for (const WaitingMemory::Done& d : memory_.writes()) {
         const Transfer& t = transfers_[d.id];

@@ -2,10 +2,10 @@
 // request holds its MSHR or its place in the write-back buffer until memory has decided its answer and the
 // answer is there, which may be windows later; those that find none free wait for them, and lines for room in
 // memory's queues, each in the order in which they came. Messages take links of the network when they come
-// there (flights.h). At the same cycle memory acts before messages, these before what lies here, and that
-// before new requests. On a coherent machine a request acts when the directory, or the hub of the
-// buses, has it; one for a line whose owner is still being answered waits until that is decided, and then
-// goes on in the order in which it came.
+// there (flights.h), those of a directory or hub too: what it waits for happens when they are there. At the
+// same cycle memory acts before what lies here, that before new requests, and these before messages. On a
+// coherent machine a request acts when the directory, or the hub of the buses, has it; one for a line whose
+// owner is still being answered waits until that is decided, and then goes on in the order in which it came.
 #pragma once
 
 #include "sim/machine/beyond.h"
@@ -48,15 +48,25 @@ private:
     };
     /// What is on its way over the network, or in memory.
     struct Transfer {
-        enum Goes : std::uint8_t { to_be_read, to_be_written, to_a_bank, on, back } goes;
+        enum Goes : std::uint8_t { to_be_read, to_be_written, to_a_bank, on, word, back } goes;
         Ways::Asker who{};
         std::uint64_t address = 0;
         std::uint32_t bytes = 0; // that come back, or go there
         cycle ticket = 0;        // of a cache here, among tickets_
         Request request{};       // of a tile
         Cause from = Cause::memory;
-        cycle known = 0; // where caches are coherent: no answer leaves earlier
     };
+    /// Where caches are coherent: what others say of a line that comes from below, and which answer waits
+    /// for that, by Request::decision.
+    struct Decision {
+        bool over = false; // all of it is known:
+        Coherence::Outcome out{};
+        std::uint64_t leaves = nothing; // memory's answer, a transfer, which would leave at ...
+        bool is_back = false;           // the line is there since ...
+        cycle at = 0;
+        Cause from = Cause::memory;
+    };
+    static constexpr std::uint64_t nothing = ~std::uint64_t{0};
     /// What a cache here has answered with a ticket.
     struct Unanswered {
         Request request;
@@ -81,6 +91,12 @@ private:
     void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
         leave(keep({.goes = Transfer::to_a_bank, .request = r}), leg, t);
     }
+    void send_word(const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) override {
+        const std::uint64_t word = keep({.goes = Transfer::word});
+        arrives_.resize(transfers_.size());
+        arrives_[word] = arrives;
+        leave(word, leg, t);
+    }
     void foresee(cycle at, Event::Kind kind, std::uint64_t what) {
         events_.push({at, foreseen_++, kind, what});
     }
@@ -96,7 +112,9 @@ private:
     bool grants_silently(const Request& r);
     void next_waiting(std::size_t port, bool mshr);
     bool is_blocked(const Request& r);
-    void ask_others(const Request& r);
+    void ask_others(Request r);
+    std::uint32_t new_decision();
+    void is_over(const Request& r, const Coherence::Outcome& out);
     void write_owners(const Request& r);
     void wake();
     void want_buffer(const Request& r);
@@ -105,8 +123,8 @@ private:
     void enter_mshr(Request r);
     void look_up(Request r);
     void answer(const Request& r, const Answer& a);
-    void is_back(const Request& r, Answer a);
-    void reply(const Request& r, Answer a);
+    void is_back(const Request& r, const Answer& a);
+    void reply(const Request& r, const Answer& a);
     void take_answers();
     void answer_ticket(cycle ticket, const Answer& a) {
         tickets_.answer(ticket, a.ready, a.from);
@@ -124,7 +142,10 @@ private:
     std::vector<Transfer> transfers_;
     std::vector<std::uint64_t> free_; // of these
     std::vector<Unanswered> unanswered_;
-    bool lines_came_ = false; // some of these are answered
+    bool lines_came_ = false;                 // some of these are answered
+    std::vector<Coherence::Arrives> arrives_; // of words, by transfer
+    std::vector<Decision> decisions_;
+    std::vector<std::uint32_t> free_decisions_;
     // Of a coherent machine, by line: what waits until it is known when the line's owner has it, and the
     // lines of which that is known now.
     std::unordered_map<std::uint64_t, std::vector<Request>> blocked_;

@@ -1,6 +1,7 @@
 #include "sim/machine/windows.h"
 
 #include "sim/memory/memory_lines.h"
+#include "sim/network/topology.h"
 #include "sim/network/ways.h"
 
 #include <algorithm>
@@ -24,19 +25,31 @@ std::uint64_t to_memory_clocks(const Config& c, std::uint64_t core_cycles) {
 
 std::uint64_t known_ahead(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
-    const std::uint64_t memory = MemoryLines::shortest_read(c);
-    return c.beyond_tiles(last) ? std::min(memory, wide(c.cache(last).latency)) : memory;
+    std::uint64_t ahead = MemoryLines::shortest_read(c);
+    if (c.beyond_tiles(last))
+        ahead = std::min(ahead, wide(c.cache(last).latency));
+    if (c.coherence.kept() && !c.network.ideal())
+        ahead = std::min(ahead, wide(c.coherence.snoops() ? c.coherence.snoop_cycles
+                                                          : c.cache(c.tile_levels() - 1).latency));
+    return ahead;
 }
 
 namespace {
+
+std::uint64_t flits(const Config& c, integer bytes) {
+    return static_cast<std::uint64_t>(flits_of(c.network, bytes));
+}
 
 std::uint64_t line_from_below(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
     const Ways::Shortest way = Ways::shortest(c);
     // What has waited for queues is decided when it has long been there, and when a line is there is known
     // when it has come to its last link.
-    if (c.memory.controller == "queued")
-        return known_ahead(c) + way.last_link;
+    if (c.memory.controller == "queued") {
+        // A writer's line may wait for word that others have dropped it, which is as long known before.
+        const bool word = c.coherence.kept() && !c.coherence.snoops() && !c.network.ideal();
+        return known_ahead(c) + (word ? flits(c, c.network.request_bytes) : way.last_link);
+    }
     if (!c.beyond_tiles(last))
         return way.there + MemoryLines::shortest_read(c) + way.back;
     // A cache's bank takes its turn when the request is there: only what follows can be counted on.
@@ -56,10 +69,8 @@ std::uint64_t shortest_known(const Config& c) {
 } // namespace
 
 std::uint64_t shortest_answer(const Config& c) {
-    if (!c.coherence.kept())
-        return line_from_below(c);
-    const std::uint64_t right = shortest_known(c) + (c.coherence.snoops() ? 0 : Ways::shortest(c).there);
-    return std::min(line_from_below(c), right);
+    // Who has the right to write a line by now gets it when the request is served.
+    return c.coherence.kept() ? 0 : line_from_below(c);
 }
 
 std::uint64_t shortest_line(const Config& c) {

@@ -15,8 +15,8 @@ std::uint64_t to_memory_clocks(const Config& config, std::uint64_t core_cycles);
 std::uint64_t shortest_answer(const Config& config);
 /// ... to one with a line, from below or from another tile.
 std::uint64_t shortest_line(const Config& config);
-/// Memory with queues: cycles by which it is known earlier that an answer leaves it, or a cache beyond the
-/// tiles.
+/// Memory with queues: cycles by which it is known earlier that an answer leaves it, a cache beyond the
+/// tiles, or one of a tile that was told of a line.
 std::uint64_t known_ahead(const Config& config);
 /// Cycles of a window between meetings of tiles and memory (sim.window, or what it stands for).
 std::uint64_t window_cycles(const Config& config);

@@ -105,8 +105,9 @@ struct Request {
     enum Stage : std::uint8_t { arrives, writes, reads, supplied } stage = arrives;
     static constexpr std::size_t no_entry = ~std::size_t{0};
     std::size_t mshr = 0;
-    cycle finished = 0;   // when all other caches have dropped the line
-    std::uint32_t to = 0; // cache beyond the tiles that word of a line goes to
+    cycle finished = 0;         // when all other caches have dropped the line
+    std::uint32_t decision = 0; // a number, of what they say
+    std::uint32_t to = 0;       // cache beyond the tiles that word of a line goes to
 };
 
 } // namespace sim

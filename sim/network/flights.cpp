@@ -14,6 +14,10 @@ void Flights::send(std::uint64_t id, const Network::Leg& leg, cycle t) {
     Flight& f = flights_[number];
     f.id = id;
     f.number = sent_++;
+    if (std::vector<Network::Sent>* noted = network_.noted_in()) {
+        f.noted = noted->size();
+        noted->push_back({leg, t, never});
+    }
     f.leg = leg;
     f.sent = f.head = t;
     f.flits = f.left = network_.flits(leg);
@@ -76,6 +80,8 @@ std::optional<Flights::Arrival> Flights::step() {
     }
     free_.push_back(e.flight);
     const cycle there = f.taken.last + 1;
+    if (std::vector<Network::Sent>* noted = network_.noted_in())
+        (*noted)[f.noted].there = there;
     network_.count(f.leg, f.links.size(), f.sent, there);
     return Arrival{f.id, there};
 }

@@ -44,6 +44,7 @@ private:
     /// A message on its way.
     struct Flight {
         std::uint64_t id, number; // in the order in which they were sent
+        std::size_t noted;        // among the network's
         Network::Leg leg;
         cycle sent, head; // its first flit comes to the link at hand
         std::uint32_t flits, left;
@@ -61,7 +62,7 @@ private:
         }
     };
 
-    static bool comes_back(const Flight& f) { return f.leg.kind == Network::Message::reply; }
+    static bool comes_back(const Flight& f) { return f.leg.comes_back(); }
     void foresee(std::uint32_t flight, cycle at) {
         const Flight& f = flights_[flight];
         events_.push({at, f.hop, f.number, flight});

@@ -89,6 +89,8 @@ cycle Network::send(const Leg& leg, cycle t) {
         head = next(taken, flits, hop, route_.size());
     }
     count(leg, route_.size(), t, taken.last + 1);
+    if (sent_ != nullptr)
+        sent_->push_back({leg, t, taken.last + 1});
     return taken.last + 1;
 }
 

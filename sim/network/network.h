@@ -24,10 +24,24 @@ public:
         Message kind;
         std::size_t from, to;
         std::uint32_t data;
+        bool answers = false; // word that answers another
+        /// What somebody waits for who has asked.
+        bool comes_back() const { return kind == Message::reply || answers; }
+    };
+
+    /// For who compares: a message that left at `sent` and was all there at `there`.
+    struct Sent {
+        Leg leg;
+        cycle sent, there;
+        bool comes_back() const { return leg.comes_back(); }
     };
 
     /// Nobody sends before `earliest`, which its owner moves on.
     Network(const Config& config, const cycle& earliest);
+
+    /// From now on all messages are noted, in the order in which they are sent.
+    void note_in(std::vector<Sent>* messages) { sent_ = messages; }
+    std::vector<Sent>* noted_in() const { return sent_; }
 
     /// A message leaves at `t`; returns the cycle at which all of it is there.
     cycle send(const Leg& leg, cycle t);
@@ -69,6 +83,7 @@ private:
     std::vector<Link> links_;
     std::vector<std::uint32_t> route_; // of the message that is sent
     NetworkCounters counters_;
+    std::vector<Sent>* sent_ = nullptr;
     cycle quiet_ = 0;
 };
 

@@ -56,6 +56,28 @@ public:
     Leg telling_directory(std::uint32_t tile, std::uint64_t address) const {
         return ideal_ ? Leg{} : Leg{Network::Message::word, tile, target({Asker::tile, tile}, address), 0};
     }
+    // Of a directory, at the bank or channel of the line; all but lines are words.
+    /// From it to a tile.
+    Leg telling_tile(std::uint64_t address, std::uint32_t tile) const {
+        return ideal_ ? Leg{} : Leg{Network::Message::word, target({Asker::tile, tile}, address), tile, 0};
+    }
+    /// Of a hub where buses meet: to all tiles of a bus, in one message.
+    Leg telling_bus(std::uint64_t address, std::size_t bus) const {
+        return telling_tile(address, static_cast<std::uint32_t>(network_.topology().tile_of_bus(bus)));
+    }
+    /// From a tile to it, that it has done as it was told.
+    Leg answering_directory(std::uint32_t tile, std::uint64_t address) const {
+        Leg leg = telling_directory(tile, address);
+        leg.answers = true;
+        return leg;
+    }
+    /// A line from a tile to another, or another cache of the tile, and word that one was dropped.
+    Leg passing(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) const {
+        return ideal_ ? Leg{} : Leg{Network::Message::reply, from, to, bytes};
+    }
+    Leg telling_writer(std::uint32_t from, std::uint32_t to) const {
+        return ideal_ ? Leg{} : Leg{Network::Message::word, from, to, 0, true};
+    }
 
     /// It leaves at `t` and takes all its links at once; returns when it is there.
     cycle send(const Leg& leg, cycle t) { return ideal_ ? t : network_.send(leg, t); }
@@ -65,29 +87,6 @@ public:
     }
     cycle answer(Asker who, std::uint64_t address, std::uint32_t bytes, cycle t) {
         return send(answering(who, address, bytes), t);
-    }
-    // Of a directory, at the bank or channel of the line; all but lines are words.
-    /// From it to a tile.
-    cycle tell_tile(std::uint64_t address, std::uint32_t tile, cycle t) {
-        return ideal_ ? t
-                      : network_.send({Network::Message::word, target({Asker::tile, tile}, address), tile, 0},
-                                      t);
-    }
-    /// Of a hub where buses meet: to all tiles of a bus, in one message.
-    cycle tell_bus(std::uint64_t address, std::size_t bus, cycle t) {
-        const auto tile = static_cast<std::uint32_t>(network_.topology().tile_of_bus(bus));
-        return tell_tile(address, tile, t);
-    }
-    /// From a tile to it.
-    cycle answer_directory(std::uint32_t tile, std::uint64_t address, cycle t) {
-        return send(telling_directory(tile, address), t);
-    }
-    /// A line from a tile to another, or another cache of the tile, and word that one was dropped.
-    cycle pass(std::uint32_t from, std::uint32_t to, std::uint32_t bytes, cycle t) {
-        return ideal_ ? t : network_.send({Network::Message::reply, from, to, bytes}, t);
-    }
-    cycle tell_writer(std::uint32_t from, std::uint32_t to, cycle t) {
-        return ideal_ ? t : network_.send({Network::Message::word, from, to, 0}, t);
     }
     /// What reaches memory at `t`: no earlier than so much before what reached it earlier.
     cycle in_order(cycle t) {

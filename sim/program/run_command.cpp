@@ -51,7 +51,7 @@ private:
 };
 
 json renderer(const razor::FrameStatistics& s, const razor::CountersByKind& counted,
-              const std::vector<int>& tree_of_worker) {
+              const razor::Duplicates& twice, const std::vector<int>& tree_of_worker) {
     json out;
     out["plan"] = s.plan;
     out["trees"] = s.trees;
@@ -63,6 +63,10 @@ json renderer(const razor::FrameStatistics& s, const razor::CountersByKind& coun
                     {"grid_bytes", s.grid_bytes},
                     {"node_bytes", s.node_bytes},
                     {"list_bytes", s.list_bytes}};
+    out["duplicates"] = {{"kd_nodes", twice.nodes},
+                         {"patches", twice.patches},
+                         {"blocks", twice.blocks},
+                         {"normals", twice.normals}};
     out["topology_page_bytes"] = s.page_bytes;
     return out;
 }
@@ -255,7 +259,8 @@ int RunCommand::run() const {
     razor::Frame frame(built, {.workers = workers,
                                .tree_of_worker = trees,
                                .place_of_worker = Placement(config.chip).places(workers),
-                               .tiles_in_rows = tiles_in_rows_});
+                               .tiles_in_rows = tiles_in_rows_,
+                               .discards = config.renderer.discard == "on"});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
     run_options.stop = &interrupted;
@@ -330,7 +335,7 @@ int RunCommand::run() const {
         out["machine_provenance"] = provenance_json(machine_description);
         if (calibration)
             out["calibration"] = calibration_json(*calibration);
-        out["renderer"] = renderer(statistics, counted.of(statistics), trees);
+        out["renderer"] = renderer(statistics, counted.of(statistics), frame.duplicates(), trees);
         out["renderer"]["screen_tiles"] = counted.tiles();
         host["topology_page_seconds"] = statistics.page_seconds;
         if (native)

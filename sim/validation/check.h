@@ -37,8 +37,8 @@ std::vector<ValidationRow> check_core();
 std::vector<ValidationRow> check_reference();
 /// Each of tlb_forms(), likewise.
 std::vector<ValidationRow> check_tlb();
-/// Each of network_pings() in exact cycles, each of network_loads() within 2 %, each of network_orders()
-/// message by message; and the last as the fast mode has them.
+/// Each of network_pings() in exact cycles, each of network_loads() within 2 %, each of network_orders() and
+/// coherent_orders() message by message; and network_orders() as the fast mode has them.
 std::vector<ValidationRow> check_network();
 /// Each of coherence_forms() in both modes: accesses in exact cycles.
 std::vector<ValidationRow> check_coherence();

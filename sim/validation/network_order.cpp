@@ -1,6 +1,9 @@
 #include "sim/validation/network_order.h"
 
+#include "isa/address_space.h"
+#include "sim/machine/machine.h"
 #include "sim/network/flights.h"
+#include "sim/validation/coherence_forms.h"
 #include "sim/validation/network_forms.h"
 
 #include <fmt/format.h>
@@ -72,7 +75,13 @@ std::vector<NetworkMessage> network_traffic(const Config& c, double load, std::s
     for (NetworkMessage& m : messages) {
         const std::size_t tile = topology.tile(below(topology.tiles())),
                           channel = topology.channel(below(topology.channels()));
-        switch (below(5)) {
+        switch (below(7)) {
+        case 5:
+            m.leg = {Message::word, channel, tile, 0};
+            break;
+        case 6:
+            m.leg = {Message::word, tile, (tile + 1) % topology.tiles(), 0, true};
+            break;
         case 0:
             m.leg = {Message::write, tile, channel, line};
             break;
@@ -173,6 +182,73 @@ std::vector<NetworkOrder> network_orders() {
             out.push_back({fmt::format("{} of {} tiles, {:.0f} % busy", topology, c.chip.tiles, 100 * load),
                            c, network_traffic(c, load, 20000, 1)});
         }
+    return out;
+}
+
+namespace {
+
+/// Loads and stores of few lines, and loads of many, by all threads, as chance wants it.
+CoherentOrder fight(const std::string& name, const Config& c) {
+    using namespace isa::timing;
+    static constexpr site here{"network order", 1};
+    constexpr int accesses = 300;
+    isa::address_space space{std::uint64_t{1} << 26};
+    std::byte* few = space.add("data", -1, std::uint64_t{1} << 16, true);
+    std::byte* many = space.add("data", -1, std::uint64_t{1} << 20, true);
+    CoherentOrder out{{name, c, {}}, 0};
+    RunOptions options;
+    options.messages = &out.order.messages;
+    const Report r = Machine(c).run(
+        space, static_cast<int>(c.all_threads()), {{"work"}},
+        [&](int worker) {
+            std::mt19937 random(static_cast<std::uint32_t>(worker));
+            stamp last;
+            for (int i = 0; i < accesses; ++i) {
+                std::byte* line = few + random() % 48 * 64;
+                switch (random() % 4) {
+                case 0:
+                    store(here, line, 4, last, stamp{});
+                    break;
+                case 1:
+                    load(here, many + random() % 8192 * 64, 4, last);
+                    break;
+                default:
+                    last = load(here, line, 4, last);
+                }
+            }
+        },
+        1, options);
+    out.counted = r.network.counters.messages();
+    return out;
+}
+
+} // namespace
+
+std::vector<CoherentOrder> coherent_orders() {
+    std::vector<CoherentOrder> out;
+    for (const std::string topology : {"crossbar", "ring", "mesh", "bus"}) {
+        Config c = coherent_machine(topology, 9, "reference");
+        c.network.link_bytes = 8; // so that messages meet
+        c.memory.channels = 2;
+        const auto add = [&](const std::string& what, const Config& machine) {
+            out.push_back(fight(fmt::format("{} of {} tiles, {}", topology, c.chip.tiles, what), machine));
+        };
+        if (topology == "bus") {
+            c.coherence.plain = "snoop";
+            c.network.buses = 3;
+            add("snooped", c);
+            continue;
+        }
+        add("directories", c);
+        Config few = c;
+        few.coherence.directory_ways = 2;
+        few.coherence.directory_entries = 8;
+        add("directories of 8 lines", few);
+        c.l3.size_bytes = 1 << 20;
+        c.l3.share = "chip";
+        c.l3.banks = 2;
+        add("directories at an L3", c);
+    }
     return out;
 }
 

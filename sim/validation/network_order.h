@@ -11,14 +11,11 @@
 
 namespace sim {
 
-struct NetworkMessage {
-    Network::Leg leg;
-    cycle sent;
-    bool comes_back() const { return leg.kind == Network::Message::reply; }
-};
+using NetworkMessage = Network::Sent;
 
-/// Requests of tiles to memory channels, writes among them, and lines back, at random times, in the order of
-/// these; the busiest link is busy for a part `load` of the time.
+/// Requests of tiles to memory channels, writes among them, and lines back; words of channels to tiles, and
+/// of tiles to others that answer these; at random times, in the order of these; the busiest link is busy for
+/// a part `load` of the time.
 std::vector<NetworkMessage> network_traffic(const Config& config, double load, std::size_t count,
                                             std::uint32_t seed);
 
@@ -37,5 +34,13 @@ struct NetworkOrder {
     std::vector<NetworkMessage> messages;
 };
 std::vector<NetworkOrder> network_orders();
+
+/// All that nine tiles say to each other, to directories or over buses, and to memory, while they fight for
+/// lines in the reference mode, with when it was there.
+struct CoherentOrder {
+    NetworkOrder order;
+    std::uint64_t counted; // messages, by the report
+};
+std::vector<CoherentOrder> coherent_orders();
 
 } // namespace sim

@@ -141,8 +141,10 @@ void scatter(site where, const void* p, const std::int32_t* index, std::uint64_t
 void prefetch(site where, const void*, const stamp& address) {
     tell(Event::prefetch, where, 0, {&address});
 }
-void discard(site where, const void*, std::uint32_t bytes, const stamp& address) {
+void discard(site where, const void* p, std::uint32_t bytes, const stamp& address) {
     tell(Event::discard, where, bytes, {&address});
+    if (listener != nullptr)
+        listener->discard(p, bytes);
 }
 
 void before_atomic(site where, atomic kind, const void* p, const stamp& address, const stamp& operands) {

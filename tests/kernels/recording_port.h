@@ -43,6 +43,8 @@ public:
     /// What the event just told does in memory, one call a run of bytes.
     virtual void read(const void* p, std::uint32_t bytes) { (void)p, (void)bytes; }
     virtual void write(const void* p, std::uint32_t bytes) { (void)p, (void)bytes; }
+    /// What lies there is said to be dead.
+    virtual void discard(const void* p, std::uint32_t bytes) { (void)p, (void)bytes; }
 };
 
 /// Who follows what the simulated kernels do from now on, on one thread. Null: nobody, on any.

@@ -106,6 +106,32 @@ TEST(SceneOptions, OverrideTheFile) {
     EXPECT_EQ(scene.meshes[0].scheme, Scheme::bilinear);
 }
 
+TEST(SceneOptions, CropAPartOfThePicture) {
+    const TemporaryFolder folder;
+    const std::string file = folder.file(
+        "s.toml", "[settings]\nsize = [64, 32]\ncrop = [48, 16, 16, 16]\n[[mesh]]\nshape = \"box\"\n");
+    EXPECT_EQ(described({file}).settings.crop, (Crop{48, 16, 16, 16}));
+    EXPECT_EQ(described({file, "--crop", "1,2,3,4"}).settings.crop, (Crop{1, 2, 3, 4}));
+    EXPECT_EQ(described({"--size", "100x80", "--crop", "64,32,36,48"}).settings.crop, (Crop{64, 32, 36, 48}));
+    EXPECT_EQ(described({file}).camera.position, described({file, "--crop", "0,0,16,16"}).camera.position);
+    const auto complaint = [&](const std::vector<std::string>& arguments) {
+        try {
+            described(arguments);
+        } catch (const UserError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(complaint({file, "--size", "32x32"}),
+              file +
+                  ": the crop of 16 x 16 pixels at (48, 16) is not a part of a picture of 32 x 32; give X, "
+                  "Y, WIDTH and HEIGHT of one that is");
+    EXPECT_TRUE(complaint({file, "--crop", "60,0,5,5"}).starts_with("--crop: the crop of 5 x 5 pixels"));
+    EXPECT_TRUE(complaint({file, "--crop", "0,0,0,5"}).starts_with("--crop: the crop of 0 x 5 pixels"));
+    for (const char* wrong : {"1,2,3", "1,2,3,4,5", "1,2,3,", "a,2,3,4", "1,2,-3,4"})
+        EXPECT_TRUE(complaint({file, "--crop", wrong}).starts_with("--crop")) << wrong;
+}
+
 TEST(SceneOptions, ShapeAModel) {
     const TemporaryFolder folder;
     const std::string file = folder.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 0 2\nf 1 2 3\n");
@@ -130,6 +156,7 @@ TEST(SceneOptions, WrongValuesAreRefusedBeforeAnyFileIsRead) {
                                                 {"--light-samples", "x"},
                                                 {"--sky-samples", "-1"},
                                                 {"--edge-pixels", "0"},
+                                                {"--crop", "0,0,8"},
                                                 {"--scheme", "loop"},
                                                 {"--up", "x"}}) {
         std::vector<std::string> arguments = bad;

@@ -386,6 +386,84 @@ TEST_F(Simulator, CountsSomeTilesAlone) {
     EXPECT_LT(warm.at("cycles"), rest.at("cycles"));
 }
 
+TEST_F(Simulator, RendersAPartOfThePicture) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start =
+        std::string("run --quiet --scene s.toml --size 64x48 --spp 1 --sky-samples 1 "
+                    "--light-samples 1 --edge-pixels 4 -o a.exr --json a.json --machine ") +
+        tiny + " ";
+    ASSERT_EQ(simulator(start).code, 0);
+    const Film whole = read_exr(folder_ / "a.exr");
+    const Outcome part = simulator(start + "--crop 16,16,30,32");
+    ASSERT_EQ(part.code, 0) << part.err;
+    EXPECT_NE(part.out.find("the same picture, bit for bit"), std::string::npos);
+    EXPECT_EQ(report("a.json").at("renderer").at("screen_tiles"), 4);
+    const Film film = read_exr(folder_ / "a.exr");
+    ASSERT_EQ(film.width, 30);
+    ASSERT_EQ(film.height, 32);
+    for (const Plane& plane : whole.planes)
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 30; ++x)
+                ASSERT_EQ(film.find(plane.name)->values[static_cast<std::size_t>(y * 30 + x)],
+                          plane.values[static_cast<std::size_t>((16 + y) * 64 + 16 + x)])
+                    << plane.name << ' ' << x << ' ' << y;
+    EXPECT_EQ(simulator(start + "--crop 16,16,30,33").code, 2);
+}
+
+// What kernels say to be dead is not written back: neither while the frame is rendered nor after it; and the
+// picture is the same.
+TEST_F(Simulator, DiscardsWhatIsDead) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = std::string("run --quiet --scene s.toml --size 40x40 --spp 1 --sky-samples 1 "
+                                          "--light-samples 1 --edge-pixels 2 -g sim.frame_end=write "
+                                          "--json a.json --machine ") +
+                              tiny + " ";
+    struct Written {
+        std::int64_t during = 0, at_end = 0, dropped = 0, discarded = 0, film = 0;
+    };
+    const auto run = [&](const std::string& options) {
+        const Outcome result = simulator(start + options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find("the same picture, bit for bit"), std::string::npos) << options;
+        const nlohmann::json r = report("a.json");
+        Written w;
+        for (const nlohmann::json& row : r.at("traffic")) {
+            const auto lines = row.at("memory_writes").get<std::int64_t>();
+            const std::string structure = row.at("structure");
+            if (structure == "frame buffer")
+                w.film += lines;
+            if (structure == "grids" || structure == "item lists" || structure == "kd nodes" ||
+                structure == "blended blocks")
+                (row.at("phase") == "frame end" ? w.at_end : w.during) += lines;
+        }
+        for (const char* level : {"l1", "l2"}) {
+            w.dropped += r.at(level).at("dropped").get<std::int64_t>();
+            w.discarded += r.at(level).at("discarded").get<std::int64_t>();
+        }
+        return w;
+    };
+    for (const std::string share : {"chip", "worker"}) {
+        // A cache for all of it, and one for a little.
+        for (const std::string size : {"4194304", "65536"}) {
+            SCOPED_TRACE(share + " " + size);
+            const std::string options = "--share " + share + " -g l2.size_bytes=" + size;
+            const Written off = run(options), on = run(options + " -g renderer.discard=on"),
+                          drop = run(options + " -g sim.frame_end=drop");
+            EXPECT_EQ(off.discarded, 0);
+            EXPECT_EQ(off.dropped, 0);
+            EXPECT_GT(off.at_end, 90);
+            EXPECT_LE(drop.at_end, off.at_end / 4); // a small L2 makes room for the film
+            EXPECT_GT(drop.dropped, 90);
+            EXPECT_EQ(drop.during, off.during);
+            EXPECT_GT(on.discarded, 500);
+            EXPECT_NEAR(static_cast<double>(on.film), static_cast<double>(off.film), 0.02 * 2500);
+            // Tables of opened patches and of curves' lengths, among the grids, stay.
+            EXPECT_LT(on.at_end, off.at_end / 4);
+            EXPECT_LT(on.during + on.at_end, off.during + off.at_end);
+        }
+    }
+}
+
 // The table names every row of what must be validated, and says which are not.
 TEST_F(Simulator, ValidatesItself) {
     const Outcome result = simulator("validate --json v.json");

@@ -45,6 +45,7 @@ TEST(SceneFile, ReadsEveryKey) {
         name = "n"
         [settings]
         size = [640, 480]
+        crop = [600, 479, 40, 1]
         samples = 9
         light_samples = 2
         sky_samples = 3
@@ -89,6 +90,7 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(scene.name, "n");
     EXPECT_EQ(scene.settings.width, 640);
     EXPECT_EQ(scene.settings.height, 480);
+    EXPECT_EQ(scene.settings.crop, (Crop{600, 479, 40, 1}));
     EXPECT_EQ(scene.settings.samples, 9);
     EXPECT_EQ(scene.settings.light_samples, 2);
     EXPECT_EQ(scene.settings.sky_samples, 3);
@@ -142,7 +144,9 @@ TEST(SceneFile, PrintedConfigurationLoadsAgain) {
     const std::filesystem::path model = folder.file("tri \"x\" \\ y.obj", triangle);
     const SceneDescription framed =
         frame_model(model, {.up = Up::z, .floor = true, .scheme = {}, .settings = {}});
-    for (const SceneDescription& description : {default_scene(), framed}) {
+    SceneDescription cropped = framed;
+    cropped.settings.crop = {3, 5, 7, 11};
+    for (const SceneDescription& description : {default_scene(), framed, cropped}) {
         const std::string text = to_toml(description);
         const SceneDescription again = parse_scene_file(text, "elsewhere/s.toml", "/nowhere");
         expect_same(build_scene(description), build_scene(again));
@@ -208,6 +212,12 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
         {"[settings]\nsize = [512]\n" + mesh, "settings.size is an array of 1"},
         {"[settings]\nsize = [512, -1]\n" + mesh, "settings.size = -1 is out of range"},
         {"[settings]\nsize = [512, true]\n" + mesh, "settings.size is true or false"},
+        {"[settings]\ncrop = [0, 0, 9]\n" + mesh,
+         "s.toml:2:8: settings.crop is an array of 3; write four whole numbers [a, b, c, d]"},
+        {"[settings]\ncrop = [-1, 0, 9, 9]\n" + mesh, "settings.crop = -1 is out of range"},
+        {"[settings]\nsize = [64, 32]\ncrop = [32, 30, 32, 3]\n" + mesh,
+         "s.toml:3:8: the crop of 32 x 3 pixels at (32, 30) is not a part of a picture of 64 x 32; give"},
+        {"[settings]\ncrop = [5, 5, 0, 1]\n" + mesh, "the crop of 0 x 1 pixels at (5, 5) is not"},
         {"[settings]\nlod = \"coarse\"\n" + mesh, "settings.lod 'coarse' is unknown; did you mean"},
         {"[settings]\nedge_pixels = nan\n" + mesh, "settings.edge_pixels = nan is out of range"},
         {"settings = 3\n" + mesh, "s.toml:1:12: settings is a whole number; write a table [settings]"},

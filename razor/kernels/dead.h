@@ -1,0 +1,53 @@
+// Memory that is done with: where the frame wants it (FrameHeader::discards), caches are told that what lies
+// there is dead, so that they need not write it back. It costs an instruction a line, and natively nothing.
+#pragma once
+
+#include "razor/frame/scratch.h"
+#include "razor/kernels/context.h"
+
+namespace razor::ISA_TARGET {
+inline namespace build_kernel {
+
+/// Nobody reads these lines again before they are written anew. Ask c.discards first.
+inline void discard_lines(pointer<Line> first, sint count) {
+    constexpr int at_once = 64;
+    for (sint i = 0; branch(i < count); i += at_once) {
+        sint lines = min(count - i, sint(at_once));
+        discard(first + i, lines * line_bytes);
+    }
+}
+
+/// The worker has no tile any more. When nobody uses its tree, all that it has built there is dead, and what
+/// it had for itself. (A worker of a frame of which more is to be rendered keeps it.)
+[[gnu::noinline]] inline void discard_all(const Context& c) {
+    phase_scope phase(phase_build);
+    sint end = load(field(c.frame, &FrameHeader::tiles_end));
+    sint tiles = load(field(c.frame, &FrameHeader::tiles));
+    if (branch(end < tiles))
+        return;
+    pointer<shared_int> left = field(c.tree, &TreeRecord::left);
+    sint sharers = load(field(c.tree, &TreeRecord::sharers));
+    sint done = fetch_add(left, 1) + 1;
+    while (branch(done != sharers))
+        done = wait_while(left, done);
+    const auto arena = [&](std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*full,
+                           std::int32_t FrameHeader::*size, pointer<Line> base, int units_a_line) {
+        sint last = load(field(c.self, next));
+        sint first = load(field(c.self, full));
+        first = first - load(field(c.frame, size));
+        int shift = units_a_line == 4 ? 2 : 0;
+        sint begin = first >> shift;
+        discard_lines(base + begin, ((last + (units_a_line - 1)) >> shift) - begin);
+    };
+    arena(&WorkerRecord::grid_next, &WorkerRecord::grid_end, &FrameHeader::grid_lines, c.grids, 1);
+    arena(&WorkerRecord::node_next, &WorkerRecord::node_end, &FrameHeader::node_count, as<Line>(c.nodes),
+          line_bytes / static_cast<int>(sizeof(KdNode)));
+    arena(&WorkerRecord::list_next, &WorkerRecord::list_end, &FrameHeader::list_lines, c.lists, 1);
+    constexpr int floats = line_bytes / 4;
+    discard_lines(as<Line>(c.blends), blends_floats / floats);
+    discard_lines(as<Line>(c.packets), 2 * spare_packets / floats);
+    discard_lines(as<Line>(c.stack), 2 * spare_stack / floats);
+}
+
+} // namespace build_kernel
+} // namespace razor::ISA_TARGET
