@@ -36,12 +36,12 @@ struct FrameOptions {
     std::uint64_t page_bytes = 0;
 };
 
-/// What was built, and what laziness left unbuilt.
 /// How much of what outlives a frame the last pose wrote anew, and its refit: of a new frame everything.
 struct Touched {
     std::int64_t instances = 0, graph_nodes = 0, meshes = 0, clusters = 0;
 };
 
+/// What was built, and what laziness left unbuilt.
 struct FrameStatistics {
     CountersByKind by_kind; // summed over workers
     Counters counters;      // summed over kinds as well
