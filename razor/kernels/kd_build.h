@@ -14,8 +14,11 @@ inline namespace build_kernel {
 
 inline constexpr int plane_samples = 8;
 inline constexpr float traversal_cost = 1.0F; // a packet's visit to a node ...
-inline constexpr float item_cost =
-    0.25F; // ... and its test of a block, of which a leaf tells many at once from those it misses
+// ... and its test of a block, of which a leaf tells many at once from those it misses ...
+inline constexpr float block_cost = 0.25F;
+// ... and of an item of a list in which some are closed: there leaves are opened whole, whatever of it rays
+// meet.
+inline constexpr float closed_cost = 1.5F;
 inline constexpr float empty_bonus = 0.85F;
 inline constexpr int few_items = 8;       // so few patches are opened whatever their size
 inline constexpr float large_item = 0.5F; // of the cell's largest side
@@ -30,7 +33,7 @@ struct Plane {
 
 /// Counts the items on both sides of 8 planes between `from` and `to` (exclusive) and keeps the one of lowest
 /// rank.
-inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& best) {
+inline void try_planes(const List& l, sfloat item_cost, int axis, sfloat from, sfloat to, Plane& best) {
     sfloat lows[3] = {l.low.x, l.low.y, l.low.z};
     sfloat highs[3] = {l.high.x, l.high.y, l.high.z};
     sfloat low = lows[axis];
@@ -61,7 +64,7 @@ inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& b
     sfloat side = e1 * e2;
     sfloat rim = e1 + e2;
     sfloat area = fma(high - low, rim, side);
-    sfloat per_area = sfloat(item_cost) / area;
+    sfloat per_area = item_cost / area;
     for (int k = 0; k < plane_samples; ++k) {
         sfloat area_below = fma(place[k] - low, rim, side);
         sfloat area_above = fma(high - place[k], rim, side);
@@ -86,7 +89,7 @@ inline void try_planes(const List& l, int axis, sfloat from, sfloat to, Plane& b
 }
 
 /// The plane of lowest rank found; its cost stays infinite if none separates anything.
-inline Plane choose_plane(const List& l) {
+inline Plane choose_plane(const List& l, sfloat item_cost) {
     Plane best;
     best.cost = 3.0e38F;
     best.rank = 3.0e38F;
@@ -94,12 +97,12 @@ inline Plane choose_plane(const List& l) {
     sfloat lows[3] = {l.low.x, l.low.y, l.low.z};
     sfloat highs[3] = {l.high.x, l.high.y, l.high.z};
     for (int axis = 0; axis < 3; ++axis)
-        try_planes(l, axis, lows[axis], highs[axis], best);
+        try_planes(l, item_cost, axis, lows[axis], highs[axis], best);
     for (int axis = 0; axis < 3; ++axis) {
         if (branch(best.axis == axis)) {
             sfloat reach = (highs[axis] - lows[axis]) * (1.0F / (plane_samples + 1));
             sfloat from = best.at - reach;
-            try_planes(l, axis, from, best.at + reach, best);
+            try_planes(l, item_cost, axis, from, best.at + reach, best);
             break;
         }
     }
@@ -251,10 +254,12 @@ inline sint count_closed(const List& l) {
         l = refine_items(c, l);
     for (;;) {
         l = open_large_items(c, l, own);
+        sint closed = count_closed(l);
+        sfloat item_cost = select(closed > 0, sfloat(closed_cost), sfloat(block_cost));
         Plane plane;
         plane.cost = 3.0e38F;
         if (branch(l.depth < kd_depth_limit))
-            plane = choose_plane(l);
+            plane = choose_plane(l, item_cost);
         if (branch(plane.cost < to_float(l.count) * item_cost)) {
             sint children = split_list(c, l, plane);
             store(field(node, &KdNode::split), plane.at);
@@ -264,7 +269,6 @@ inline sint count_closed(const List& l) {
             free_list(c, l.line, l.stride);
             return node_inner;
         }
-        sint closed = count_closed(l);
         if (branch(closed > 0)) {
             List opened = open_items(c, l, [](const Items& v) { return is_closed(v); });
             l = replace_list(c, l, opened, own);
