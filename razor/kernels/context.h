@@ -21,6 +21,9 @@ inline constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Distances beyond every scene, whose sums and products stay finite enough.
 inline constexpr float infinite = 3.0e38F;
 
+struct Context;
+using OtherWork = bool(const Context&);
+
 struct Context {
     pointer<FrameHeader> frame;
     pointer<WorkerRecord> self;
@@ -46,7 +49,7 @@ struct Context {
     Counters* by_kind = nullptr;     // all of the worker's, of kind_none first
     /// What else there is to do for a worker that must wait and holds nothing others wait for; false:
     /// nothing. Null: it only waits.
-    bool (*other_work)(const Context&) = nullptr;
+    OtherWork* other_work = nullptr;
 };
 
 inline Context make_context(pointer<FrameHeader> frame, sint worker) {
