@@ -1,5 +1,6 @@
 // The baseline draws what Razor draws.
 #include "razor/native/render.h"
+#include "razor/scene/error.h"
 #include "razor/scene/scene_file.h"
 #include "razor/scene/shapes/shapes.h"
 #include "tests/benchmarks/embree/renderer.h"
@@ -248,6 +249,25 @@ std::set<std::array<float, 3>> places(const Mesh& mesh, int level) {
     for (std::size_t v = 0; v < positions.size(); v += 3)
         found.insert({positions[v], positions[v + 1], positions[v + 2]});
     return found;
+}
+
+/// Too many are refused before memory is taken.
+TEST(GridMesh, TrianglesAreCountedBeforehand) {
+    for (const char* scheme : {"catmark", "bilinear"})
+        for (const Mesh& mesh : scene_of(scheme).meshes) {
+            const Topology topology = analyse_topology(mesh);
+            std::unique_ptr<PageMaker> pages;
+            if (mesh.scheme == Scheme::catmull_clark)
+                pages = std::make_unique<PageMaker>(mesh, topology);
+            for (const int level : {0, 1, 3, 4})
+                EXPECT_EQ(triangles_at(topology, level),
+                          make_grid_mesh(topology, pages.get(), level).triangles)
+                    << mesh.name << level;
+        }
+    Options options = options_of(Levels::uniform, 0, Quality::medium);
+    options.finer = finest_level;
+    options.most_triangles = 1'000'000;
+    EXPECT_THROW(by_embree(scene_of("catmark"), options), UserError);
 }
 
 /// A sphere of q quads has q + 2 vertices: none is there twice with other last bits.

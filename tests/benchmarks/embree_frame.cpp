@@ -53,8 +53,8 @@ struct Command {
         app.add_option(
                "--levels", levels,
                "how finely Embree's meshes are cut: instance (each its own level, by edges at its nearest "
-               "point), mesh (one level a mesh, that of its nearest instance) or deviation (each instance by "
-               "how far from the surface it is then)")
+               "point), mesh (one level a mesh, that of its nearest instance), deviation (each instance by "
+               "how far from the surface it is then) or uniform (every patch 2^K x 2^K quads)")
             ->type_name("NAME");
         app.add_option("--finer", finer, "all so many levels finer; negative: coarser")->type_name("K");
         app.add_option("--flatten", flatten,

@@ -2,19 +2,20 @@
 """A frame of each scene by Razor and by Embree, pose to picture with every build, in turn.
 
     tests/benchmarks/embree_frames.py configs/scenes/*.toml --frame 40
-    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --levels deviation --pictures build/pictures
+    tests/benchmarks/embree_frames.py configs/scenes/forest.toml --size 512x512 --repeat 3 --pictures build/pictures
 
 Embree draws the same scene, through the same camera, with the same samples of film, lens, lights and sky and the same shading
 (tests/benchmarks/embree). It gets every advantage that keeps the frame what it is: cages are tessellated at fixed levels, by each
-of several rules (--levels): uniform, every patch 2^K x 2^K quads; deviation, each instance as its mesh deviates from the surface, in pixels
-at its nearest point; instance and mesh, by the length of edges there. Of each rule the lowest K is taken whose picture is no
-further from the reference than Razor's, neither by RMSE nor by the mean of HDR-FLIP. The reference is
-Razor's picture at a quarter of the edge length (--reference), or with --reference-finer Embree's; samples are the same, so that pictures differ by geometry
-alone, but for last bits and the few rays that they turn: errors up to --least-error count as none. Of these Ks
-Embree then draws instances as such and flattened, with BVHs of each --quality, and its fastest way is measured in turn with Razor.
+of several rules (--levels): uniform, every patch 2^K x 2^K quads; deviation, each instance as its mesh deviates from the surface,
+in pixels at its nearest point; instance and mesh, by the length of edges there. Of each rule the lowest K is taken whose picture
+is no further from the reference than Razor's, neither by RMSE nor by the mean of HDR-FLIP. The reference is Razor's picture at a
+quarter of the edge length (--reference), or with --reference-finer Embree's; samples are the same, so that pictures differ by
+geometry alone, but for last bits and the few rays that they turn: errors up to --least-error count as none. Of these Ks Embree
+then draws instances as such and flattened, with BVHs of each --quality, and its fastest way is measured in turn with Razor.
 
-Seconds are medians of --repeat frames (topology analysed, weights of limit points made); in brackets the shortest and longest; processor seconds are
-of all threads. Megabytes: what a frame builds (vertices and BVHs; grids, kd-trees and lists), and what outlives it (weights of limit points).
+Seconds are medians of --repeat frames (topology analysed, weights of limit points made); in brackets the shortest and longest;
+processor seconds are of all threads. Megabytes: what a frame builds (vertices and BVHs; grids, kd-trees and lists), and what
+outlives it (weights of limit points). Further options are those of `razor render` that choose and override a scene.
 """
 import argparse
 import json
@@ -105,7 +106,7 @@ def study(options, path, folder):
     if options.reference_finer is None:
         reference = scene.razor_picture("reference", "--edge-pixels", str(options.reference))
     else:
-        reference = scene.embree_picture("instance", options.reference_finer)
+        reference = scene.embree_picture("deviation", options.reference_finer)
     ours = scene.error(scene.razor_picture("razor"), reference)
     found = {levels: choose(scene, levels, ours, reference) for levels in options.levels}
     way, tried = fastest_way(scene, {levels: finer for levels, (finer, _) in found.items()})
@@ -170,10 +171,10 @@ def read_options():
     parser.add_argument("--levels", default="uniform,deviation", type=lambda text: text.split(","), help="rules to try: uniform, deviation, instance, mesh")
     parser.add_argument("--finer", type=span, default=(-5, 2), metavar="FIRST:LAST", help="K to try, the coarsest first; of uniform 0:8")
     parser.add_argument("--reference", type=float, default=0.25, metavar="PIXELS", help="edges of Razor's reference")
-    parser.add_argument("--reference-finer", type=int, metavar="K", help="make the reference by Embree at this K of --levels instance")
+    parser.add_argument("--reference-finer", type=int, metavar="K", help="make the reference by Embree at this K of --levels deviation")
     parser.add_argument("--least-error", type=float, default=0.0003, metavar="X", help="RMSE and FLIP that pictures of one geometry may have")
     parser.add_argument("--quality", default="low,medium", type=lambda text: text.split(","), help="of Embree's BVHs: low, medium, high")
-    parser.add_argument("--flatten", default=[0, 100_000_000], type=integers, metavar="N,...", help="triangles up to which instances are flattened")
+    parser.add_argument("--flatten", default=[0, 20_000_000], type=integers, metavar="N,...", help="triangles up to which instances are flattened")
     parser.add_argument("--pictures", metavar="FOLDER", help="keep pictures there, and take those that are; of the same options")
     parser.add_argument("--razor", help="the renderer; without it, that of the PATH or of build/release")
     parser.add_argument("--embree", default="build/release/tests/benchmarks/embree_frame", metavar="embree_frame")

@@ -35,11 +35,17 @@ CornerWeights sub_face_corners(int sub, int size) {
     return c;
 }
 
+bool is_part(const PatchRecord& p) {
+    return (p.side_flags[0] & side_half) != 0;
+}
+bool is_flat(const PatchRecord& p) {
+    return p.kind == PatchKind::flat_quad || p.kind == PatchKind::flat_triangle;
+}
+
 class Maker {
 public:
     Maker(const Topology& topology, const PageMaker* pages, int level) : t_(topology), pages_(pages) {
-        const bool parts = std::any_of(t_.patches.begin(), t_.patches.end(), is_part);
-        mesh_.level = std::clamp(level, parts ? 1 : 0, finest_level);
+        mesh_.level = std::clamp(level, coarsest_level(t_), finest_level);
         points_.assign(t_.points.size(), -1);
         centres_.assign(t_.faces.size(), -1);
         curve_vertices_.assign(t_.curves.size() << mesh_.level, -1);
@@ -52,11 +58,6 @@ public:
     }
 
 private:
-    static bool is_part(const PatchRecord& p) { return (p.side_flags[0] & side_half) != 0; }
-    static bool is_flat(const PatchRecord& p) {
-        return p.kind == PatchKind::flat_quad || p.kind == PatchKind::flat_triangle;
-    }
-
     void add_patch(const PatchRecord& p) {
         const int exponent = is_flat(p) ? 0 : mesh_.level - (is_part(p) ? 1 : 0);
         const int strips = strip_count(exponent), side = std::min(block_quads, 1 << exponent);
@@ -242,6 +243,21 @@ private:
 std::int64_t GridMesh::bytes() const {
     return static_cast<std::int64_t>(blocks.size() * sizeof(GridBlock) + weights.size() * sizeof(float) +
                                      controls.size() * 4 + quads.size() * 4 + welds.size() * sizeof(Weld));
+}
+
+/// Halves of edges need edges of two segments at least.
+int coarsest_level(const Topology& topology) {
+    return std::any_of(topology.patches.begin(), topology.patches.end(), is_part) ? 1 : 0;
+}
+
+std::int64_t triangles_at(const Topology& topology, int level) {
+    const int possible = std::clamp(level, coarsest_level(topology), finest_level);
+    std::int64_t triangles = 0;
+    for (const PatchRecord& p : topology.patches)
+        triangles += p.kind == PatchKind::flat_triangle ? 1
+                     : is_flat(p)                       ? 2
+                                  : std::int64_t{2} << (2 * (possible - (is_part(p) ? 1 : 0)));
+    return triangles;
 }
 
 GridMesh make_grid_mesh(const Topology& topology, const PageMaker* pages, int level) {

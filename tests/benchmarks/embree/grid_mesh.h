@@ -35,6 +35,12 @@ struct GridMesh {
     std::int64_t bytes() const;
 };
 
+/// The coarsest level: 0, or 1 where there are n-gons.
+int coarsest_level(const Topology& topology);
+
+/// How many triangles a grid mesh of that level has.
+std::int64_t triangles_at(const Topology& topology, int level);
+
 /// `pages`: of the mesh and its topology; null for bilinear meshes.
 GridMesh make_grid_mesh(const Topology& topology, const PageMaker* pages, int level);
 

@@ -32,10 +32,12 @@ double seconds_since(Clock::time_point begin) {
 struct MeshTables {
     Mesh mesh;
     Topology topology;
+    int coarsest; // level
     std::unique_ptr<PageMaker> pages;
     std::map<int, std::unique_ptr<GridMesh>> levels;
 
-    explicit MeshTables(const Mesh& m) : mesh(m), topology(analyse_topology(mesh)) {
+    explicit MeshTables(const Mesh& m)
+        : mesh(m), topology(analyse_topology(mesh)), coarsest(coarsest_level(topology)) {
         if (mesh.scheme == Scheme::catmull_clark)
             pages = std::make_unique<PageMaker>(mesh, topology);
     }
@@ -114,37 +116,45 @@ struct Renderer::Impl {
 
     /// Which tessellations there are, and what draws them.
     void plan(const SceneGeometry& geometry, const std::vector<int>& levels) {
-        std::map<std::pair<int, int>, std::vector<std::size_t>> users;
-        for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
-            MeshTables& mesh = *meshes[static_cast<std::size_t>(geometry.instances[i].mesh)];
-            if (!mesh.topology.patches.empty())
-                users[{geometry.instances[i].mesh, mesh.at(levels[i]).level}].push_back(i);
-        }
-        parts.clear();
+        std::map<std::pair<int, int>, std::vector<std::size_t>> users; // of mesh and level
+        for (std::size_t i = 0; i < geometry.instances.size(); ++i)
+            users[{geometry.instances[i].mesh,
+                   std::max(levels[i], mesh(geometry.instances[i].mesh).coarsest)}]
+                .push_back(i);
+        std::int64_t all = 0;
+        std::vector<bool> flattened;
         for (const auto& [key, instances] : users) {
-            const GridMesh& grid = meshes[static_cast<std::size_t>(key.first)]->at(key.second);
             const auto count = static_cast<std::int64_t>(instances.size());
-            if (count == 1 || grid.triangles * count <= options.flatten) {
+            const std::int64_t triangles = triangles_at(mesh(key.first).topology, key.second);
+            flattened.push_back(count == 1 || triangles * count <= options.flatten);
+            all += triangles * (flattened.back() ? count : 1);
+        }
+        if (all > options.most_triangles)
+            throw UserError(
+                fmt::format("{} triangles are more than --most-triangles {}; take a coarser level", all,
+                            options.most_triangles));
+        parts.clear();
+        std::size_t user = 0;
+        for (const auto& [key, instances] : users) {
+            const bool flat = flattened[user++];
+            if (mesh(key.first).topology.patches.empty())
+                continue;
+            const GridMesh& grid = mesh(key.first).at(key.second);
+            if (flat)
                 for (const std::size_t i : instances)
                     parts.push_back({&grid, {}, 0, 0, {i}, true});
-            } else {
+            else
                 parts.push_back({&grid, {}, 0, 0, instances, false});
-            }
         }
-        std::int64_t triangles = 0;
         for (Part& part : parts) {
-            triangles += part.grid->triangles;
             const auto [at, fresh] =
                 first_quad.try_emplace(part.grid, static_cast<std::int32_t>(quads.size() / 4));
             if (fresh)
                 quads.insert(quads.end(), part.grid->quads.begin(), part.grid->quads.end());
             part.first_quad = at->second;
         }
-        if (triangles > options.most_triangles)
-            throw UserError(fmt::format(
-                "{} million triangles are more than --most-triangles allows; take a coarser level",
-                triangles / 1'000'000));
     }
+    MeshTables& mesh(int number) { return *meshes[static_cast<std::size_t>(number)]; }
 
     /// Control points of the parts, pieces of the top scene, and room for vertices.
     void place(const Scene& scene, const SceneGeometry& geometry) {
