@@ -15,6 +15,7 @@ struct WorkerArguments {
     isa::mark_set* opened = nullptr; // of the worker's tree: graph nodes, then clusters of instances
     isa::stopwatch* watch = nullptr; // of Moment
     isa::lap_timer* tiles = nullptr; // of the worker
+    isa::memory_log* memory = nullptr; // with a budget
 };
 
 /// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene

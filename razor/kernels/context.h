@@ -41,6 +41,7 @@ struct Context {
     isa::mark_set* opened = nullptr; // graph nodes, then clusters of instances
     isa::stopwatch* watch = nullptr;
     isa::lap_timer* tiles = nullptr;
+    isa::memory_log* memory = nullptr; // with a budget
 };
 
 inline Context make_context(pointer<FrameHeader> frame, sint worker) {
@@ -64,17 +65,6 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     c.packets = load(field(c.self, &WorkerRecord::packets));
     c.blends = load(field(c.self, &WorkerRecord::blends));
     return c;
-}
-
-/// Takes `amount` units from one of the worker's arenas. Natively and in the machine an arena never grows.
-inline sint allocate(const Context& c, std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*end,
-                     sint amount, TrapCode full) {
-    sint begin = load(field(c.self, next));
-    sint limit = load(field(c.self, end));
-    if (branch(amount > limit - begin))
-        trap(full);
-    store(field(c.self, next), begin + amount);
-    return begin;
 }
 
 /// Resets a build state if its builder is thrown out, so that others that wait try for themselves.

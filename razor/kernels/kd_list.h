@@ -1,6 +1,7 @@
 // Item lists of unsplit kd nodes and leaves (layout.h): items with their boxes, as arrays.
 #pragma once
 
+#include "razor/kernels/budget_room.h"
 #include "razor/kernels/reach.h"
 
 namespace razor::ISA_TARGET {
@@ -36,6 +37,11 @@ inline sint list_size(sint stride) {
     return size;
 }
 
+inline sint list_lines(sint stride) {
+    sint words = stride * 7 + 15;
+    return (words >> 4) + item_list_words / 16;
+}
+
 /// Gives a list back that nobody will read again: it was split, or opened or refined into another.
 inline void free_list(const Context& c, sint line, sint stride) {
     pointer<std::int32_t> first = as<std::int32_t>(c.stack + scratch_free_lists) + list_size(stride);
@@ -61,9 +67,8 @@ inline List make_list(const Context& c, sint count, sint depth, sfloat most, con
         sint next = load(as<std::int32_t>(c.lists + l.line));
         store(first, next);
     } else {
-        sint words = l.stride * 7 + 15;
-        sint lines = (words >> 4) + item_list_words / 16;
-        l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, lines, trap_lists_full);
+        l.line = allocate(c, &WorkerRecord::list_next, &WorkerRecord::list_end, list_lines(l.stride),
+                          trap_lists_full);
     }
     l.header = as<ItemList>(c.lists + l.line);
     pointer<float> arrays = as<float>(l.header) + item_list_words;

@@ -12,6 +12,7 @@ Context begin(const WorkerArguments& a) {
     c.opened = a.opened;
     c.watch = a.watch;
     c.tiles = a.tiles;
+    c.memory = a.memory;
     return c;
 }
 
@@ -126,8 +127,9 @@ void dice_all(const WorkerArguments& w) {
             if (branch(finer & (level > 0))) {
                 ensure_children(c, line, block);
                 sint child = load(field(block, &BlockHeader::child_line));
-                sint lines = load(field(block, &BlockHeader::child_lines));
-                sint children = load(field(block, &BlockHeader::child_count));
+                sint shape = load(field(block, &BlockHeader::child_shape));
+                sint lines = lines_between(shape);
+                sint children = children_in(shape);
                 for (sint i = children; branch(i > 0); --i) {
                     store(left + depth, child);
                     child = child + lines;
