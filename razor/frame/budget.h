@@ -46,7 +46,7 @@ inline constexpr int gate_closed = 1 << 16;
 /// Epochs in the time in which an arena fills: at least so many, less than twice as many.
 inline constexpr int epochs_log2 = 3;
 /// Nodes whose depth is a multiple of this are anchors.
-inline constexpr int anchor_depth_log2 = 2;
+inline constexpr int anchor_depth_log2 = 3;
 
 struct alignas(line_bytes) TreeBudget {
     isa::shared<std::int32_t> gate;
