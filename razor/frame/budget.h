@@ -1,13 +1,13 @@
 // With a memory budget: the records of what can be dropped and made again, as they lie in frame memory.
 //
 // Grids, kd nodes and item lists of a tree lie in one arena of lines, which never grows: that is the tree's
-// share of the budget. Workers take *pieces* of it and fill these. When it is full, its workers leave what they
-// render, and one of them drops what was used longest ago. What is left stays where it is; what became free
-// is taken again, run by run, from the arena's begin on (after Immix: Blackburn & McKinley, PLDI 2008).
+// share of the budget. Workers take *pieces* of it and fill these. When it is full, its workers leave what
+// they render, and one of them drops what was used longest ago. What is left stays where it is; what became
+// free is taken again, run by run, from the arena's begin on (after Immix: Blackburn & McKinley, PLDI 2008).
 //
-// Recency is kept per *epoch*: an epoch is a part of the time in which the arena fills. At its end, nodes that can
-// be dropped with all below them (*anchors*) are put to sleep; the first ray that enters one wakes it and
-// notes the epoch. Blocks were used when a list that names them or their children was.
+// Recency is kept per *epoch*: an epoch is a part of the time in which the arena fills. At its end, nodes
+// that can be dropped with all below them (*anchors*) are put to sleep; the first ray that enters one wakes
+// it and notes the epoch. Blocks were used when a list that names them or their children was.
 #pragma once
 
 #include "razor/frame/layout.h"
@@ -25,8 +25,8 @@ enum AnchorFlags : std::int32_t { anchor_leaf = 1, anchor_refines = 2 };
 /// A built node that can be unsplit again. Lies among the nodes.
 struct Anchor {
     std::int32_t node;
-    std::int32_t list; // line of the item list that it is made from, times 4, and AnchorFlags: what it is; whether
-                       // the list is a coarser leaf's, else it is kept for the anchor
+    std::int32_t list; // line of the item list that it is made from, times 4, and AnchorFlags: what it is;
+                       // whether the list is a coarser leaf's, else it is kept for the anchor
     std::int32_t use;  // the last epoch in which it was woken
     std::int32_t next; // that the same worker made or woke in this epoch; -1: none
 };
@@ -60,9 +60,9 @@ struct alignas(line_bytes) TreeBudget {
     std::int32_t workers;       // of this tree ...
     std::int32_t frame_workers; // ... and in all
     std::int32_t tree;
-    std::int32_t era;   // one more each time that memory is dropped
-    std::int32_t epoch; // in which it began
-    float free_share;   // of the grains when it began
+    std::int32_t era;             // one more each time that memory is dropped
+    std::int32_t epoch;           // in which it began
+    float free_share;             // of the grains when it began
     isa::ref<std::int32_t> marks; // one a grain: the last era that began with it in use
     std::int32_t padding3[4];
 };

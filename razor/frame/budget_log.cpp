@@ -30,7 +30,8 @@ std::int64_t size_of(const Keys& keys) {
 
 } // namespace
 
-BudgetLog::BudgetLog(const FrameHeader& header, std::vector<const TreeBudget*> trees, std::uint64_t budget_bytes)
+BudgetLog::BudgetLog(const FrameHeader& header, std::vector<const TreeBudget*> trees,
+                     std::uint64_t budget_bytes)
     : header_(header), budgets_(std::move(trees)), budget_bytes_(budget_bytes), trees_(budgets_.size()) {}
 
 void BudgetLog::clear() {
@@ -48,10 +49,8 @@ std::int64_t BudgetLog::used_grains(const TreeBudget& tree) {
 
 void BudgetLog::dropping(std::int32_t arena, std::int32_t last) {
     Tree& tree = trees_[static_cast<std::size_t>(arena)]; // one worker at a time
-    tree.peak_grains =
-        std::max(tree.peak_grains, used_grains(*budgets_[static_cast<std::size_t>(arena)]));
+    tree.peak_grains = std::max(tree.peak_grains, used_grains(*budgets_[static_cast<std::size_t>(arena)]));
     const Inventory old = take_inventory(header_, arena, last).old;
-    if (getenv("DBG")) { auto& b=*budgets_[arena]; int n=b.epoch+(b.cursor.word>>b.epoch_log2); fprintf(stderr,"drop last %d newest %d used %ld:",last,n,(long)used_grains(b)*256/1024); for(int l=n+1;l>=0&&l>n-20;--l){auto i=take_inventory(header_,arena,l).used; fprintf(stderr," %d:%ld/%ld/%ld",l,i.grid_bytes/1024,i.list_bytes/1024,i.node_bytes/1024);} fprintf(stderr,"\n"); }
     ++tree.drops;
     tree.nodes += size_of(old.nodes);
     tree.patches += size_of(old.patches);

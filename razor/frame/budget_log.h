@@ -23,10 +23,10 @@ struct BudgetStatistics {
     std::int64_t made_grid_bytes = 0, made_node_bytes = 0, made_list_bytes = 0;
     /// Made once more after they were dropped.
     std::int64_t regenerated_nodes = 0, regenerated_patches = 0, regenerated_blocks = 0;
-    std::int64_t waits = 0;          // of a worker, for others, before it could render
+    std::int64_t waits = 0;           // of a worker, for others, before it could render
     std::int64_t restarted_tiles = 0; // found no memory left
     std::int64_t tiles_alone = 0;     // rendered while the others waited, in an empty arena
-    Duplicates duplicates;           // of what the trees ever held
+    Duplicates duplicates;            // of what the trees ever held
 };
 
 class BudgetLog final : public isa::memory_log {
@@ -42,7 +42,7 @@ public:
 private:
     /// What a tree has dropped.
     struct Tree {
-        Inventory dropped; // each key once
+        Inventory dropped;                               // each key once
         std::int64_t nodes = 0, patches = 0, blocks = 0; // dropped, as often as they were
         std::int64_t drops = 0;
         std::int64_t peak_grains = 0;

@@ -151,12 +151,13 @@ std::string bytes_text(std::uint64_t bytes) {
 
 [[noreturn]] void explain(const isa::trapped& trap, const FrameOptions& options, int trees) {
     if (trap.code == trap_memory_spent || trap.code == trap_budget_too_small)
-        throw UserError(fmt::format(
-            "a memory budget of {} is too small: one screen tile alone needs more than {}; raise --memory{} or "
-            "use a larger target edge (--edge-pixels)",
-            bytes_text(options.memory_bytes),
-            trees == 1 ? "that" : fmt::format("what each of {} kd-trees has of it", trees),
-            trees == 1 ? "" : ", share kd-trees between more workers (--share)"));
+        throw UserError(
+            fmt::format("a memory budget of {} is too small: one screen tile alone needs more than {}; raise "
+                        "--memory{} or "
+                        "use a larger target edge (--edge-pixels)",
+                        bytes_text(options.memory_bytes),
+                        trees == 1 ? "that" : fmt::format("what each of {} kd-trees has of it", trees),
+                        trees == 1 ? "" : ", share kd-trees between more workers (--share)"));
     const char* what = trap.code == trap_grids_full   ? "tessellated grids"
                        : trap.code == trap_nodes_full ? "kd-tree nodes"
                        : trap.code == trap_pages_full ? "limit weights"

@@ -24,9 +24,9 @@ struct FrameOptions {
     std::vector<int> tree_of_worker = {};
     /// Each worker's arenas; 0: as large as 32-bit references allow.
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
-    /// What grids, kd nodes and item lists may take in all, with tables that say what is in use, divided among
-    /// the trees as the workers are; what was used longest ago is dropped and made again (razor/frame/budget.h).
-    /// More than 8 GiB are 8 GiB. 0: no bound; else the sizes above are not used.
+    /// What grids, kd nodes and item lists may take in all, with tables that say what is in use, divided
+    /// among the trees as the workers are; what was used longest ago is dropped and made again
+    /// (razor/frame/budget.h). More than 8 GiB are 8 GiB. 0: no bound; else the sizes above are not used.
     std::uint64_t memory_bytes = 0;
     /// With a budget: grids, nodes and lists have addresses of their own, so that the machine can tell their
     /// traffic apart; a line that one leaves to another then costs the host memory twice.

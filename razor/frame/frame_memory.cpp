@@ -74,8 +74,8 @@ void Frame::Impl::count_records(const Scene& scene) {
 void Frame::Impl::size_bounded_arenas() {
     const std::uint64_t budget = std::min(options.memory_bytes, all_grids);
     for (int t = 0; t < trees; ++t) {
-        const std::uint64_t share = budget / static_cast<std::uint64_t>(options.workers) *
-                                    static_cast<std::uint64_t>(workers_of(t));
+        const std::uint64_t share =
+            budget * static_cast<std::uint64_t>(workers_of(t)) / static_cast<std::uint64_t>(options.workers);
         grains.push_back(static_cast<int>(share / (grain_lines * line_bytes + sizeof(std::int32_t))));
     }
 }
@@ -327,8 +327,8 @@ void Frame::Impl::place_bounded_arenas() {
     }
     std::byte* const p = memory->add(options.apart ? "grids" : "bounded", -1, lines * line_bytes, true);
     header->grids.set(reinterpret_cast<Line*>(p));
-    header->nodes.set(reinterpret_cast<KdNode*>(
-        options.apart ? memory->add("kd nodes", -1, lines * line_bytes, true) : p));
+    header->nodes.set(
+        reinterpret_cast<KdNode*>(options.apart ? memory->add("kd nodes", -1, lines * line_bytes, true) : p));
     header->lists.set(
         reinterpret_cast<Line*>(options.apart ? memory->add("item lists", -1, lines * line_bytes, true) : p));
     auto* tree = region<TreeBudget>("budget", -1, static_cast<std::size_t>(trees), true);

@@ -111,7 +111,8 @@ struct Frame::Impl {
     void place_bounded_arenas();
     void reset_budget();
     int workers_of(int tree) const {
-        return static_cast<int>(std::count(options.tree_of_worker.begin(), options.tree_of_worker.end(), tree));
+        return static_cast<int>(
+            std::count(options.tree_of_worker.begin(), options.tree_of_worker.end(), tree));
     }
     std::uint64_t arena_bytes() const;
     void place_view(const Scene& scene);

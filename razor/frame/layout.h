@@ -358,10 +358,10 @@ struct alignas(line_bytes) WorkerRecord {
     std::int32_t node_next, node_end;
     std::int32_t list_next, list_end;
     std::int32_t tree;
-    std::int32_t next_field; // the next number of a field: see packet_field in razor/frame/scratch.h
-    isa::ref<float> stack;   // traversal stack and builders' scratch
-    isa::ref<float> packets; // the rays in flight
-    isa::ref<float> blends;  // blocks lately blended
+    std::int32_t next_field;       // the next number of a field: see packet_field in razor/frame/scratch.h
+    isa::ref<float> stack;         // traversal stack and builders' scratch
+    isa::ref<float> packets;       // the rays in flight
+    isa::ref<float> blends;        // blocks lately blended
     isa::ref<WorkerBudget> budget; // null: no memory budget
 };
 static_assert(sizeof(WorkerRecord) == line_bytes);
@@ -475,7 +475,7 @@ enum TrapCode : int {
     trap_nodes_full = 2,
     trap_lists_full = 3,
     trap_pages_full = 4,
-    trap_memory_spent = 5,  // of a budget: something has to be dropped first
+    trap_memory_spent = 5,    // of a budget: something has to be dropped first
     trap_budget_too_small = 6 // one tile alone does not fit
 };
 

@@ -1,9 +1,10 @@
-// Dropping what a tree with a memory budget used longest ago (razor/frame/budget.h). Nobody renders meanwhile.
+// Dropping what a tree with a memory budget used longest ago (razor/frame/budget.h). Nobody renders
+// meanwhile.
 //
-// First all that can be reached is asked when it was used: nodes and lists with the anchor they lie under, blocks
-// with the lists that name them. Then anchors that were used too long ago become unsplit again, groups of blocks
-// that none of the lists left needs become absent, and what is left is marked. Blocks as the camera sees them
-// (BlockHeader::seen) are all dropped: few are needed once the tiles where they lie are rendered.
+// First all that can be reached is asked when it was used: nodes and lists with the anchor they lie under,
+// blocks with the lists that name them. Then anchors that were used too long ago become unsplit again, groups
+// of blocks that none of the lists left needs become absent, and what is left is marked. Blocks as the camera
+// sees them (BlockHeader::seen) are all dropped: few are needed once the tiles where they lie are rendered.
 #pragma once
 
 #include "razor/kernels/blend.h"

@@ -1,4 +1,5 @@
-// Tiles within a memory budget: who renders while memory is dropped, and what happens to a tile that finds no more.
+// Tiles within a memory budget: who renders while memory is dropped, and what happens to a tile that finds no
+// more.
 #pragma once
 
 #include "razor/kernels/budget_drop.h"

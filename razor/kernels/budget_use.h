@@ -1,4 +1,5 @@
-// Which parts of a tree with a memory budget were used lately: anchors asleep and awake (razor/frame/budget.h).
+// Which parts of a tree with a memory budget were used lately: anchors asleep and awake
+// (razor/frame/budget.h).
 #pragma once
 
 #include "razor/kernels/budget_room.h"

@@ -93,7 +93,8 @@ NativeRenderer::NativeRenderer(const Scene& scene, const RenderOptions& options,
     if (options_.threads <= 0)
         options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (options_.eager && options_.memory_bytes != 0)
-        throw UserError("--eager builds everything at once, which no memory budget bounds; leave --memory out");
+        throw UserError(
+            "--eager builds everything at once, which no memory budget bounds; leave --memory out");
     load(scene);
     if (options_.eager && frame_->statistics().trees > 1)
         throw UserError("--eager builds one kd-tree; leave --share out");

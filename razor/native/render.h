@@ -44,8 +44,8 @@ struct FrameTime {
 };
 
 struct RenderStatistics {
-    FrameStatistics frame; // the last one
-    Duplicates duplicates; // in it
+    FrameStatistics frame;   // the last one
+    Duplicates duplicates;   // in it
     BudgetStatistics budget; // likewise
     std::string isa;
     int width_lanes = 0, threads = 0;

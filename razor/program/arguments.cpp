@@ -127,8 +127,9 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
         if (bytes >= 65536 && bytes <= std::ldexp(1.0, 40))
             return static_cast<std::uint64_t>(bytes);
     }
-    throw UserError(fmt::format("{} '{}' is not possible; give a size from 64KiB to 1024GiB, for example 256MiB",
-                                option, printable(text)));
+    throw UserError(
+        fmt::format("{} '{}' is not possible; give a size from 64KiB to 1024GiB, for example 256MiB", option,
+                    printable(text)));
 }
 
 std::size_t parse_choice(std::string_view option, std::string_view text,

@@ -64,9 +64,10 @@ void RenderCommand::add_to(CLI::App& app) {
                     "who shares a kd-tree: chip (all, the default), worker (nobody), or N workers a tree")
         ->type_name("WHO");
     render
-        .add_option("--memory", memory_,
-                    "what grids, kd nodes and item lists may take in all, such as 256MiB; what was used longest "
-                    "ago is dropped and made again; without it, no bound")
+        .add_option(
+            "--memory", memory_,
+            "what grids, kd nodes and item lists may take in all, such as 256MiB; what was used longest "
+            "ago is dropped and made again; without it, no bound")
         ->type_name("SIZE");
     render.add_flag("--eager", eager_,
                     "build all that rays could ask for, but normals, before the first one; to compare with");
@@ -203,8 +204,7 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, const Scen
         fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {:.2f} million rays, {:.1f} MB built, "
                    "slowest tile {:.1f} ms{}\n",
                    frame, seconds, result.statistics.load_seconds,
-                   static_cast<double>(built.counters.rays) / 1e6,
-                   made_megabytes(result.statistics),
+                   static_cast<double>(built.counters.rays) / 1e6, made_megabytes(result.statistics),
                    1e3 * built.slowest_tile_seconds, memory_text(result.statistics.budget));
         std::fflush(stdout);
     } else if (progress.shown()) {

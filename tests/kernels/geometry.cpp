@@ -368,7 +368,8 @@ TEST_P(Geometry, BoxesHoldAllFinerVertices) {
                         continue;
                     ASSERT_EQ(d.header->children.word, ready);
                     for (int c = 0; c < children_in(d.header->child_shape); ++c)
-                        below.push_back(block_at(*frame_, d.header->child_line + c * lines_between(d.header->child_shape)));
+                        below.push_back(block_at(*frame_, d.header->child_line +
+                                                              c * lines_between(d.header->child_shape)));
                 }
             }
     }
