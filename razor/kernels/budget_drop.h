@@ -163,8 +163,11 @@ struct KeepRest {
         sint from = (line - d.first_line) >> grain_log2;
         sint last = line + lines;
         last = (last - (d.first_line + 1)) >> grain_log2;
-        for (; branch(from <= last); from += isa::width)
-            store_vector(d.marks + from, vint(d.era), first_lanes(last + 1 - from));
+        vint era = vint(d.era);
+        for (; branch(from <= last); from += isa::width) {
+            vmask m = first_lanes(last + 1 - from);
+            store_vector(d.marks + from, era, m);
+        }
     }
     sbool goes(sint use) const { return use <= d.last; }
     void nodes(sint number, sint amount, sint) const {
@@ -220,7 +223,8 @@ inline sint choose_last(const Context& c, sint newest, sint grains) {
             break;
         most = select(age == 0, most, half);
     }
-    return select(age == ages, sint(0), newest - age);
+    sbool enough = age == ages;
+    return select(enough, sint(0), newest - age);
 }
 
 /// Nobody has anything left in hand, and unused lists are part of what is free.
@@ -291,13 +295,15 @@ inline sint epoch_now(pointer<TreeBudget> tree) {
     sbool some = root_state == ready;
     some = some & !everything;
     if (branch(some)) {
+        pointer<std::int32_t> bins = as<std::int32_t>(c.stack + scratch_ages);
         for (int i = 0; i < ages; i += isa::width)
-            store_vector(as<std::int32_t>(c.stack + scratch_ages) + i, vint(0), first_lanes(ages - i));
+            store_vector(bins + i, vint(0), first_lanes(ages - i));
         AskUse ask{c, d};
         visit_tree(c, d.newest, ask);
         visit_groups(c, d, [&](pointer<BlockGroup> group, sint) {
             sint shape = load(field(group, &BlockGroup::shape));
-            sint lines = lines_between(shape) * children_in(shape);
+            sint lines = lines_between(shape);
+            lines = lines * children_in(shape);
             sint use = load(field(group, &BlockGroup::use));
             ask.count(use, (lines << records_a_line_log2) + 1);
             return sbool(true);
@@ -319,7 +325,9 @@ inline sint epoch_now(pointer<TreeBudget> tree) {
         vint mark = load_vector(d.marks + i, m);
         unused += count(m & (mark != vint(d.era)));
     }
-    store(field(tree, &TreeBudget::free_share), to_float(unused) / to_float(grains));
+    sfloat share = to_float(unused);
+    share = share / to_float(grains);
+    store(field(tree, &TreeBudget::free_share), share);
     store(field(tree, &TreeBudget::era), d.era);
     store(field(tree, &TreeBudget::epoch), d.newest);
     store_release(field(tree, &TreeBudget::cursor), 0);

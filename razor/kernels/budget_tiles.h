@@ -76,7 +76,8 @@ inline sbool is_short(pointer<WorkerBudget> own, pointer<TreeBudget> tree) {
     sint workers = load(field(tree, &TreeBudget::workers));
     sint wanted = load(field(own, &WorkerBudget::tile_grains)) * workers;
     sbool begun = cursor > 0; // something was taken since the last time
-    return begun & (to_float(grains - cursor) * share < to_float(wanted));
+    sfloat unused = to_float(grains - cursor) * share;
+    return begun & (unused < to_float(wanted));
 }
 
 /// Renders a tile; false if there was not enough memory for it.
@@ -103,6 +104,10 @@ private:
     Release release_;
 };
 
+/// How often a worker tries to render a tile while the others wait. The first time the arena is empty; then
+/// it holds what the tile was found to need, without lists and the like that were only needed on the way.
+inline constexpr int alone_tries = 4;
+
 template <class Tile>
 [[gnu::noinline]] inline void render_bounded(const Context& c, pointer<WorkerBudget> own, Tile tile) {
     pointer<TreeBudget> tree = load(field(own, &WorkerBudget::tree));
@@ -125,14 +130,16 @@ template <class Tile>
         if (branch(!close_gate(c, gate)))
             continue;
         GateGuard guard([&] { open_gate(gate); });
-        sbool alone = failed > 1;
-        drop_oldest(c, tree, alone);
-        if (branch(alone)) {
+        drop_oldest(c, tree, failed > 1);
+        if (branch(failed > 1)) {
             note_event(*c.memory, budget_alone);
-            begin_bounded(c, own, tree);
-            if (!fits(tile))
-                trap(trap_budget_too_small);
-            return;
+            for (int left = alone_tries; left > 0; --left) {
+                begin_bounded(c, own, tree);
+                if (fits(tile))
+                    return;
+                drop_oldest(c, tree, false);
+            }
+            trap(trap_budget_too_small);
         }
     }
 }
