@@ -377,7 +377,7 @@ inline pointer<float> keep_blended(const Context& c, const Field& f, sint number
                                    pointer<float> slot, Finish finish) {
     if (branch(number == camera_number)) {
         pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
-        build_once(field(block, &BlockHeader::seen), [&] {
+        build_once(c, field(block, &BlockHeader::seen), [&] {
             sint at =
                 allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, slot_lines, trap_grids_full);
             sint absolute = load(field(block, &BlockHeader::absolute));

@@ -81,15 +81,19 @@ inline sbool is_short(pointer<WorkerBudget> own, pointer<TreeBudget> tree) {
 }
 
 /// Renders a tile; false if there was not enough memory for it.
-template <class Tile> inline bool fits(Tile tile) {
+template <class Tile> inline bool fits(const Context& c, Tile tile) {
+    HeldWords held;
+    Context own = c;
+    own.held = &held;
     try {
-        tile();
+        tile(own);
         return true;
     } catch (const isa::trapped& trap) {
         if (trap.code != trap_memory_spent)
             throw;
-        return false;
     }
+    held.release();
+    return false;
 }
 
 /// Holds the gate open for others, or shut, until its end, however that comes.
@@ -121,7 +125,7 @@ template <class Tile>
             fresh = false;
             if (branch(!wait)) {
                 begin_bounded(c, own, tree);
-                if (fits(tile))
+                if (fits(c, tile))
                     return;
                 note_event(*c.memory, budget_restart);
                 ++failed;
@@ -135,7 +139,7 @@ template <class Tile>
             note_event(*c.memory, budget_alone);
             for (int left = alone_tries; left > 0; --left) {
                 begin_bounded(c, own, tree);
-                if (fits(tile))
+                if (fits(c, tile))
                     return;
                 drop_oldest(c, tree, false);
             }
@@ -144,11 +148,11 @@ template <class Tile>
     }
 }
 
-/// Calls tile() once, or with a memory budget until it has what it needs.
+/// Calls tile(context) once, or with a memory budget until it has what it needs.
 template <class Tile> inline void render_within_budget(const Context& c, Tile tile) {
     pointer<WorkerBudget> own = budget_of(c);
     if (branch(is_null(own)))
-        tile();
+        tile(c);
     else
         render_bounded(c, own, tile);
 }

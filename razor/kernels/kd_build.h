@@ -299,7 +299,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
         if (branch(seen == node_unsplit)) {
             seen = compare_exchange(state, node_unsplit, node_busy);
             if (branch(seen == node_unsplit)) {
-                BusyGuard guard(state, node_unsplit);
+                BusyGuard guard(c, state, node_unsplit);
                 seen = build_node(c, node);
                 guard.publish(seen);
             }
@@ -337,7 +337,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
 
 /// Returns once the worker's tree has a root, making it if nobody else does.
 inline void ensure_root(const Context& c) {
-    build_once(field(c.tree, &TreeRecord::root_state), [&] { build_root(c); });
+    build_once(c, field(c.tree, &TreeRecord::root_state), [&] { build_root(c); });
 }
 
 } // namespace build_kernel

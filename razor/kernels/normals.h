@@ -102,7 +102,8 @@ inline sint ensure_normals(const Context& c, sint line) {
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + line);
     sint normals_at = load(field(header, &BlockHeader::normals_at));
     if (branch(normals_at != 0))
-        build_once(field(header, &BlockHeader::normals), [&] { make_normals(c, line, header, normals_at); });
+        build_once(c, field(header, &BlockHeader::normals),
+                   [&] { make_normals(c, line, header, normals_at); });
     return normals_at;
 }
 

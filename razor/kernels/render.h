@@ -185,7 +185,7 @@ template <Features F> inline void render_worker(const Context& c) {
     sint tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
     while (branch(tile < end)) {
         begin_lap(*c.tiles);
-        render_within_budget(c, [&] { render_tile<F>(c, tile); });
+        render_within_budget(c, [&](const Context& within) { render_tile<F>(within, tile); });
         end_lap(*c.tiles, tile);
         tile = fetch_add(field(queues, &QueueRecord::next_tile), 1);
     }

@@ -114,7 +114,7 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
 /// Returns them, once they are there.
 inline pointer<float> blended_normals(const Context& c, sint line, pointer<float> normals,
                                       pointer<float> slot) {
-    build_once(as<shared_int>(slot) + slot_normals, [&] { blend_normals(c, line, normals, slot); });
+    build_once(c, as<shared_int>(slot) + slot_normals, [&] { blend_normals(c, line, normals, slot); });
     return slot + (slot_block + blend_normals_at);
 }
 

@@ -215,7 +215,7 @@ inline void count_blocks(const Context& c, const Shape& s, sint level, sint bloc
 /// Returns once the patch is open in the worker's tree, opening it if nobody else does.
 inline pointer<OpenPatch> open_patch(const Context& c, sint patch) {
     pointer<OpenPatch> entry = c.open + patch;
-    build_once(field(entry, &OpenPatch::state), [&] { dice_patch(c, patch, entry); });
+    build_once(c, field(entry, &OpenPatch::state), [&] { dice_patch(c, patch, entry); });
     return entry;
 }
 
@@ -246,7 +246,7 @@ inline pointer<OpenPatch> open_patch(const Context& c, sint patch) {
 }
 
 [[gnu::noinline]] inline void make_once(const Context& c, pointer<BlockHeader> header) {
-    build_once(field(header, &BlockHeader::made), [&] { make_block(c, header); });
+    build_once(c, field(header, &BlockHeader::made), [&] { make_block(c, header); });
 }
 
 /// Returns once the block has vertices, making them if nobody else does.
@@ -298,7 +298,7 @@ inline void ensure_made(const Context& c, pointer<BlockHeader> header) {
 
 /// Returns once the block's children are there, making them if nobody else does.
 inline void ensure_children(const Context& c, sint line, pointer<BlockHeader> header) {
-    build_once(field(header, &BlockHeader::children), [&] { dice_children(c, line, header); });
+    build_once(c, field(header, &BlockHeader::children), [&] { dice_children(c, line, header); });
 }
 
 } // namespace tessellate_kernel

@@ -64,8 +64,8 @@ TEST_F(Simulator, StaysWithinItsMemory) {
     const std::string start = std::string("run --quiet --scene s.toml --size 48x48 --spp 1 --sky-samples 1 "
                                           "--light-samples 1 --edge-pixels 2 --machine ") +
                               tiny + " ";
-    for (const char* how : {"--memory 1MiB", "--memory 4MiB --share worker", "--memory 3MiB --share 2",
-                            "--memory 1MiB --workers 1"}) {
+    for (const char* how : {"--memory 400KiB", "--memory 3MiB --share worker", "--memory 1400KiB --share 2",
+                            "--memory 400KiB --workers 1"}) {
         SCOPED_TRACE(how);
         ASSERT_EQ(simulator(start + how + " -o a.exr --json a.json").code, 0);
         const nlohmann::json a = report("a.json");
