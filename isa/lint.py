@@ -127,7 +127,7 @@ class Lint:
         t = self.t
         for i, w in enumerate(t.word):
             before, after = t.at(i - 1), t.at(i + 1)
-            if w == "->" and not self.trailing_type(i) and not self.inside_call(i, "tally", "mark", "note_time", "begin_lap", "end_lap"):
+            if w == "->" and not self.trailing_type(i) and not self.inside_call(i, "tally", "mark", "note_time", "note_dropping", "note_event", "begin_lap", "end_lap"):
                 self.report(i, "memory", "-> reads memory that the machine does not see")
             if w == "host" and before in (".", "->") and after == "(":
                 self.report(i, "memory", ".host() is for host code")
@@ -137,7 +137,7 @@ class Lint:
                 self.report(i, "memory", f"{before}[...] indexes a handle: load(handle + index)")
             if w == "*" and (before in ("", "(", ",", "=", ";", "{", "}", "return", "[", "?", ":", "!", "&&", "||")) and \
                     (is_name(after) or after == "(") and after not in self.registers and after != "this" and \
-                    t.at(i - 2) != "void" and not self.inside_call(i, "request_page", "mark", "note_time", "begin_lap", "end_lap"):
+                    t.at(i - 2) != "void" and not self.inside_call(i, "request_page", "mark", "note_time", "note_dropping", "note_event", "begin_lap", "end_lap"):
                 self.report(i, "memory", f"*{after} reads memory that the machine does not see")
             if w in ("while", "for") and after == "(":
                 self.loop(i)

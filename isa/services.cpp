@@ -4,6 +4,9 @@
 
 namespace isa {
 
+trapped::trapped(int code) : std::runtime_error("kernel trap"), code(code) {}
+trapped::~trapped() = default;
+
 void throw_trapped(int code) { throw trapped(code); }
 
 mark_set::mark_set(std::int64_t count) : words_(static_cast<std::size_t>((count + 63) / 64)) {}

@@ -68,11 +68,26 @@ private:
     figures laps_;
 };
 
+/// What becomes of memory that has a budget. Any thread.
+class memory_log {
+public:
+    /// A kernel is about to drop what was last used at time `last` or before in arena `arena`. Nobody else is at work
+    /// there.
+    virtual void dropping(std::int32_t arena, std::int32_t last) = 0;
+    virtual void note(std::int32_t event) = 0;
+
+protected:
+    ~memory_log() = default;
+};
+
 /// Thrown by trap(): a kernel cannot go on (an arena is exhausted, a wait was cancelled). The host says what the code
 /// means.
 class trapped : public std::runtime_error {
 public:
-    explicit trapped(int code) : std::runtime_error("kernel trap"), code(code) {}
+    explicit trapped(int code);
+    ~trapped() override; // out of line: kernels that catch it hold no code of it
+    trapped(const trapped&) = default;
+    trapped& operator=(const trapped&) = default;
     int code;
 };
 

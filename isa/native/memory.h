@@ -182,6 +182,9 @@ inline void note_time(isa::stopwatch& watch, int event) { watch.note(event); }
 /// Likewise: how long each lap takes, numbered as the caller does.
 inline void begin_lap(isa::lap_timer& timer) { timer.begin(); }
 inline void end_lap(isa::lap_timer& timer, sint lap) { timer.end(lap.v); }
+/// Likewise: what becomes of memory that has a budget.
+inline void note_dropping(isa::memory_log& log, sint arena, sint last) { log.dropping(arena.v, last.v); }
+inline void note_event(isa::memory_log& log, int event) { log.note(event); }
 /// Likewise: traffic to `count` records counts under `level` - `finer` from now on, or under the level of `other`'s
 /// record (simulated machine). Natively nothing.
 template <class T> inline void note_level(pointer<T>, sint /*count*/, sint /*level*/, int /*finer*/ = 0) {}

@@ -212,6 +212,10 @@ inline void tally(std::int64_t& counter, const sint& n) { counter += access::val
 inline void tally(std::int64_t& counter, int n) { counter += n; }
 inline void mark(isa::mark_set& set, const sint& i) { set.mark(access::value(i).v); }
 inline void note_time(isa::stopwatch&, int) {} // the host's time says nothing of the machine's
+inline void note_dropping(isa::memory_log& log, const sint& arena, const sint& last) {
+    log.dropping(access::value(arena).v, access::value(last).v);
+}
+inline void note_event(isa::memory_log& log, int event) { log.note(event); }
 inline void begin_lap(isa::lap_timer&) {}
 inline void end_lap(isa::lap_timer&, const sint&) {}
 namespace detail {

@@ -67,9 +67,9 @@ std::vector<BlockView> known_blocks_of(Frame& frame, int patch, int tree, int le
             blocks.push_back(b);
         if (b.header->level <= level || b.header->children.word != ready)
             continue;
-        int children = b.header->child_count;
+        int children = children_in(b.header->child_shape);
         for (int i = 0; i < children; ++i)
-            left.push_back(block_at(frame, b.header->child_line + i * b.header->child_lines));
+            left.push_back(block_at(frame, b.header->child_line + i * lines_between(b.header->child_shape)));
     }
     std::sort(blocks.begin(), blocks.end(),
               [](const BlockView& a, const BlockView& b) { return a.header->number < b.header->number; });

@@ -123,8 +123,8 @@ private:
             finest.push_back(b);
             return;
         }
-        for (int k = 0; k < b.header->child_count; ++k)
-            collect(b.header->child_line + k * b.header->child_lines, all, finest);
+        for (int k = 0; k < children_in(b.header->child_shape); ++k)
+            collect(b.header->child_line + k * lines_between(b.header->child_shape), all, finest);
     }
 
     static int twos(int i) { return std::countr_zero(static_cast<unsigned>(i)); }

@@ -68,10 +68,11 @@ public:
             sum_.normals += beyond_first(normals);
             if (parents.size() < 2)
                 continue;
-            for (int child = 0; child < header_of(parents.front()).child_count; ++child) {
+            for (int child = 0; child < children_in(header_of(parents.front()).child_shape); ++child) {
                 Places children;
                 for (const std::int32_t parent : parents)
-                    children.push_back(header_of(parent).child_line + child * header_of(parent).child_lines);
+                    children.push_back(header_of(parent).child_line +
+                                       child * lines_between(header_of(parent).child_shape));
                 push_shared(open, std::move(children));
             }
         }
@@ -99,6 +100,8 @@ private:
 
 Duplicates Frame::duplicates() const {
     const Impl& f = *impl_;
+    if (f.log)
+        return f.log->statistics().duplicates;
     Counter counter(*f.header);
     Places roots;
     for (int t = 0; t < f.trees; ++t) {

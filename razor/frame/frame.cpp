@@ -49,8 +49,6 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     pages = std::make_unique<PageStore>(meshes, topologies, options.page_bytes);
     counters.resize(static_cast<std::size_t>(options.workers));
     size_arenas();
-    const std::uint64_t arenas =
-        static_cast<std::uint64_t>(options.workers) * (grid_bytes + node_bytes + list_bytes);
     // OpenPatch entries and curve lengths, tables a tree, take memory only where a patch is opened.
     const std::uint64_t scene_bytes =
         static_cast<std::uint64_t>(clusters) *
@@ -63,7 +61,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(
-        pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + arenas +
+        pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + arena_bytes() +
         2 * scene_bytes + pixels * 64 + 4 * gibibyte +
         static_cast<std::uint64_t>(options.workers + trees) * 64 * isa::address_space::granule);
     place_scene(scene);
@@ -92,13 +90,15 @@ void Frame::Impl::reset() {
     watch.restart();
     tiles.assign(static_cast<std::size_t>(options.workers), {});
     waits.assign(static_cast<std::size_t>(options.workers), {});
+    if (log)
+        reset_budget();
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
-        r.grid_next = first_grid_line(w);
+        r.grid_next = log ? 0 : first_grid_line(w);
         r.grid_end = r.grid_next + grid_lines_each;
-        r.node_next = first_node(w);
+        r.node_next = log ? 0 : first_node(w);
         r.node_end = r.node_next + nodes_each;
-        r.list_next = first_list_line(w);
+        r.list_next = log ? 0 : first_list_line(w);
         r.list_end = r.list_next + list_lines_each;
         for (float* stack : {r.stack.get(), r.stack.get() + spare_stack})
             std::fill_n(reinterpret_cast<std::int32_t*>(stack + scratch_free_lists), list_sizes, -1);
@@ -170,7 +170,21 @@ void Frame::reset() {
 
 namespace {
 
-[[noreturn]] void explain(const isa::trapped& trap) {
+/// "3.5 MiB".
+std::string bytes_text(std::uint64_t bytes) {
+    return bytes < 1U << 20U ? fmt::format("{:.1f} KiB", static_cast<double>(bytes) / 1024)
+                             : fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1U << 20U));
+}
+
+[[noreturn]] void explain(const isa::trapped& trap, const FrameOptions& options, int trees) {
+    if (trap.code == trap_memory_spent || trap.code == trap_budget_too_small)
+        throw UserError(
+            fmt::format("a memory budget of {} is too small: one screen tile alone needs more than {}; raise "
+                        "--memory{} or "
+                        "use a larger target edge (--edge-pixels)",
+                        bytes_text(options.memory_bytes),
+                        trees == 1 ? "that" : fmt::format("what each of {} kd-trees has of it", trees),
+                        trees == 1 ? "" : ", share kd-trees between more workers (--share)"));
     const char* what = trap.code == trap_grids_full   ? "tessellated grids"
                        : trap.code == trap_nodes_full ? "kd-tree nodes"
                        : trap.code == trap_pages_full ? "limit weights"
@@ -187,7 +201,7 @@ void Frame::render(const KernelTable& kernels, int worker) {
     try {
         kernels.render[impl_->plan](impl_->arguments(worker));
     } catch (const isa::trapped& trap) {
-        explain(trap);
+        explain(trap, impl_->options, impl_->trees);
     }
 }
 
@@ -195,7 +209,7 @@ void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
     try {
         kernels.trace[impl_->plan](impl_->arguments(0), arguments);
     } catch (const isa::trapped& trap) {
-        explain(trap);
+        explain(trap, impl_->options, impl_->trees);
     }
 }
 
@@ -203,7 +217,7 @@ void Frame::build_all(const KernelTable& kernels) {
     try {
         kernels.build_all(impl_->arguments(0));
     } catch (const isa::trapped& trap) {
-        explain(trap);
+        explain(trap, impl_->options, impl_->trees);
     }
 }
 
@@ -211,7 +225,7 @@ void Frame::dice_all(const KernelTable& kernels) {
     try {
         kernels.dice_all(impl_->arguments(0));
     } catch (const isa::trapped& trap) {
-        explain(trap);
+        explain(trap, impl_->options, impl_->trees);
     }
 }
 
@@ -310,7 +324,16 @@ FrameStatistics Frame::statistics() const {
             static_cast<std::int64_t>(memory.resident_bytes(*memory.find(memory.offset(table))));
     }
     s.undrawn_faces = impl_->undrawn;
-    for (int w = 0; w < impl_->options.workers; ++w) {
+    for (int t = 0; impl_->log && t < impl_->trees; ++t) {
+        const Inventory now = take_inventory(*impl_->header, t, before_all).used;
+        s.inner_nodes += now.inner_nodes;
+        s.leaves += now.leaves;
+        s.unsplit_nodes += now.unsplit_nodes;
+        s.grid_bytes += now.grid_bytes;
+        s.node_bytes += now.node_bytes;
+        s.list_bytes += now.list_bytes;
+    }
+    for (int w = 0; !impl_->log && w < impl_->options.workers; ++w) {
         const WorkerRecord& r = impl_->header->workers.get()[w];
         for (int i = impl_->first_node(w); i < r.node_next; ++i) {
             int state = impl_->header->nodes.get()[i].state.word;
@@ -328,6 +351,10 @@ FrameStatistics Frame::statistics() const {
     s.plan =
         impl_->plan == plan_flat ? "flat patches only: no hanging vertices" : "grids with hanging vertices";
     return s;
+}
+
+BudgetStatistics Frame::budget() const {
+    return impl_->log ? impl_->log->statistics() : BudgetStatistics{};
 }
 
 Film Frame::film() const {

@@ -4,6 +4,7 @@
 
 #include "isa/address_space.h"
 #include "isa/services.h"
+#include "razor/frame/budget_log.h"
 #include "razor/frame/counters.h"
 #include "razor/frame/duplicates.h"
 #include "razor/frame/kernel_table.h"
@@ -28,6 +29,13 @@ struct FrameOptions {
     bool tiles_in_rows = false;
     /// Each worker's arenas; 0: as large as 32-bit references allow.
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
+    /// What grids, kd nodes and item lists may take in all, with tables that say what is in use, divided
+    /// among the trees as the workers are; what was used longest ago is dropped and made again
+    /// (razor/frame/budget.h). More than 8 GiB are 8 GiB. 0: no bound; else the sizes above are not used.
+    std::uint64_t memory_bytes = 0;
+    /// With a budget: grids, nodes and lists have addresses of their own, so that the machine can tell their
+    /// traffic apart; a line that one leaves to another then costs the host memory twice.
+    bool apart = false;
     /// The frame may be posed anew.
     bool moves = false;
     /// Kernels say of memory that is done with that its contents are dead (razor/kernels/dead.h).
@@ -51,9 +59,10 @@ struct FrameStatistics {
     std::int64_t graph_nodes = 0, clusters = 0;
     std::int64_t graph_nodes_opened = 0, instances_opened = 0, clusters_opened = 0; // leaves are instances
     std::int64_t undrawn_faces = 0;                                                 // holes and the like
+    // Of the tree; with a memory budget, what it holds now.
     std::int64_t inner_nodes = 0, leaves = 0;
-    std::int64_t unsplit_nodes = 0;                              // nodes that no ray entered
-    std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // built this frame
+    std::int64_t unsplit_nodes = 0; // nodes that no ray entered
+    std::int64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0;
     std::int64_t scene_graph_bytes = 0, topology_bytes = 0,
                  control_point_bytes = 0; // these outlive the frame
     std::int64_t patch_table_bytes = 0;   // of the tables that name opened patches, what was touched
@@ -100,7 +109,7 @@ public:
     /// returned they may run again on other tiles, and find what is built; the statistics go on.
     void take_tiles(int first, int end);
     /// Runs one worker's share; every worker of options.workers must run, each in its own thread or fibre.
-    /// Throws UserError if an arena is exhausted.
+    /// Throws UserError if an arena is exhausted, or a memory budget too small for one screen tile.
     void render(const KernelTable& kernels, int worker);
     /// Traces rays given in frame memory (worker 0 alone; call reset() before a render).
     void trace(const KernelTable& kernels, const TraceArguments& arguments);
@@ -125,6 +134,8 @@ public:
     FrameStatistics statistics() const;
     /// Of the trees so far; call it when no worker runs.
     Duplicates duplicates() const;
+    /// Of the render so far; call it when no worker runs.
+    BudgetStatistics budget() const;
     Plan plan() const;
     int workers() const;
     /// How many: header().instances.

@@ -1,6 +1,7 @@
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/blend_table.h"
+#include "razor/frame/budget.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
 #include "razor/frame/view.h"
@@ -90,7 +91,25 @@ void Frame::Impl::count_records(const Scene& scene) {
             fmt::format("{}: the meshes have more faces than can be numbered; leave some out", scene.name));
 }
 
+void Frame::Impl::size_bounded_arenas() {
+    const std::uint64_t budget = std::min(options.memory_bytes, all_grids);
+    for (int t = 0; t < trees; ++t) {
+        const std::uint64_t share =
+            budget * static_cast<std::uint64_t>(workers_of(t)) / static_cast<std::uint64_t>(options.workers);
+        grains.push_back(static_cast<int>(share / (grain_lines * line_bytes + sizeof(std::int32_t))));
+    }
+}
+
+std::uint64_t Frame::Impl::arena_bytes() const {
+    if (options.memory_bytes != 0)
+        return 4 * std::min(options.memory_bytes, all_grids) +
+               static_cast<std::uint64_t>(trees) * 8 * isa::address_space::granule;
+    return static_cast<std::uint64_t>(options.workers) * (grid_bytes + node_bytes + list_bytes);
+}
+
 void Frame::Impl::size_arenas() {
+    if (options.memory_bytes != 0)
+        return size_bounded_arenas();
     const auto size = [&](std::uint64_t wanted, std::uint64_t all) {
         const std::uint64_t granule = isa::address_space::granule;
         const std::uint64_t most = share_of(all, options.workers) - granule; // room for colours
@@ -324,25 +343,10 @@ void Frame::Impl::place_workers() {
         tree.curve_lengths.set(
             coloured<isa::shared<std::int32_t>>("grids", t, total.curves, colour_curve_lengths));
     }
-    // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
-    for (int w = 0; w < options.workers; ++w) {
-        auto* p =
-            reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule, true));
-        if (w == 0)
-            header->grids.set(p);
-    }
-    for (int w = 0; w < options.workers; ++w) {
-        auto* p = reinterpret_cast<KdNode*>(
-            memory->add("kd nodes", w, node_bytes + isa::address_space::granule, true));
-        if (w == 0)
-            header->nodes.set(p);
-    }
-    for (int w = 0; w < options.workers; ++w) {
-        auto* p = reinterpret_cast<Line*>(
-            memory->add("item lists", w, list_bytes + isa::address_space::granule, true));
-        if (w == 0)
-            header->lists.set(p);
-    }
+    if (options.memory_bytes != 0)
+        place_bounded_arenas();
+    else
+        place_arenas();
     for (int w = 0; w < options.workers; ++w) {
         WorkerRecord& r = header->workers.get()[w];
         r.stack.set(coloured<float>("stack", w, 2 * spare_stack, colour_stack));
@@ -378,6 +382,81 @@ void Frame::Impl::order_workers() {
         if (tree.end_place == 0)
             tree.end_place = place + 1;
     }
+}
+
+void Frame::Impl::place_arenas() {
+    // The regions of one family lie side by side, so that one base and 32 bits name anything in it.
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p =
+            reinterpret_cast<Line*>(memory->add("grids", w, grid_bytes + isa::address_space::granule, true));
+        if (w == 0)
+            header->grids.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<KdNode*>(
+            memory->add("kd nodes", w, node_bytes + isa::address_space::granule, true));
+        if (w == 0)
+            header->nodes.set(p);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        auto* p = reinterpret_cast<Line*>(
+            memory->add("item lists", w, list_bytes + isa::address_space::granule, true));
+        if (w == 0)
+            header->lists.set(p);
+    }
+}
+
+void Frame::Impl::place_bounded_arenas() {
+    std::uint64_t lines = 0;
+    std::vector<int> first;
+    for (int t = 0; t < trees; ++t) {
+        lines += static_cast<std::uint64_t>(colour(t, colour_grids) / grain_lines * grain_lines);
+        first.push_back(static_cast<int>(lines));
+        lines += static_cast<std::uint64_t>(grains[static_cast<std::size_t>(t)]) * grain_lines;
+    }
+    std::byte* const p = memory->add(options.apart ? "grids" : "bounded", -1, lines * line_bytes, true);
+    header->grids.set(reinterpret_cast<Line*>(p));
+    header->nodes.set(
+        reinterpret_cast<KdNode*>(options.apart ? memory->add("kd nodes", -1, lines * line_bytes, true) : p));
+    header->lists.set(
+        reinterpret_cast<Line*>(options.apart ? memory->add("item lists", -1, lines * line_bytes, true) : p));
+    auto* tree = region<TreeBudget>("budget", -1, static_cast<std::size_t>(trees), true);
+    auto* worker = region<WorkerBudget>("budget", -1, static_cast<std::size_t>(options.workers), true);
+    std::vector<const TreeBudget*> records;
+    for (int t = 0; t < trees; ++t) {
+        TreeBudget& r = tree[t];
+        r.first_line = first[static_cast<std::size_t>(t)];
+        r.grains = grains[static_cast<std::size_t>(t)];
+        r.workers = workers_of(t);
+        r.frame_workers = options.workers;
+        r.tree = t;
+        r.piece = std::clamp(r.grains / (64 * r.workers), 2, 64);
+        while (r.grains >> r.epoch_log2 >= 2 << epochs_log2)
+            ++r.epoch_log2;
+        r.marks.set(region<std::int32_t>("budget", -1, static_cast<std::size_t>(r.grains), true));
+        records.push_back(&r);
+    }
+    for (int w = 0; w < options.workers; ++w) {
+        worker[w].tree.set(tree + options.tree_of_worker[static_cast<std::size_t>(w)]);
+        header->workers.get()[w].budget.set(worker + w);
+    }
+    log = std::make_unique<BudgetLog>(*header, std::move(records), options.memory_bytes);
+}
+
+void Frame::Impl::reset_budget() {
+    for (int w = 0; w < options.workers; ++w) {
+        WorkerBudget& r = *header->workers.get()[w].budget.get();
+        r.awake = r.groups = r.holes = -1;
+        r.epoch = 0;
+        r.era = 1;
+        r.tile_grains = 0;
+        TreeBudget& tree = *r.tree.get();
+        memory->clear(*memory->find(memory->offset(tree.marks.get())));
+        tree.gate.word = tree.cursor.word = 0;
+        tree.era = tree.epoch = 1;
+        tree.free_share = 1;
+    }
+    log->clear();
 }
 
 void Frame::Impl::deal_tiles(int first, int end) {

@@ -61,6 +61,8 @@ struct Frame::Impl {
     int trees = 1;
     int nodes_each = 0, grid_lines_each = 0, list_lines_each = 0; // arena sizes of a worker
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // the same
+    std::vector<int> grains;                                      // with a budget: of each tree's arena
+    std::unique_ptr<BudgetLog> log;                               // likewise
     Plan plan = plan_flat;
     std::int64_t undrawn = 0;
     struct {
@@ -105,6 +107,7 @@ struct Frame::Impl {
     }
     void count_records(const Scene& scene);
     void size_arenas();
+    void size_bounded_arenas();
     // Each takes room, and has what a pose changes filled in.
     void place_scene(const Scene& scene);
     void place_graph();
@@ -113,6 +116,14 @@ struct Frame::Impl {
     void place_blend_table();
     void place_workers();
     void order_workers();
+    void place_arenas();
+    void place_bounded_arenas();
+    void reset_budget();
+    int workers_of(int tree) const {
+        return static_cast<int>(
+            std::count(options.tree_of_worker.begin(), options.tree_of_worker.end(), tree));
+    }
+    std::uint64_t arena_bytes() const;
     void place_view(const Scene& scene);
     void fill_instances(const Scene& scene);
     void fill_instance(const Scene& scene, std::size_t n);
@@ -138,7 +149,7 @@ struct Frame::Impl {
         const auto w = static_cast<std::size_t>(worker);
         const auto tree = static_cast<std::size_t>(options.tree_of_worker[w]);
         return {header, worker,    pages.get(), counters[w].kind, opened[tree].get(),
-                &watch, &tiles[w], &waits[w]};
+                &watch, &tiles[w], &waits[w],   log.get()};
     }
 };
 

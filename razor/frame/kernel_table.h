@@ -11,11 +11,12 @@ struct WorkerArguments {
     FrameHeader* frame = nullptr;
     int worker = 0;
     isa::page_service* pages = nullptr;
-    Counters* counters = nullptr;    // one a kind of ray
-    isa::mark_set* opened = nullptr; // of the worker's tree: graph nodes, then clusters of instances
-    isa::stopwatch* watch = nullptr; // of Moment
-    isa::lap_timer* tiles = nullptr; // of the worker
-    isa::lap_timer* waits = nullptr; // likewise
+    Counters* counters = nullptr;      // one a kind of ray
+    isa::mark_set* opened = nullptr;   // of the worker's tree: graph nodes, then clusters of instances
+    isa::stopwatch* watch = nullptr;   // of Moment
+    isa::lap_timer* tiles = nullptr;   // of the worker
+    isa::lap_timer* waits = nullptr;   // likewise
+    isa::memory_log* memory = nullptr; // with a budget
 };
 
 /// Rays as arrays of `count` floats in frame memory; results likewise. Directions are unit vectors, scene

@@ -263,8 +263,8 @@ struct alignas(line_bytes) BlockHeader {
     std::int32_t normals_at;   // x[stride], y[stride], z[stride]; 0: geometric normals (flat patches)
     isa::shared<std::int32_t> normals;    // a BuildState
     isa::shared<std::int32_t> children;   // a BuildState
-    std::int32_t child_line, child_lines; // of the first child; from one child to the next
-    std::int32_t child_count;
+    std::int32_t child_line, child_shape; // of the first child; see children_in
+    std::int32_t group; // with a memory budget: the record of what is dropped with it (razor/frame/budget.h)
     isa::shared<std::int32_t> made; // a BuildState: of all that needs vertices (razor/kernels/tessellate.h)
     std::int32_t parent;            // line of the block that this is a child of; -1: the root
     std::int32_t corners_at;        // [corner][xyz]: see corner_anchor; corners_lie_in_vertices; or
@@ -285,6 +285,13 @@ struct alignas(line_bytes) BlockHeader {
 };
 static_assert(sizeof(BlockHeader) == 192);
 inline constexpr int block_header_words = 48;
+/// Blocks of one size, made together, in one word: how many (1, 2 or 4), and lines from one to the next.
+template <class Int> constexpr Int children_in(Int shape) {
+    return shape & 7;
+}
+template <class Int> constexpr Int lines_between(Int shape) {
+    return shape >> 3;
+}
 inline constexpr int ancestor_words = 24;
 inline constexpr int ancestor_box = ancestor_words;
 inline constexpr int corner_words = 12;
@@ -326,6 +333,7 @@ struct OpenPatch {
 // ----------------------------------------------------------------------------------------------------------
 // One tree, cut by level. A leaf lists what meets its cell at one level; rays for which that is too coarse go
 // on to the leaf's *finer* node, which covers the same cell and lists the blocks' children.
+/// With a memory budget a node may also be asleep: -1 - the number of its Anchor (razor/frame/budget.h).
 enum NodeState : std::int32_t { node_unsplit = 0, node_busy = 1, node_inner = 2, node_leaf = 3 };
 struct KdNode {
     isa::shared<std::int32_t> state; // a NodeState
@@ -376,6 +384,7 @@ struct alignas(line_bytes) TreeRecord {
     std::int32_t sharers;                              // ... of so many
 };
 
+struct WorkerBudget; // razor/frame/budget.h
 /// What one worker allocates from: lines or nodes, counted from the base of the family.
 struct alignas(line_bytes) WorkerRecord {
     std::int32_t grid_next, grid_end;
@@ -387,6 +396,7 @@ struct alignas(line_bytes) WorkerRecord {
     isa::ref<float> packets; // the rays in flight
     isa::ref<float> blends;  // blocks lately blended
     std::int32_t place;      // among the workers: who share a tree, and then who are near, have near ones
+    isa::ref<WorkerBudget> budget; // null: no memory budget
 };
 
 // --- the frame
@@ -438,9 +448,9 @@ struct FrameHeader {
     std::int32_t tiles_x, tiles_y;
     std::int32_t first_column, first_row; // of the tiles of the part that is rendered, in the whole picture
     std::int32_t tiles;                   // all of that part
-    std::int32_t tiles_first, tiles_end; // those to be rendered, by their numbers along the curve
-    std::int32_t stride_log2;            // a stride is 2^stride_log2 tiles, the first one from tiles_first
-    std::int32_t tile_rows;              // not 0: tiles are numbered row by row
+    std::int32_t tiles_first, tiles_end;  // those to be rendered, by their numbers along the curve
+    std::int32_t stride_log2;             // a stride is 2^stride_log2 tiles, the first one from tiles_first
+    std::int32_t tile_rows;               // not 0: tiles are numbered row by row
     std::int32_t worker_count;
     std::int32_t place_span; // the next power of two, or the same
     std::int32_t light_count, sky_samples;
@@ -491,7 +501,7 @@ struct FrameHeader {
     float fixed_target;         // not 0: what all rays ask for, everywhere
     std::int32_t level_choice;  // a LevelChoice
     std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
-    std::int32_t discards;     // not 0: see razor/kernels/dead.h
+    std::int32_t discards;      // not 0: see razor/kernels/dead.h
     std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
 };
 
@@ -506,6 +516,13 @@ inline constexpr int kd_depth_limit = 72;
 inline constexpr int mailbox_slots = 16;
 
 /// Why a kernel gave up (isa::trap).
-enum TrapCode : int { trap_grids_full = 1, trap_nodes_full = 2, trap_lists_full = 3, trap_pages_full = 4 };
+enum TrapCode : int {
+    trap_grids_full = 1,
+    trap_nodes_full = 2,
+    trap_lists_full = 3,
+    trap_pages_full = 4,
+    trap_memory_spent = 5,    // of a budget: something has to be dropped first
+    trap_budget_too_small = 6 // one tile alone does not fit
+};
 
 } // namespace razor

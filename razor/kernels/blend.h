@@ -3,6 +3,7 @@
 // found from the coarser blocks above, down from the first one whose corners do not move.
 #pragma once
 
+#include "razor/kernels/budget_room.h"
 #include "razor/kernels/reach.h"
 
 namespace razor::ISA_TARGET {

@@ -23,6 +23,7 @@ inline constexpr float infinite = 3.0e38F;
 
 struct Context;
 using OtherWork = bool(const Context&);
+class HeldWords;
 
 struct Context {
     pointer<FrameHeader> frame;
@@ -50,6 +51,8 @@ struct Context {
     /// What else there is to do for a worker that must wait and holds nothing others wait for; false:
     /// nothing. Null: it only waits.
     OtherWork* other_work = nullptr;
+    isa::memory_log* memory = nullptr; // with a budget; likewise:
+    HeldWords* held = nullptr;         // by builders that were thrown out of a tile
 };
 
 inline Context make_context(pointer<FrameHeader> frame, sint worker) {
@@ -77,25 +80,50 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     return c;
 }
 
-/// Takes `amount` units from one of the worker's arenas. Natively and in the machine an arena never grows.
-inline sint allocate(const Context& c, std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*end,
-                     sint amount, TrapCode full) {
-    sint begin = load(field(c.self, next));
-    sint limit = load(field(c.self, end));
-    if (branch(amount > limit - begin))
-        trap(full);
-    store(field(c.self, next), begin + amount);
-    return begin;
-}
+/// Build states that builders left behind when they were thrown out of a tile that is to be begun again. They
+/// are reset once the exception is caught: in the machine others hear of nothing that is written before.
+class HeldWords {
+public:
+    HeldWords() = default;
+    HeldWords(const HeldWords&) = delete;
+    HeldWords& operator=(const HeldWords&) = delete;
+    ~HeldWords() { release(); } // whatever else was thrown
+    void add(pointer<shared_int> word, int idle) {
+        if (count_ == most)
+            return store_release(word, idle);
+        held_[count_].word = word;
+        held_[count_].idle = idle;
+        ++count_;
+    }
+    void release() {
+        for (int i = 0; i < most; ++i)
+            if (i < count_)
+                store_release(held_[i].word, held_[i].idle);
+        count_ = 0;
+    }
+
+private:
+    static constexpr int most = 8; // builds in progress one in the other: three
+    struct {
+        pointer<shared_int> word;
+        int idle = 0;
+    } held_[most];
+    int count_ = 0;
+};
 
 /// Resets a build state if its builder is thrown out, so that others that wait try for themselves.
 class BusyGuard {
 public:
-    BusyGuard(pointer<shared_int> word, int idle) : word_(word), idle_(idle) {}
+    BusyGuard(const Context& c, pointer<shared_int> word, int idle)
+        : held_(c.held), word_(word), idle_(idle) {}
     BusyGuard(const BusyGuard&) = delete;
     BusyGuard& operator=(const BusyGuard&) = delete;
     ~BusyGuard() {
-        if (!published_)
+        if (published_)
+            return;
+        if (held_ != nullptr)
+            held_->add(word_, idle_); // lint: allow memory because it lies on the worker's own stack
+        else
             store_release(word_, idle_);
     }
     /// Everything written before is visible to whoever reads `state`.
@@ -105,6 +133,7 @@ public:
     }
 
 private:
+    HeldWords* held_;
     pointer<shared_int> word_;
     int idle_;
     bool published_ = false;
@@ -133,7 +162,7 @@ template <class Build> inline void build_once(const Context& c, pointer<shared_i
         if (branch(seen == absent)) {
             seen = compare_exchange(state, absent, busy);
             if (branch(seen == absent)) {
-                BusyGuard guard(state, absent);
+                BusyGuard guard(c, state, absent);
                 build();
                 guard.publish(ready);
                 return;

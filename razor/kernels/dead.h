@@ -3,7 +3,7 @@
 #pragma once
 
 #include "razor/frame/scratch.h"
-#include "razor/kernels/context.h"
+#include "razor/kernels/budget_room.h"
 
 namespace razor::ISA_TARGET {
 inline namespace build_kernel {
@@ -17,6 +17,33 @@ inline void discard_lines(pointer<Line> first, sint count) {
     }
 }
 
+/// The worker's arenas, as far as it used them.
+inline void discard_own(const Context& c) {
+    const auto arena = [&](std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*full,
+                           std::int32_t FrameHeader::*size, pointer<Line> base, int units_log2) {
+        sint last = load(field(c.self, next));
+        sint first = load(field(c.self, full));
+        first = first - load(field(c.frame, size));
+        sint begin = first >> units_log2;
+        last = last + ((1 << units_log2) - 1);
+        sint end = last >> units_log2;
+        discard_lines(base + begin, end - begin);
+    };
+    arena(&WorkerRecord::grid_next, &WorkerRecord::grid_end, &FrameHeader::grid_lines, c.grids, 0);
+    arena(&WorkerRecord::node_next, &WorkerRecord::node_end, &FrameHeader::node_count, as<Line>(c.nodes),
+          records_a_line_log2);
+    arena(&WorkerRecord::list_next, &WorkerRecord::list_end, &FrameHeader::list_lines, c.lists, 0);
+}
+
+/// A tree's arena: what lies in it now, and what was dropped from it.
+inline void discard_bounded(const Context& c, pointer<TreeBudget> tree) {
+    sint first = load(field(tree, &TreeBudget::first_line));
+    sint lines = load(field(tree, &TreeBudget::grains)) << grain_log2;
+    discard_lines(c.grids + first, lines);
+    discard_lines(as<Line>(c.nodes) + first, lines);
+    discard_lines(c.lists + first, lines);
+}
+
 /// The worker has no tile any more. When nobody uses its tree, all that it has built there is dead, and what
 /// it had for itself. (A worker of a frame of which more is to be rendered keeps it.)
 [[gnu::noinline]] inline void discard_all(const Context& c) {
@@ -27,22 +54,16 @@ inline void discard_lines(pointer<Line> first, sint count) {
         return;
     pointer<shared_int> left = field(c.tree, &TreeRecord::left);
     sint sharers = load(field(c.tree, &TreeRecord::sharers));
-    sint done = fetch_add(left, 1) + 1;
+    sint place = fetch_add(left, 1) + 1;
+    sint done = place;
     while (branch(done != sharers))
         done = wait_while(left, done);
-    const auto arena = [&](std::int32_t WorkerRecord::*next, std::int32_t WorkerRecord::*full,
-                           std::int32_t FrameHeader::*size, pointer<Line> base, int units_a_line) {
-        sint last = load(field(c.self, next));
-        sint first = load(field(c.self, full));
-        first = first - load(field(c.frame, size));
-        int shift = units_a_line == 4 ? 2 : 0;
-        sint begin = first >> shift;
-        discard_lines(base + begin, ((last + (units_a_line - 1)) >> shift) - begin);
-    };
-    arena(&WorkerRecord::grid_next, &WorkerRecord::grid_end, &FrameHeader::grid_lines, c.grids, 1);
-    arena(&WorkerRecord::node_next, &WorkerRecord::node_end, &FrameHeader::node_count, as<Line>(c.nodes),
-          line_bytes / static_cast<int>(sizeof(KdNode)));
-    arena(&WorkerRecord::list_next, &WorkerRecord::list_end, &FrameHeader::list_lines, c.lists, 1);
+    pointer<WorkerBudget> budget = budget_of(c);
+    if (branch(is_null(budget))) {
+        discard_own(c);
+    } else if (branch(place == sharers)) {
+        discard_bounded(c, load(field(budget, &WorkerBudget::tree)));
+    }
     constexpr int floats = line_bytes / 4;
     discard_lines(as<Line>(c.blends), blends_floats / floats);
     discard_lines(as<Line>(c.packets), 2 * spare_packets / floats);

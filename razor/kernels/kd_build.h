@@ -7,6 +7,7 @@
 // to its finer node, whose list is made of the blocks' children and split in turn.
 #pragma once
 
+#include "razor/kernels/budget_use.h"
 #include "razor/kernels/kd_open.h"
 
 namespace razor::ISA_TARGET {
@@ -125,7 +126,7 @@ inline List begin_child(const Context& c, const List& parent, sint count, const 
 /// Writes the items on either side of the plane into the lists of two new nodes; returns the lower one's
 /// number.
 inline sint split_list(const Context& c, const List& l, const Plane& plane) {
-    sint children = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 2, trap_nodes_full);
+    sint children = allocate_nodes(c, 2);
     svec cut_high = l.high;
     svec cut_low = l.low;
     cut_high.x = select(plane.axis == 0, plane.at, l.high.x);
@@ -182,9 +183,8 @@ inline void make_leaf(const Context& c, const List& l) {
     store(high + 2, leaf.high.z);
 }
 
-/// A node for those rays for which the leaf, of that level, is too coarse.
-inline void make_finer(const Context& c, const List& l, sint level) {
-    sint finer = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
+/// Node `finer` is for those rays for which the leaf, of that level, is too coarse.
+inline void make_finer(const Context& c, const List& l, sint level, sint finer) {
     store(field(l.header, &ItemList::finer), finer);
     pointer<KdNode> node = c.nodes + finer;
     note_list_level(l, level, 0);
@@ -262,10 +262,20 @@ inline sint count_closed(const List& l) {
             plane = choose_plane(l, item_cost);
         if (branch(plane.cost < to_float(l.count) * item_cost)) {
             sint children = split_list(c, l, plane);
+            sint anchor = room_for_anchor(c, l.depth, refine);
             store(field(node, &KdNode::split), plane.at);
             store(field(node, &KdNode::axis), plane.axis);
             store(field(node, &KdNode::link), children);
             give_back_own(l);
+            if (branch(anchor >= 0)) {
+                if (branch(refine != 0)) {
+                    begin_anchor(c, anchor, node, own, anchor_refines);
+                } else {
+                    close_list(l);
+                    begin_anchor(c, anchor, node, l.line, 0);
+                    return node_inner;
+                }
+            }
             free_list(c, l.line, l.stride);
             return node_inner;
         }
@@ -280,11 +290,19 @@ inline sint count_closed(const List& l) {
         sbool wanted = target == 0.0F; // by some ray
         wanted = wanted | (target >= power_of_two(level));
         if (branch(wanted | (level == least_level))) {
+            sint anchor = -1;
+            if (branch(refine != 0))
+                anchor = room_for_anchor(c, l.depth, refine);
+            sint finer = -1;
+            if (branch(level != least_level))
+                finer = allocate_nodes(c, 1);
             tighten(c, l);
             if (branch(level != least_level))
-                make_finer(c, l, level);
+                make_finer(c, l, level, finer);
             store(field(node, &KdNode::link), l.line);
             give_back_own(l);
+            if (branch(anchor >= 0))
+                begin_anchor(c, anchor, node, own, anchor_refines | anchor_leaf);
             return node_leaf;
         }
         List finer = refine_items(c, l);
@@ -300,10 +318,12 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
         if (branch(seen == node_unsplit)) {
             seen = compare_exchange(state, node_unsplit, node_busy);
             if (branch(seen == node_unsplit)) {
-                BusyGuard guard(state, node_unsplit);
+                BusyGuard guard(c, state, node_unsplit);
                 seen = build_node(c, node);
                 guard.publish(seen);
             }
+        } else if (branch(seen < 0)) {
+            seen = wake(c, state, seen);
         } else {
             seen = work_while(c, state, node_busy);
         }
@@ -314,7 +334,7 @@ inline sint split_node(const Context& c, pointer<KdNode> node, sint seen) {
 /// The root's list: the root of the scene graph, closed.
 [[gnu::noinline]] inline void build_root(const Context& c) {
     phase_scope phase(phase_build);
-    sint root = allocate(c, &WorkerRecord::node_next, &WorkerRecord::node_end, 1, trap_nodes_full);
+    sint root = allocate_nodes(c, 1);
     svec low = load_svec(field(c.graph, &GraphNodeRecord::low));
     svec high = load_svec(field(c.graph, &GraphNodeRecord::high));
     List l = make_list(c, 1, 0, unbounded_target, low, high);

@@ -124,7 +124,8 @@ inline List refine_items(const Context& c, const List& old) {
         refine = refine & (finer > 0);
         if (branch(refine)) {
             ensure_children(c, line, block);
-            total = total + load(field(block, &BlockHeader::child_count));
+            sint shape = load(field(block, &BlockHeader::child_shape));
+            total = total + children_in(shape);
         } else {
             ++total;
         }
@@ -145,8 +146,9 @@ inline List refine_items(const Context& c, const List& old) {
         refine = refine & (finer > 0);
         if (branch(refine)) {
             sint child = load(field(block, &BlockHeader::child_line));
-            sint step = load(field(block, &BlockHeader::child_lines));
-            sint children = load(field(block, &BlockHeader::child_count));
+            sint shape = load(field(block, &BlockHeader::child_shape));
+            sint step = lines_between(shape);
+            sint children = children_in(shape);
             for (sint k = 0; branch(k < children); ++k) {
                 Box box = reach_of(c, child, siblings);
                 at = append_block(l, at, child, box);

@@ -1,6 +1,7 @@
 // Item lists of unsplit kd nodes and leaves (layout.h): items with their boxes, as arrays.
 #pragma once
 
+#include "razor/kernels/budget_room.h"
 #include "razor/kernels/dead.h"
 #include "razor/kernels/reach.h"
 

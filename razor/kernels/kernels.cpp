@@ -13,12 +13,14 @@ Context begin(const WorkerArguments& a) {
     c.watch = a.watch;
     c.tiles = a.tiles;
     c.waits = a.waits;
+    c.memory = a.memory;
     return c;
 }
 
 template <Features F> void render(const WorkerArguments& a) {
     Context c = begin(a);
-    c.other_work = render_meanwhile<F>;
+    if (a.memory == nullptr) // else a tile may have to be begun again
+        c.other_work = render_meanwhile<F>;
     render_worker<F>(c);
 }
 
@@ -131,8 +133,9 @@ void dice_all(const WorkerArguments& w) {
             if (branch(finer & (level > 0))) {
                 ensure_children(c, line, block);
                 sint child = load(field(block, &BlockHeader::child_line));
-                sint lines = load(field(block, &BlockHeader::child_lines));
-                sint children = load(field(block, &BlockHeader::child_count));
+                sint shape = load(field(block, &BlockHeader::child_shape));
+                sint lines = lines_between(shape);
+                sint children = children_in(shape);
                 for (sint i = children; branch(i > 0); --i) {
                     store(left + depth, child);
                     child = child + lines;

@@ -2,6 +2,7 @@
 // and resolves into the film.
 #pragma once
 
+#include "razor/kernels/budget_tiles.h"
 #include "razor/kernels/refit.h"
 #include "razor/kernels/screen_curve.h"
 #include "razor/kernels/shade.h"
@@ -227,7 +228,7 @@ template <Features F> inline bool render_run(const Context& c, const Run& run) {
         if (branch(stopped != 0))
             return false;
         begin_lap(*c.tiles);
-        render_tile<F>(c, tile);
+        render_within_budget(c, [&](const Context& within) { render_tile<F>(within, tile); });
         end_lap(*c.tiles, tile);
     }
     return true;

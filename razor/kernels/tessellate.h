@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/kernels/block_bounds.h"
+#include "razor/kernels/budget_room.h"
 
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
@@ -204,7 +205,7 @@ inline void count_blocks(const Context& c, const Shape& s, sint level, sint bloc
     Dicing d = plan_dicing(c, g, instance, patch, -1);
     g.level = d.level;
     Shape s = block_shape(d);
-    sint line = allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, s.lines, trap_grids_full);
+    sint line = allocate_blocks(c, s.lines, 1);
     place_block(c, g, d, s, line, 0, 0, -1);
     store(field(entry, &OpenPatch::root), line);
     tally(c.counters->patches_opened, 1);
@@ -275,8 +276,7 @@ inline void ensure_made(const Context& c, pointer<BlockHeader> header) {
     svec deviation{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
     if (branch(blocks > 1))
         deviation = deviation_of(c, g, d, header);
-    sint first =
-        allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, s.lines * blocks, trap_grids_full);
+    sint first = allocate_blocks(c, s.lines, blocks);
     sint child = first;
     sint made = 0;
     for (sint j = 0; branch(j < rows); ++j) {
@@ -291,8 +291,8 @@ inline void ensure_made(const Context& c, pointer<BlockHeader> header) {
         }
     }
     store(field(header, &BlockHeader::child_line), first);
-    store(field(header, &BlockHeader::child_lines), s.lines);
-    store(field(header, &BlockHeader::child_count), blocks);
+    sint lines = s.lines << 3;
+    store(field(header, &BlockHeader::child_shape), lines | blocks);
     count_blocks(c, s, d.level, made);
 }
 

@@ -92,6 +92,9 @@ NativeRenderer::NativeRenderer(const Scene& scene, const RenderOptions& options,
     : options_(options), moves_(moves), kernels_(native_target(options.isa)) {
     if (options_.threads <= 0)
         options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (options_.eager && options_.memory_bytes != 0)
+        throw UserError(
+            "--eager builds everything at once, which no memory budget bounds; leave --memory out");
     load(scene, nullptr);
     if (options_.eager && frame_->statistics().trees > 1)
         throw UserError("--eager builds one kd-tree; leave --share out");
@@ -114,6 +117,7 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
             scene, FrameOptions{.workers = options_.threads,
                                 .tree_of_worker = tree_groups(options_.threads, options_.share),
                                 .tiles_in_rows = options_.tiles_in_rows,
+                                .memory_bytes = options_.memory_bytes,
                                 .moves = moves_});
     }
     load_seconds_ = seconds_since(begin);
@@ -138,6 +142,7 @@ RenderResult NativeRenderer::render(const std::function<void(double)>& progress)
         r.statistics.times.push_back(render_frame(*frame_, kernels_, options_, part));
     }
     r.statistics.frame = frame_->statistics();
+    r.statistics.budget = frame_->budget();
     r.statistics.duplicates = frame_->duplicates();
     r.film = frame_->film();
     r.statistics.visible = visible_surface(r.film, camera_, settings_);

@@ -26,6 +26,8 @@ struct RenderOptions {
     /// The frame is rendered so many times, everything built anew each time but topology pages: what a later
     /// frame of an animation costs. The film and all figures but the times are those of the last.
     int frames = 1;
+    /// What a frame may build at a time: FrameOptions::memory_bytes. 0: no bound.
+    std::uint64_t memory_bytes = 0;
     int tiles = 0;              // screen tiles rendered, along the curve; pixels of others stay 0. 0: all
     bool tiles_in_rows = false; // their order
     /// Called now and then with the fraction of tiles begun, from the calling thread.
@@ -43,8 +45,9 @@ struct FrameTime {
 };
 
 struct RenderStatistics {
-    FrameStatistics frame; // the last one
-    Duplicates duplicates; // in it
+    FrameStatistics frame;   // the last one
+    Duplicates duplicates;   // in it
+    BudgetStatistics budget; // likewise
     std::string isa;
     int width_lanes = 0, threads = 0;
     double load_seconds = 0; // topology and frame memory
@@ -55,6 +58,8 @@ struct RenderStatistics {
 /// Counters by name; those of a kind of ray under its name.
 void to_json(nlohmann::ordered_json& json, const Counters& counters);
 void to_json(nlohmann::ordered_json& json, const CountersByKind& counters);
+/// Of a memory budget.
+void to_json(nlohmann::ordered_json& json, const BudgetStatistics& statistics);
 /// Every figure by name: counters, what was built, what laziness left unbuilt, host seconds apart.
 void to_json(nlohmann::ordered_json& json, const RenderStatistics& statistics);
 

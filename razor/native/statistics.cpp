@@ -23,6 +23,35 @@ void to_json(nlohmann::ordered_json& json, const CountersByKind& counters) {
         json[kind_names[k]] = counters.kind[k];
 }
 
+void to_json(nlohmann::ordered_json& json, const BudgetStatistics& s) {
+    json = {{"budget_bytes", s.budget_bytes},
+            {"peak_bytes", s.peak_bytes},
+            {"drops", s.drops},
+            {"dropped",
+             {{"nodes", s.dropped_nodes},
+              {"patches", s.dropped_patches},
+              {"blocks", s.dropped_blocks},
+              {"bytes", s.dropped_bytes}}},
+            {"made",
+             {{"nodes", s.made_nodes},
+              {"patches", s.made_patches},
+              {"blocks", s.made_blocks},
+              {"grid_bytes", s.made_grid_bytes},
+              {"node_bytes", s.made_node_bytes},
+              {"list_bytes", s.made_list_bytes}}},
+            {"regenerated",
+             {{"nodes", s.regenerated_nodes},
+              {"patches", s.regenerated_patches},
+              {"blocks", s.regenerated_blocks}}},
+            {"regenerated_share",
+             {{"nodes", share(s.regenerated_nodes, s.made_nodes)},
+              {"patches", share(s.regenerated_patches, s.made_patches)},
+              {"blocks", share(s.regenerated_blocks, s.made_blocks)}}},
+            {"waits", s.waits},
+            {"restarted_tiles", s.restarted_tiles},
+            {"tiles_alone", s.tiles_alone}};
+}
+
 void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
     const FrameStatistics& f = s.frame;
     const Counters& c = f.counters;
@@ -54,17 +83,21 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
     const auto opened = [&](std::int64_t part, std::int64_t whole) {
         return nlohmann::ordered_json{{"count", part}, {"of", whole}, {"share", share(part, whole)}};
     };
+    const BudgetStatistics& budget = s.budget;
+    if (budget.budget_bytes != 0)
+        json["memory"] = budget;
     const std::int64_t nodes = f.inner_nodes + f.leaves + f.unsplit_nodes;
+    const std::int64_t patches_opened = c.patches_opened - budget.regenerated_patches;
     json["opened"] = {{"graph_nodes", opened(f.graph_nodes_opened, f.graph_nodes)},
                       {"instances", opened(f.instances_opened, f.instances * f.trees)},
                       {"clusters", opened(f.clusters_opened, f.clusters)},
-                      {"patches", opened(c.patches_opened, f.patches)},
+                      {"patches", opened(patches_opened, f.patches)},
                       {"kd_nodes", opened(f.inner_nodes + f.leaves, nodes)}};
     json["touched"] = {{"instances", f.touched.instances},
                        {"graph_nodes", f.touched.graph_nodes},
                        {"meshes", f.touched.meshes},
                        {"clusters_refitted", f.touched.clusters}};
-    json["left_out"] = {{"patches_never_opened", f.patches - c.patches_opened},
+    json["left_out"] = {{"patches_never_opened", f.patches - patches_opened},
                         {"of_patches", f.patches},
                         {"nodes_never_split", f.unsplit_nodes},
                         {"blocks_without_normals", c.blocks_made - c.normal_blocks},

@@ -131,6 +131,23 @@ std::pair<int, int> parse_span(std::string_view option, std::string_view text, R
     return span;
 }
 
+std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
+    constexpr std::pair<std::string_view, int> units[] = {{"KiB", 10}, {"MiB", 20}, {"GiB", 30}};
+    for (const auto& [unit, log2] : units) {
+        double value = 0;
+        const char* const end = text.data() + text.size() - std::min(unit.size(), text.size());
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (!text.ends_with(unit) || error != std::errc{} || stop != end)
+            continue;
+        const double bytes = std::ldexp(value, log2);
+        if (bytes >= 65536 && bytes <= std::ldexp(1.0, 40))
+            return static_cast<std::uint64_t>(bytes);
+    }
+    throw UserError(
+        fmt::format("{} '{}' is not possible; give a size from 64KiB to 1024GiB, for example 256MiB", option,
+                    printable(text)));
+}
+
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words) {
     const auto found = std::find(words.begin(), words.end(), text);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -27,6 +28,9 @@ std::array<int, 4> parse_four(std::string_view option, std::string_view text, Ra
 /// "3..17" (or with another word between) as first and last, each in the range, in order.
 std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range,
                                std::string_view between = "..");
+/// "256MiB" as bytes: a whole number, or one with a fraction, and KiB, MiB or GiB; at least 64 KiB, at most
+/// 1024 GiB. Throws UserError.
+std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 /// The index of `text` in `words`.
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words);

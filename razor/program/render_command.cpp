@@ -21,6 +21,26 @@
 namespace razor {
 namespace {
 
+double made_megabytes(const RenderStatistics& s) {
+    const FrameStatistics& f = s.frame;
+    const BudgetStatistics& b = s.budget;
+    return 1e-6 * static_cast<double>(b.budget_bytes != 0
+                                          ? b.made_grid_bytes + b.made_node_bytes + b.made_list_bytes
+                                          : f.grid_bytes + f.node_bytes + f.list_bytes);
+}
+
+/// ", ..." of a memory budget; else nothing.
+std::string memory_text(const BudgetStatistics& s) {
+    if (s.budget_bytes == 0)
+        return "";
+    const auto percent = [](std::int64_t part, std::int64_t whole) {
+        return 100 * static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(whole, 1));
+    };
+    return fmt::format(", at most {:.1f} MB at a time: {:.1f} % of blocks and {:.1f} % of nodes made again",
+                       static_cast<double>(s.peak_bytes) / 1e6, percent(s.regenerated_blocks, s.made_blocks),
+                       percent(s.regenerated_nodes, s.made_nodes));
+}
+
 constexpr Range threads_range{1, 1024};
 constexpr Range repeat_range{1, 1000000};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
@@ -42,6 +62,12 @@ void RenderCommand::add_to(CLI::App& app) {
         .add_option("--share", share_,
                     "who shares a kd-tree: chip (all, the default), worker (nobody), or N workers a tree")
         ->type_name("WHO");
+    render
+        .add_option(
+            "--memory", memory_,
+            "what grids, kd nodes and item lists may take in all, such as 256MiB; what was used longest "
+            "ago is dropped and made again; without it, no bound")
+        ->type_name("SIZE");
     render.add_flag("--eager", eager_,
                     "build all that rays could ask for, but normals, before the first one; to compare with");
     render
@@ -68,6 +94,7 @@ int RenderCommand::run() const {
     options.isa = isa_words[parse_choice("--isa", isa_, isa_words)];
     options.share = parse_share(share_);
     options.eager = eager_;
+    options.memory_bytes = memory_.empty() ? 0 : parse_bytes("--memory", memory_);
     options.frames = parse_whole("--repeat", repeat_, repeat_range);
     const bool sequence = !frames_.empty();
     if (sequence && scene_.frame_given()) {
@@ -161,6 +188,7 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
                                               {"isa", result.statistics.isa},
                                               {"workers_a_tree", options.share},
                                               {"eager", options.eager},
+                                              {"memory_bytes", options.memory_bytes},
                                               {"repeat", options.frames},
                                               {"frame", frame}}},
                                             {"scene", config},
@@ -172,11 +200,11 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
     if (!frames_.empty() && !quiet_) {
         fmt::print(stderr, "{}", progress.shown() ? "\r\x1b[K" : "");
         fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {} instances and {} clusters touched, "
-                   "{:.2f} million rays, {:.1f} MB built, slowest tile {:.1f} ms\n",
+                   "{:.2f} million rays, {:.1f} MB built, slowest tile {:.1f} ms{}\n",
                    frame, seconds, result.statistics.load_seconds, built.touched.instances,
                    built.touched.clusters, static_cast<double>(built.counters.rays) / 1e6,
-                   static_cast<double>(built.grid_bytes + built.node_bytes + built.list_bytes) / 1e6,
-                   1e3 * built.slowest_tile_seconds);
+                   made_megabytes(result.statistics), 1e3 * built.slowest_tile_seconds,
+                   memory_text(result.statistics.budget));
         std::fflush(stdout);
     } else if (progress.shown()) {
         fmt::print(

@@ -84,9 +84,21 @@ struct Counted {
     }
 };
 
+/// A line on the memory budget, if there is one.
+std::string memory_text(const razor::BudgetStatistics& b) {
+    if (b.budget_bytes == 0)
+        return "";
+    return fmt::format(
+        "memory budget          {:.1f} of {:.1f} KiB at most; {} of {} blocks and {} of {} kd nodes were "
+        "made again; {} tiles begun again\n",
+        static_cast<double>(b.peak_bytes) / 1024, static_cast<double>(b.budget_bytes) / 1024,
+        b.regenerated_blocks, b.made_blocks, b.regenerated_nodes, b.made_nodes, b.restarted_tiles);
+}
+
 /// What was rendered and what it took, above the machine's own report.
 std::string frame_text(const razor::Settings& s, int workers, const Counted& counted,
-                       const razor::FrameStatistics& f, const Report& r) {
+                       const razor::FrameStatistics& f, const razor::BudgetStatistics& b, const Report& r) {
+    const std::int64_t opened = f.counters.patches_opened - b.regenerated_patches;
     const int screen_tiles = counted.tiles();
     // With few screen tiles a worker, the last one to end decides the time: that says little of the machine.
     const char* few =
@@ -95,17 +107,20 @@ std::string frame_text(const razor::Settings& s, int workers, const Counted& cou
     const razor::CountersByKind c = counted.of(f);
     auto rays = [&](razor::RayKind kind) { return c.kind[kind].rays; };
     return fmt::format(
-        "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
-        "screen tiles           {} ({} to {}), {:.1f} a worker{}\n"
-        "rays                   {} camera, {} light, {} sky; {:.3f} million a second of simulated time\n"
-        "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
-        "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
-        s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s", "kdtree.share = " + share,
-        screen_tiles, counted.first_tile, counted.last_tile, static_cast<double>(screen_tiles) / workers, few,
-        rays(razor::kind_camera), rays(razor::kind_light), rays(razor::kind_sky),
-        static_cast<double>(c.sum().rays) / r.seconds() * 1e-6, f.counters.patches_opened, f.patches,
-        f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - f.counters.patches_opened,
-        f.unsplit_nodes, f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made);
+               "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
+               "screen tiles           {} ({} to {}), {:.1f} a worker{}\n"
+               "rays                   {} camera, {} light, {} sky; {:.3f} million a second of simulated "
+               "time\n"
+               "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
+               "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
+               s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s",
+               "kdtree.share = " + share, screen_tiles, counted.first_tile, counted.last_tile,
+               static_cast<double>(screen_tiles) / workers, few, rays(razor::kind_camera),
+               rays(razor::kind_light), rays(razor::kind_sky),
+               static_cast<double>(c.sum().rays) / r.seconds() * 1e-6, opened, f.patches,
+               f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - opened, f.unsplit_nodes,
+               f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made) +
+           memory_text(b);
 }
 
 /// Machine code of the kernels that this plan may run, in bytes: by native target, then by phase.
@@ -174,6 +189,11 @@ void RunCommand::add_to(CLI::App& app) {
            "who shares a kd-tree: chip (all), tile, core, worker (nobody), or N neighbouring workers; "
            "without it, as the machine file says (kdtree.share)")
         ->type_name("WHO");
+    run.add_option(
+           "--memory", memory_,
+           "what grids, kd nodes and item lists may take in all, such as 4MiB; what was used longest ago "
+           "is dropped and made again; without it, no bound")
+        ->type_name("SIZE");
     run.add_option("--intervals", intervals_,
                    "write a time series: a row of work, misses, traffic and stalls for each --interval")
         ->type_name("FILE.csv");
@@ -233,6 +253,7 @@ int RunCommand::run() const {
     const std::vector<int> trees = Placement(config.chip).trees(workers, config.kdtree.share);
     const int host_threads =
         host_threads_.empty() ? 1 : razor::parse_whole("--host-threads", host_threads_, {1, 1024});
+    const std::uint64_t memory = memory_.empty() ? 0 : razor::parse_bytes("--memory", memory_);
     RunOptions run_options;
     if (intervals_.empty() && !interval_.empty())
         throw razor::UserError("--interval is of no use without --intervals FILE.csv; give both");
@@ -260,6 +281,8 @@ int RunCommand::run() const {
                                .tree_of_worker = trees,
                                .place_of_worker = Placement(config.chip).places(workers),
                                .tiles_in_rows = tiles_in_rows_,
+                               .memory_bytes = memory,
+                               .apart = true,
                                .discards = config.renderer.discard == "on"});
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
@@ -326,6 +349,7 @@ int RunCommand::run() const {
                   {{"workers", workers},
                    {"share", config.kdtree.share},
                    {"frames", run_options.frames},
+                   {"memory_bytes", memory},
                    {"tiles", {counted.first_tile, counted.last_tile}}}},
                  {"scene", scene}};
         json run = json::parse(print_json(report));
@@ -337,6 +361,8 @@ int RunCommand::run() const {
             out["calibration"] = calibration_json(*calibration);
         out["renderer"] = renderer(statistics, counted.of(statistics), frame.duplicates(), trees);
         out["renderer"]["screen_tiles"] = counted.tiles();
+        if (memory != 0)
+            out["renderer"]["memory"] = frame.budget();
         host["topology_page_seconds"] = statistics.page_seconds;
         if (native)
             host["native"] = native_json(*native, report.host_seconds);
@@ -346,8 +372,9 @@ int RunCommand::run() const {
     }
     const std::string text =
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
-        frame_text(description.settings, workers, counted, statistics, report) + print_text(report) +
-        (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
+        frame_text(description.settings, workers, counted, statistics, frame.budget(), report) +
+        print_text(report) + (native ? native_text(*native, report.host_seconds) : "") +
+        code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

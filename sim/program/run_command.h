@@ -30,7 +30,7 @@ private:
     razor::SceneOptions scene_;
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,
-        tiles_;
+        tiles_, memory_;
     bool tiles_in_rows_ = false;
     bool quiet_ = false, no_native_ = false, no_calibration_ = false;
 };

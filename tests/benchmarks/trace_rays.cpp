@@ -114,9 +114,9 @@ void add_finest(const FrameHeader& h, int line, std::vector<glm::vec3>& corners)
     const Line* at = h.grids.get() + line;
     const auto* block = reinterpret_cast<const BlockHeader*>(at);
     if (block->level > 0 && block->children.word == ready) {
-        const int children = block->child_count;
+        const int children = razor::children_in(block->child_shape);
         for (int k = 0; k < children; ++k)
-            add_finest(h, block->child_line + k * block->child_lines, corners);
+            add_finest(h, block->child_line + k * razor::lines_between(block->child_shape), corners);
         return;
     }
     const auto* x = reinterpret_cast<const float*>(at) + block_header_words;

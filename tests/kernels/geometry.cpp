@@ -367,8 +367,9 @@ TEST_P(Geometry, BoxesHoldAllFinerVertices) {
                     if (d.header->level == 0)
                         continue;
                     ASSERT_EQ(d.header->children.word, ready);
-                    for (int c = 0; c < d.header->child_count; ++c)
-                        below.push_back(block_at(*frame_, d.header->child_line + c * d.header->child_lines));
+                    for (int c = 0; c < children_in(d.header->child_shape); ++c)
+                        below.push_back(block_at(*frame_, d.header->child_line +
+                                                              c * lines_between(d.header->child_shape)));
                 }
             }
     }

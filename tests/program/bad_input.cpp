@@ -112,6 +112,17 @@ TEST_F(Razor, RefusesBadInput) {
         {"good.obj --share core", "--share 'core'"},
         {"good.obj --share 0", "--share '0'"},
         {"good.obj --share 99999999999", "--share"},
+        {"good.obj --memory 256", "--memory '256' is not possible; give a size from 64KiB to 1024GiB"},
+        {"good.obj --memory 256MB", "--memory '256MB'"},
+        {"good.obj --memory MiB", "--memory 'MiB'"},
+        {"good.obj --memory -1MiB", "--memory '-1MiB'"},
+        {"good.obj --memory nanMiB", "--memory 'nanMiB'"},
+        {"good.obj --memory 1e99GiB", "--memory '1e99GiB'"},
+        {"good.obj --memory 63KiB", "--memory '63KiB'"},
+        {"good.obj --eager --memory 1GiB", "leave --memory out"},
+        {"good.obj --size 64x64 --edge-pixels 0.05 --memory 64KiB",
+         "a memory budget of 64.0 KiB is too small: one screen tile alone needs more than that; raise "
+         "--memory"},
         {"good.obj --scheme loop", "--scheme 'loop'"},
         {"good.obj --up x", "--up 'x'"},
         {"good.obj --edge-pixels nan", "--edge-pixels 'nan'"},
@@ -202,6 +213,34 @@ TEST_F(Razor, EagerFramesAreTheSamePicture) {
     EXPECT_EQ(apart.code, 2);
     EXPECT_EQ(apart.err, "razor: --eager builds one kd-tree; leave --share out\n");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "e.exr"));
+}
+
+TEST_F(Razor, StaysWithinItsMemory) {
+    const std::string rest = " --size 64x64 --spp 1 --threads 2 ";
+    ASSERT_EQ(razor("render" + rest + "-o all.exr --stats all.json").code, 0);
+    const Outcome bounded = razor("render" + rest + "-o some.exr --stats some.json --memory 2.5MiB");
+    ASSERT_EQ(bounded.code, 0) << bounded.err;
+    const Film expected = read_exr(folder_ / "all.exr"), film = read_exr(folder_ / "some.exr");
+    for (const Plane& plane : expected.planes)
+        EXPECT_EQ(film.find(plane.name)->values, plane.values) << plane.name;
+    EXPECT_FALSE(statistics("all").contains("memory"));
+    const nlohmann::json s = statistics("some");
+    const nlohmann::json& memory = s.at("memory");
+    EXPECT_EQ(memory.at("budget_bytes"), 2621440);
+    EXPECT_LE(memory.at("peak_bytes"), memory.at("budget_bytes"));
+    EXPECT_GT(memory.at("drops"), 0);
+    EXPECT_GT(memory.at("regenerated_share").at("blocks"), 0);
+    EXPECT_LT(memory.at("regenerated_share").at("blocks"), 1);
+    EXPECT_EQ(memory.at("made").at("blocks"), s.at("counters").at("blocks_made"));
+    EXPECT_GE(s.at("left_out").at("patches_never_opened"), 0);
+    // One line a frame says so.
+    const Outcome sequence = razor("render" + rest + "--frames 0:1 -o %d.exr --memory 2.5MiB");
+    ASSERT_EQ(sequence.code, 0) << sequence.err;
+    EXPECT_NE(sequence.out.find("at most 2."), std::string::npos) << sequence.out;
+    EXPECT_NE(sequence.out.find("of nodes made again"), std::string::npos) << sequence.out;
+    for (const char* name : {"0.exr", "1.exr"})
+        for (const Plane& plane : expected.planes)
+            EXPECT_EQ(read_exr(folder_ / name).find(plane.name)->values, plane.values) << plane.name;
 }
 
 // All but the topology's pages is built anew for each frame, and the picture stays.

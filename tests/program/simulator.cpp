@@ -58,6 +58,31 @@ TEST_F(Simulator, SharesTreesAsAsked) {
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
 }
 
+// The machine compares its picture with a native one without a budget, and fails if they differ.
+TEST_F(Simulator, StaysWithinItsMemory) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = std::string("run --quiet --scene s.toml --size 48x48 --spp 1 --sky-samples 1 "
+                                          "--light-samples 1 --edge-pixels 2 --machine ") +
+                              tiny + " ";
+    for (const char* how : {"--memory 400KiB", "--memory 3MiB --share worker", "--memory 1400KiB --share 2",
+                            "--memory 400KiB --workers 1"}) {
+        SCOPED_TRACE(how);
+        ASSERT_EQ(simulator(start + how + " -o a.exr --json a.json").code, 0);
+        const nlohmann::json a = report("a.json");
+        const nlohmann::json& memory = a.at("renderer").at("memory");
+        EXPECT_GT(memory.at("drops"), 0);
+        EXPECT_GT(memory.at("regenerated").at("blocks"), 0);
+        EXPECT_LE(memory.at("peak_bytes"), memory.at("budget_bytes"));
+        ASSERT_EQ(simulator(start + how + " --json b.json").code, 0);
+        EXPECT_EQ(report("b.json"), a);
+    }
+    const std::size_t before = folder_.count();
+    const Outcome small = simulator(start + "--memory 64KiB -o c.exr --json c.json");
+    EXPECT_EQ(small.code, 2);
+    EXPECT_NE(small.err.find("raise --memory"), std::string::npos) << small.err;
+    EXPECT_EQ(folder_.count(), before);
+}
+
 // Threads are in the middle of their screen tiles, which take a minute.
 TEST_F(Simulator, InterruptEndsTheRun) {
     const std::size_t before = folder_.count();

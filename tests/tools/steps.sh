@@ -156,10 +156,14 @@ fuzz() {
 
 # All workers on one tree, built while they render.
 render_shared_trees() {
-    local samples
+    local samples memory
     for samples in 1 2; do
+        memory=()
+        if [ $samples = 2 ]; then
+            memory=(--memory 3MiB)
+        fi
         TSAN_OPTIONS=halt_on_error=1 "build/tsan/$razor" render $scene --size 96x96 --spp $samples --threads 5 --share chip \
-            --quiet -o build/tsan/picture.exr
+            "${memory[@]}" --quiet -o build/tsan/picture.exr
         "build/release/$razor" render $scene --size 96x96 --spp $samples --isa avx2 --quiet -o build/release/picture.exr
         "build/release/$razor" compare --identical build/release/picture.exr build/tsan/picture.exr
     done
