@@ -49,8 +49,12 @@ inline void free_list(const Context& c, sint line, sint stride) {
     sint next = load(first);
     store(as<std::int32_t>(c.lists + line), next);
     store(first, line);
-    if (branch(c.discards))
-        discard_lines(c.lists + (line + 1), list_lines(stride) - 1);
+    if (branch(c.discards)) {
+        sint others = list_lines(stride) - 1;
+        sint first_other = line + 1;
+        pointer<Line> second = c.lists + first_other;
+        discard_lines(second, others);
+    }
 }
 
 /// Room for `count` items, for rays with target edge lengths up to `most`; the header is written by

@@ -477,14 +477,17 @@ TEST_F(Simulator, DiscardsWhatIsDead) {
                           drop = run(options + " -g sim.frame_end=drop");
             EXPECT_EQ(off.discarded, 0);
             EXPECT_EQ(off.dropped, 0);
-            EXPECT_GT(off.at_end, 90);
-            EXPECT_LE(drop.at_end, off.at_end / 4); // a small L2 makes room for the film
-            EXPECT_GT(drop.dropped, 90);
+            EXPECT_GT(drop.dropped, 0);
+            EXPECT_LT(drop.at_end, off.at_end);
             EXPECT_EQ(drop.during, off.during);
             EXPECT_GT(on.discarded, 500);
             EXPECT_NEAR(static_cast<double>(on.film), static_cast<double>(off.film), 0.02 * 2500);
-            // Tables of opened patches and of curves' lengths, among the grids, stay.
-            EXPECT_LT(on.at_end, off.at_end / 4);
+            if (size == "4194304") { // a small one makes room for the film at the end, of whatever is there
+                EXPECT_GT(off.at_end, 200);
+                EXPECT_EQ(drop.at_end, 0);
+                // Tables of opened patches and of curves' lengths, among the grids, stay.
+                EXPECT_LT(on.at_end, off.at_end / 4);
+            }
             EXPECT_LT(on.during + on.at_end, off.during + off.at_end);
         }
     }
