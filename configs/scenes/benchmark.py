@@ -252,7 +252,7 @@ def forest():
     scene = Scene("forest", ["A forest on hills: trees and plants that sway, creatures that pass. Written by benchmark.py."], "catmark")
     head(scene, {"position": [3.0, 3.4, 27.0], "target": [-1.0, 2.2, 0.0], "fov": 48},
          [{"corner": [-52.0, 46.0, 30.0], "edge_u": [12.0, 10.0, 0.0], "edge_v": [-4.0, 4.8, 14.0], "radiance": [130, 115, 90]},
-          facing([-1, -3, -4], [12.0, 40.0, 48.0], 16.0, 2.5, [0.9, 1.05, 1.25])],
+          facing([-1, -3, -4], [12.0, 40.0, 48.0], 6.0, 1.0, [6.0, 7.0, 8.3])],
          [0.42, 0.50, 0.60],
          {"soil": [0.30, 0.25, 0.16], "bark": [0.30, 0.21, 0.14], "needles": [0.10, 0.22, 0.11], "leaves": [0.24, 0.36, 0.10],
           "grass": [0.30, 0.40, 0.14], "fur": [0.46, 0.34, 0.24], "bloom": [0.75, 0.45, 0.20]})

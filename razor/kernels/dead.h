@@ -27,7 +27,8 @@ inline void discard_own(const Context& c) {
         sint begin = first >> units_log2;
         last = last + ((1 << units_log2) - 1);
         sint end = last >> units_log2;
-        discard_lines(base + begin, end - begin);
+        sint lines = end - begin;
+        discard_lines(base + begin, lines);
     };
     arena(&WorkerRecord::grid_next, &WorkerRecord::grid_end, &FrameHeader::grid_lines, c.grids, 0);
     arena(&WorkerRecord::node_next, &WorkerRecord::node_end, &FrameHeader::node_count, as<Line>(c.nodes),
