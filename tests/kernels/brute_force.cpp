@@ -86,8 +86,9 @@ TEST_P(BruteForce, HitsAreIdentical) {
         std::vector<Hit> expected;
         std::vector<bool> expected_any;
         int hits = 0;
-        for (const Ray& r : rays) {
-            expected.push_back(oracle.closest(r));
+        const std::vector<int> axes = shear_axes(rays, targets.front()->width);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            expected.push_back(oracle.closest(rays[i], axes[i]));
             expected_any.push_back(expected.back().patch >= 0);
             hits += expected.back().patch >= 0 ? 1 : 0;
         }

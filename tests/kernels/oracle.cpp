@@ -9,19 +9,19 @@ namespace razor::test {
 
 namespace {
 
-/// A ray's own frame: z along its largest component.
+int largest_component(const Point& d) {
+    const int axis = std::abs(d[1]) > std::abs(d[0]) ? 1 : 0;
+    return std::abs(d[2]) > std::abs(d[static_cast<std::size_t>(axis)]) ? 2 : axis;
+}
+
+/// A ray's own frame: z along an axis.
 struct Sheared {
-    std::size_t kx, ky, kz;
+    std::size_t kz, kx, ky;
     float shear_x, shear_y, scale_z;
     Point origin; // permuted, scene coordinates
 
-    explicit Sheared(const Ray& r) {
+    Sheared(const Ray& r, int axis) : kz(static_cast<std::size_t>(axis)) {
         const Point& d = r.direction;
-        kz = 0;
-        if (std::abs(d[1]) > std::abs(d[0]))
-            kz = 1;
-        if (std::abs(d[2]) > std::abs(d[kz]))
-            kz = 2;
         kx = (kz + 1) % 3;
         ky = (kx + 1) % 3;
         scale_z = 1.0F / d[kz];
@@ -66,10 +66,34 @@ Oracle::Oracle(Frame& frame, bool fused) : Oracle(triangles_of(frame), instance_
 Oracle::Oracle(std::vector<Triangle> triangles, std::vector<Point> origins, bool fused)
     : triangles_(std::move(triangles)), origins_(std::move(origins)), fused_(fused) {}
 
-template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const {
+std::vector<int> shear_axes(const std::vector<Ray>& rays, int width) {
+    std::vector<int> axes(rays.size(), 0);
+    const auto packet = static_cast<std::size_t>(width);
+    for (std::size_t begin = 0; begin < rays.size(); begin += packet) {
+        const std::size_t end = std::min(begin + packet, rays.size());
+        std::vector<bool> grouped(rays.size(), false);
+        for (std::size_t first = begin; first < end; ++first) {
+            if (grouped[first] || !usable(rays[first]))
+                continue;
+            const int axis = largest_component(rays[first].direction);
+            for (std::size_t i = first; i < end; ++i) {
+                const Point& d = rays[i].direction;
+                const float most = std::abs(d[static_cast<std::size_t>(largest_component(d))]);
+                if (!grouped[i] && usable(rays[i]) &&
+                    std::abs(d[static_cast<std::size_t>(axis)]) >= 0.5F * most) {
+                    grouped[i] = true;
+                    axes[i] = axis;
+                }
+            }
+        }
+    }
+    return axes;
+}
+
+template <class Visit> void Oracle::each_hit(const Ray& ray, int axis, Visit visit) const {
     if (!usable(ray))
         return;
-    Sheared s(ray);
+    Sheared s(ray, axis);
     Arithmetic with{fused_};
     auto take = [&](const Triangle& t, float distance, float u, float v) {
         if (distance >= ray.t_min && distance <= ray.t_max)
@@ -134,8 +158,12 @@ template <class Visit> void Oracle::each_hit(const Ray& ray, Visit visit) const 
 }
 
 Hit Oracle::closest(const Ray& ray) const {
+    return closest(ray, largest_component(ray.direction));
+}
+
+Hit Oracle::closest(const Ray& ray, int axis) const {
     Hit best;
-    each_hit(ray, [&](const Hit& h) {
+    each_hit(ray, axis, [&](const Hit& h) {
         bool nearer = best.patch < 0 || h.t < best.t;
         if (h.t == best.t)
             nearer = nearer || h.patch < best.patch || (h.patch == best.patch && h.triangle < best.triangle);
@@ -147,7 +175,7 @@ Hit Oracle::closest(const Ray& ray) const {
 
 int Oracle::crossings(const Ray& ray) const {
     int n = 0;
-    each_hit(ray, [&](const Hit&) { ++n; });
+    each_hit(ray, largest_component(ray.direction), [&](const Hit&) { ++n; });
     return n;
 }
 

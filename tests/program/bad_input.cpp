@@ -218,7 +218,7 @@ TEST_F(Razor, EagerFramesAreTheSamePicture) {
 TEST_F(Razor, StaysWithinItsMemory) {
     const std::string rest = " --size 64x64 --spp 1 --threads 2 ";
     ASSERT_EQ(razor("render" + rest + "-o all.exr --stats all.json").code, 0);
-    const Outcome bounded = razor("render" + rest + "-o some.exr --stats some.json --memory 2.5MiB");
+    const Outcome bounded = razor("render" + rest + "-o some.exr --stats some.json --memory 1.25MiB");
     ASSERT_EQ(bounded.code, 0) << bounded.err;
     const Film expected = read_exr(folder_ / "all.exr"), film = read_exr(folder_ / "some.exr");
     for (const Plane& plane : expected.planes)
@@ -226,7 +226,7 @@ TEST_F(Razor, StaysWithinItsMemory) {
     EXPECT_FALSE(statistics("all").contains("memory"));
     const nlohmann::json s = statistics("some");
     const nlohmann::json& memory = s.at("memory");
-    EXPECT_EQ(memory.at("budget_bytes"), 2621440);
+    EXPECT_EQ(memory.at("budget_bytes"), 1310720);
     EXPECT_LE(memory.at("peak_bytes"), memory.at("budget_bytes"));
     EXPECT_GT(memory.at("drops"), 0);
     EXPECT_GT(memory.at("regenerated_share").at("blocks"), 0);
@@ -234,9 +234,9 @@ TEST_F(Razor, StaysWithinItsMemory) {
     EXPECT_EQ(memory.at("made").at("blocks"), s.at("counters").at("blocks_made"));
     EXPECT_GE(s.at("left_out").at("patches_never_opened"), 0);
     // One line a frame says so.
-    const Outcome sequence = razor("render" + rest + "--frames 0:1 -o %d.exr --memory 2.5MiB");
+    const Outcome sequence = razor("render" + rest + "--frames 0:1 -o %d.exr --memory 1.25MiB");
     ASSERT_EQ(sequence.code, 0) << sequence.err;
-    EXPECT_NE(sequence.out.find("at most 2."), std::string::npos) << sequence.out;
+    EXPECT_NE(sequence.out.find("at most 1."), std::string::npos) << sequence.out;
     EXPECT_NE(sequence.out.find("of nodes made again"), std::string::npos) << sequence.out;
     for (const char* name : {"0.exr", "1.exr"})
         for (const Plane& plane : expected.planes)
