@@ -108,7 +108,8 @@ inline Room take_grains(const Context& c, pointer<WorkerBudget> own, sint need) 
     while (branch(at < run.first)) {
         Room skipped = next_run(marks, era, at, run.first, most);
         sint line = skipped.first << grain_log2;
-        keep_hole(c, own, first_line + line, skipped.count << grain_log2);
+        sint lines = skipped.count << grain_log2;
+        keep_hole(c, own, first_line + line, lines);
         at = skipped.first + skipped.count;
     }
     sint taken = load(field(own, &WorkerBudget::tile_grains));

@@ -36,7 +36,8 @@ inline void put_to_sleep(const Context& c, pointer<WorkerBudget> own) {
     while (branch(number >= 0)) {
         pointer<Anchor> anchor = as<Anchor>(c.nodes + number);
         sint node = load(field(anchor, &Anchor::node));
-        store_release(field(c.nodes + node, &KdNode::state), sint(-1) - number);
+        sint asleep = sint(-1) - number;
+        store_release(field(c.nodes + node, &KdNode::state), asleep);
         number = load(field(anchor, &Anchor::next));
     }
     store(field(own, &WorkerBudget::awake), -1);

@@ -13,7 +13,8 @@ inline void discard_lines(pointer<Line> first, sint count) {
     constexpr int at_once = 64;
     for (sint i = 0; branch(i < count); i += at_once) {
         sint lines = min(count - i, sint(at_once));
-        discard(first + i, lines * line_bytes);
+        sint bytes = lines * line_bytes;
+        discard(first + i, bytes);
     }
 }
 

@@ -70,12 +70,17 @@ inline vvec blend(const vvec& a, const vvec& b, const vvec& c, const Hits& h) {
     return madd(h.v, c, madd(h.u, b, a * w));
 }
 
-/// Bound on the error of a point computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the reach
-/// of a ray that leaves it (pbrt's gamma(n) style: 16 half-ulp roundings of the largest terms).
-inline vfloat position_error(const vvec& p, const vvec& origin) {
-    vfloat size = largest(abs(p));
+/// Bound on the error of a point computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the
+/// distance at which a ray that leaves it meets their plane, from differences to these corners and sheared by
+/// up to 2 (pbrt's gamma(n) style: 24 half-ulp roundings of the largest terms).
+inline vfloat position_error(const vvec& a, const vvec& b, const vvec& c, const vvec& origin) {
+    vfloat of_a = largest(abs(a));
+    vfloat of_b = largest(abs(b));
+    vfloat of_c = largest(abs(c));
     vfloat shift = largest(abs(origin));
-    return max(size, shift) * (16.0F / 16777216.0F);
+    vfloat size = max(of_a, of_b);
+    size = max(size, of_c);
+    return max(size, shift) * (24.0F / 16777216.0F);
 }
 
 /// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them.
@@ -302,7 +307,7 @@ inline vvec lift_of(const Corners& k, const Hits& h, const vvec& p, const vfloat
     vvec origin = gather_vec(field(c.instances, &InstanceRecord::origin), record, vint(1), s.hit);
     s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);
     vvec p = blend(k.a, k.b, k.c, h);
-    vfloat error = position_error(p, origin);
+    vfloat error = position_error(k.a, k.b, k.c, origin);
     vmask morphs = vmask(load(field(c.frame, &FrameHeader::morphs)) != 0);
     vfloat apart = fma(k.sway, vfloat(leaving_share), error);
     error = select(morphs, apart, error);
@@ -549,7 +554,8 @@ template <Features F, class Towards>
                                              sint samples) {
     phase_scope phase(phase_light);
     // Few samples leave room for more hits.
-    sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), samples - 1);
+    sint fewer_log2 = samples - 1;
+    sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), fewer_log2);
     sint per_hit = sint(1) << per_hit_log2;
     sint hits_per_packet = sint(isa::width) >> per_hit_log2;
     pointer<float> sums = c.packets + packet_sum;

@@ -242,7 +242,7 @@ Surface surface_of(const RenderArguments& a, const Rays& r, const Found& f) {
     }
     vvec p = blend(k.a, k.b, k.c, h);
     vfloat side = select(opposed, vfloat(-1.0F), vfloat(1.0F));
-    vfloat error = position_error(p, {zero, zero, zero});
+    vfloat error = position_error(k.a, k.b, k.c, {zero, zero, zero});
     s.position = madd(error, s.geometric, p + lift_of(k, h, p, side));
     return s;
 }
