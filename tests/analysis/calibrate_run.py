@@ -63,4 +63,5 @@ with tempfile.TemporaryDirectory() as folder:
             result = json.load(file)
         assert len(result["kernels"]) >= 7, result
         for row in result["kernels"]:
-            assert all(row[figure]["within"] or row["share"] < 0.01 for figure in figures), (target, row)
+            # Kernels of less than a fiftieth of the instructions are off by up to a half (sim/README.md).
+            assert all(row[figure]["within"] or row["share"] < 0.02 for figure in figures), (target, row)
