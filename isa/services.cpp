@@ -9,6 +9,17 @@ trapped::~trapped() = default;
 
 void throw_trapped(int code) { throw trapped(code); }
 
+bool call_without_trap(int code, void (*work)(void* data), void* data) {
+    try {
+        work(data);
+        return true;
+    } catch (const trapped& trap) {
+        if (trap.code != code)
+            throw;
+        return false;
+    }
+}
+
 mark_set::mark_set(std::int64_t count) : words_(static_cast<std::size_t>((count + 63) / 64)) {}
 
 void mark_set::mark(std::int64_t i) {

@@ -85,7 +85,7 @@ protected:
 class trapped : public std::runtime_error {
 public:
     explicit trapped(int code);
-    ~trapped() override; // out of line: kernels that catch it hold no code of it
+    ~trapped() override;
     trapped(const trapped&) = default;
     trapped& operator=(const trapped&) = default;
     int code;
@@ -93,5 +93,15 @@ public:
 
 /// What trap() calls; out of line, so that kernels hold no code of the standard library's.
 [[noreturn]] void throw_trapped(int code);
+
+/// Calls work(data); false if trap(code) ended it. Other exceptions pass. Out of line, as a kernel that caught
+/// `trapped` itself would hold a reference to its type that other targets' kernels would share.
+[[nodiscard]] bool call_without_trap(int code, void (*work)(void* data), void* data);
+
+/// The same of a callable.
+template <class Work> [[nodiscard]] bool ends_without_trap(int code, Work work) {
+    return call_without_trap(
+        code, [](void* data) { (*static_cast<Work*>(data))(); }, &work);
+}
 
 } // namespace isa

@@ -85,15 +85,10 @@ template <class Tile> inline bool fits(const Context& c, Tile tile) {
     HeldWords held;
     Context own = c;
     own.held = &held;
-    try {
-        tile(own);
-        return true;
-    } catch (const isa::trapped& trap) {
-        if (trap.code != trap_memory_spent)
-            throw;
-    }
-    held.release();
-    return false;
+    const bool done = isa::ends_without_trap(trap_memory_spent, [&] { tile(own); });
+    if (!done)
+        held.release();
+    return done;
 }
 
 /// Holds the gate open for others, or shut, until its end, however that comes.

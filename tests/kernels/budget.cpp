@@ -162,14 +162,15 @@ TEST(BudgetStatistics, WhatIsMadeAgainIsCounted) {
     }
 }
 
-/// Trees that render the same tiles have the same duplicates with and without a budget.
+/// Trees that render the same tiles have the same duplicates with and without a budget, of which each tree's
+/// half is little more than one worker needs, so that it drops and makes again.
 TEST(BudgetStatistics, DuplicatesAreOfWhatWasEverMade) {
     const Scene scene = budget_scene("urchin_stretched", Lod::recursive);
     const std::uint64_t least = smallest_budget(scene);
     const int tiles = screen_tiles(scene.settings);
     Duplicates found[2];
     for (const bool budget : {false, true}) {
-        Frame frame(scene, bounded(2, 1, budget ? 3 * least : 0));
+        Frame frame(scene, bounded(2, 1, budget ? 2 * (least + least / 10) : 0));
         for (int w = 0; w < 2; ++w) {
             frame.take_tiles(w == 0 ? 0 : tiles / 3, w == 0 ? tiles / 2 : tiles);
             frame.render(best(), w);

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace razor::test {
 namespace {
 
@@ -122,13 +124,14 @@ Scene square_of_tori(int n) {
     return scene;
 }
 
-/// Rays down on the torus at one corner of the square, and a little beside it.
+/// Rays down on the torus at one corner of the square, and a little beside it: in steps that a float holds
+/// wherever the corner is, and off the torus's planes of symmetry, so that none meets just an edge.
 std::vector<Ray> rays_at_a_corner(Frame& frame) {
     const float* corner = frame.header().instances.get()[0].origin;
     std::vector<Ray> rays;
     for (int i = 0; i < 1024; ++i) {
-        const float x = corner[0] - 1.5F + static_cast<float>(i % 32) / 10;
-        const float z = corner[2] - 1.5F + static_cast<float>(i / 32) / 10;
+        const float x = corner[0] - 1.5F + static_cast<float>(6 * (i % 32) + 1) / 64;
+        const float z = corner[2] - 1.5F + static_cast<float>(6 * (i / 32) + 1) / 64;
         rays.push_back({{x, 5, z}, {0, -1, 0}});
     }
     return rays;
@@ -183,8 +186,9 @@ TEST(Laziness, UnseenInstancesTakeNoMemory) {
     EXPECT_EQ(many.statistics.control_point_bytes, few.statistics.control_point_bytes);
     const std::int64_t more = many.statistics.scene_graph_bytes - few.statistics.scene_graph_bytes;
     EXPECT_LE(more, 9900 * 320) << "records of instances and graph nodes";
-    for (std::size_t i = 0; i < few.hits.size(); ++i)
-        EXPECT_EQ(few.hits[i].patch, many.hits[i].patch);
+    const auto is_hit = [](const Hit& h) { return h.patch >= 0; };
+    EXPECT_GT(std::count_if(few.hits.begin(), few.hits.end(), is_hit), 512);
+    EXPECT_EQ(few.hits, many.hits);
 }
 
 TEST(Laziness, ResetClosesEverything) {
