@@ -68,7 +68,8 @@ int Hierarchy::first_difference(const Key& a, const Key& b) {
 Hierarchy::Key Hierarchy::key_of(std::int32_t instance, const Box& box) const {
     Key key;
     const double extent = largest(box.high - box.low);
-    // Sizes within a factor of four are alike, in whatever unit; exponents of doubles reach from -1074 to 1024.
+    // Sizes within a factor of four are alike, in whatever unit; exponents of doubles reach from -1074 to
+    // 1024.
     key.size = static_cast<std::uint32_t>((extent > 0 ? std::ilogb(extent) - grid_.exponent + 2200 : 0) / 2);
     const glm::dvec3 place = box.centre() - grid_.origin;
     for (int k = 0; k < 3; ++k) {
