@@ -91,16 +91,21 @@ template <class Visit> inline void visit_tree(const Context& c, sint newest, con
     }
 }
 
-/// Goes through the groups of blocks that the tree's workers made; keeps those of which `stays` is true.
-template <class Stays> inline void visit_groups(const Context& c, const Drop& d, const Stays& stays) {
+/// Goes through the workers that share the tree.
+template <class Visit> inline void visit_workers(const Drop& d, const Visit& visit) {
     sint workers = load(field(d.tree, &TreeBudget::frame_workers));
     sint tree = load(field(d.tree, &TreeBudget::tree));
     for (sint w = 0; branch(w < workers); ++w) {
         pointer<WorkerRecord> worker = d.workers + w;
         sint of = load(field(worker, &WorkerRecord::tree));
-        if (branch(of != tree))
-            continue;
-        pointer<WorkerBudget> own = load(field(worker, &WorkerRecord::budget));
+        if (branch(of == tree))
+            visit(worker, load(field(worker, &WorkerRecord::budget)));
+    }
+}
+
+/// Goes through the groups of blocks that the tree's workers made; keeps those of which `stays` is true.
+template <class Stays> inline void visit_groups(const Context& c, const Drop& d, const Stays& stays) {
+    visit_workers(d, [&](pointer<WorkerRecord>, pointer<WorkerBudget> own) {
         sint number = load(field(own, &WorkerBudget::groups));
         sint kept = -1;
         while (branch(number >= 0)) {
@@ -113,7 +118,7 @@ template <class Stays> inline void visit_groups(const Context& c, const Drop& d,
             number = next;
         }
         store(field(own, &WorkerBudget::groups), kept);
-    }
+    });
 }
 
 /// When everything was used: lines by age, in quarters.
@@ -231,37 +236,23 @@ inline sint choose_last(const Context& c, sint newest, sint grains) {
 
 /// Nobody has anything left in hand, and unused lists are part of what is free.
 inline void empty_hands(const Drop& d) {
-    sint workers = load(field(d.tree, &TreeBudget::frame_workers));
-    sint tree = load(field(d.tree, &TreeBudget::tree));
-    for (sint w = 0; branch(w < workers); ++w) {
-        pointer<WorkerRecord> worker = d.workers + w;
-        sint of = load(field(worker, &WorkerRecord::tree));
-        if (branch(of != tree))
-            continue;
+    visit_workers(d, [&](pointer<WorkerRecord> worker, pointer<WorkerBudget> own) {
         constexpr std::int32_t WorkerRecord::*in_hand[] = {&WorkerRecord::grid_next, &WorkerRecord::grid_end,
                                                            &WorkerRecord::node_next, &WorkerRecord::node_end,
                                                            &WorkerRecord::list_next, &WorkerRecord::list_end};
         for (std::int32_t WorkerRecord::*word : in_hand)
             store(field(worker, word), 0);
-        pointer<WorkerBudget> own = load(field(worker, &WorkerRecord::budget));
         store(field(own, &WorkerBudget::holes), -1);
         pointer<float> stack = load(field(worker, &WorkerRecord::stack));
         pointer<std::int32_t> lists = as<std::int32_t>(stack + scratch_free_lists);
         for (int i = 0; i < list_sizes; i += isa::width)
             store_vector(lists + i, vint(-1), first_lanes(list_sizes - i));
-    }
+    });
 }
 
 /// All anchors of the tree sleep; those that did not may have been used until now.
 inline void put_all_to_sleep(const Context& c, const Drop& d) {
-    sint workers = load(field(d.tree, &TreeBudget::frame_workers));
-    sint tree = load(field(d.tree, &TreeBudget::tree));
-    for (sint w = 0; branch(w < workers); ++w) {
-        pointer<WorkerRecord> worker = d.workers + w;
-        sint of = load(field(worker, &WorkerRecord::tree));
-        if (branch(of != tree))
-            continue;
-        pointer<WorkerBudget> own = load(field(worker, &WorkerRecord::budget));
+    visit_workers(d, [&](pointer<WorkerRecord>, pointer<WorkerBudget> own) {
         sint number = load(field(own, &WorkerBudget::awake));
         put_to_sleep(c, own);
         while (branch(number >= 0)) {
@@ -269,7 +260,7 @@ inline void put_all_to_sleep(const Context& c, const Drop& d) {
             store(field(anchor, &Anchor::use), d.newest - 1);
             number = load(field(anchor, &Anchor::next));
         }
-    }
+    });
 }
 
 /// The epoch that it is.
