@@ -36,9 +36,10 @@ inline void put_to_sleep(const Context& c, pointer<WorkerBudget> own) {
     while (branch(number >= 0)) {
         pointer<Anchor> anchor = as<Anchor>(c.nodes + number);
         sint node = load(field(anchor, &Anchor::node));
+        sint next = load(field(anchor, &Anchor::next)); // its next waker's, as soon as it sleeps
         sint asleep = sint(-1) - number;
         store_release(field(c.nodes + node, &KdNode::state), asleep);
-        number = load(field(anchor, &Anchor::next));
+        number = next;
     }
     store(field(own, &WorkerBudget::awake), -1);
 }
