@@ -1,0 +1,244 @@
+// razor-sim: what a run counts: a frame of several, screen tiles, a part of the picture, dead memory, over
+// time.
+#include "razor/image/exr.h"
+#include "tests/program/simulator.h"
+
+#include <map>
+#include <sstream>
+
+namespace razor {
+namespace {
+
+// A time series whose sums are the report's, on any number of host threads; whole or not there.
+TEST_F(Simulator, WritesATimeSeries) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start =
+        std::string("run --quiet --no-native --scene s.toml --spp 1 --sky-samples 1 --light-samples "
+                    "0 --edge-pixels 4 -g chip.tiles=2 -g chip.cores=2 -g sim.quantum=100 --machine ") +
+        tiny + " ";
+    const auto series = [&](const char* threads) {
+        const Outcome result = simulator(
+            start + "--size 16x16 --json a.json --intervals i.csv --interval 20000 --host-threads " +
+            threads);
+        EXPECT_EQ(result.code, 0) << result.err;
+        return text("i.csv");
+    };
+    const std::string csv = series("1");
+    EXPECT_EQ(series("2"), csv);
+    const nlohmann::json a = report("a.json");
+    std::istringstream lines(csv);
+    std::string line, cell;
+    std::vector<std::string> names;
+    std::getline(lines, line);
+    for (std::istringstream head(line); std::getline(head, cell, ',');)
+        names.push_back(cell);
+    std::map<std::string, std::uint64_t> sums;
+    std::size_t rows = 0;
+    for (; std::getline(lines, line); ++rows) {
+        std::istringstream row(line);
+        for (const std::string& name : names) {
+            ASSERT_TRUE(std::getline(row, cell, ',')) << line;
+            if (name != "ipc")
+                sums[name] = (name == "end" ? 0 : sums[name]) + std::stoull(cell);
+        }
+    }
+    EXPECT_GT(rows, 10U);
+    EXPECT_EQ(a.at("intervals").at("rows"), rows);
+    EXPECT_GE(a.at("intervals").at("cycles"), 20000);
+    EXPECT_EQ(sums["end"], a.at("drained_cycles"));
+    for (const char* name : {"vops", "instructions"})
+        EXPECT_EQ(sums[name], a.at("core").at(name)) << name;
+    for (const char* level : {"l1", "l2"})
+        EXPECT_EQ(sums[std::string(level) + "_misses"], a.at(level).at("misses"));
+    EXPECT_EQ(sums["memory_reads"], a.at("memory").at("reads"));
+    for (const auto& [cause, cycles] : a.at("stack").items())
+        EXPECT_EQ(sums["stack_" + cause], cycles) << cause;
+    for (const std::string& name : names)
+        EXPECT_EQ(simulator("explain intervals." + name).code, 0) << name;
+
+    std::filesystem::remove(folder_ / "i.csv");
+    std::filesystem::remove(folder_ / "a.json");
+    const std::size_t before = folder_.count();
+    // ulimit counts blocks of 512 or 1024 bytes; the series needs more than two of either.
+    Outcome stopped = run("ulimit -f 2; trap '' XFSZ; " + quoted_argument(RAZOR_SIMULATOR) + " " + start +
+                              "--size 16x16 --intervals i.csv --interval 1000",
+                          folder_.path());
+    EXPECT_EQ(stopped.code, 2);
+    EXPECT_NE(stopped.err.find("i.csv"), std::string::npos) << stopped.err;
+    EXPECT_EQ(stopped.error_lines(), 1) << stopped.err;
+    EXPECT_EQ(folder_.count(), before) << "a file was left";
+    stopped = run("timeout -s INT 0.7 " + quoted_argument(RAZOR_SIMULATOR) + " " + start +
+                      "--size 200x200 --intervals i.csv --interval 1000",
+                  folder_.path());
+    EXPECT_EQ(folder_.count(), before) << "a file was left";
+}
+
+// The last of several frames: the same picture and rays, with pages, caches and predictors that are there.
+TEST_F(Simulator, CountsTheLastFrameAlone) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = std::string("run --quiet --scene s.toml --size 24x24 --spp 1 --sky-samples 1 "
+                                          "--light-samples 0 --edge-pixels 4 --workers 1 -g chip.tiles=1 "
+                                          "-o a.exr --json a.json --machine ") +
+                              tiny + " ";
+    ASSERT_EQ(simulator(start).code, 0);
+    const nlohmann::json once = report("a.json");
+    const Film picture = read_exr(folder_ / "a.exr");
+    ASSERT_EQ(simulator(start + "--frames 1").code, 0);
+    EXPECT_EQ(report("a.json"), once);
+    for (const char* frames : {"2", "3"}) {
+        const Outcome result = simulator(start + "--frames " + frames);
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find("\nwarm-up "), std::string::npos);
+        EXPECT_NE(result.out.find("the same picture, bit for bit"), std::string::npos);
+        const nlohmann::json a = report("a.json");
+        EXPECT_GE(a.at("warm_up_cycles"), once.at("cycles"));
+        EXPECT_LT(a.at("cycles"), once.at("cycles"));
+        EXPECT_GT(once.at("core").at("pages"), 0);
+        EXPECT_EQ(a.at("core").at("pages"), 0);
+        EXPECT_LT(a.at("core").at("mispredicts"), once.at("core").at("mispredicts"));
+        EXPECT_LT(a.at("l2").at("misses"), once.at("l2").at("misses"));
+        nlohmann::json counters = a.at("renderer").at("counters"), cold = once.at("renderer").at("counters");
+        EXPECT_EQ(counters.at("pages_requested"), 0);
+        cold["pages_requested"] = 0;
+        EXPECT_EQ(counters, cold);
+        for (const Plane& plane : picture.planes)
+            EXPECT_EQ(read_exr(folder_ / "a.exr").find(plane.name)->values, plane.values) << plane.name;
+    }
+}
+
+// Some screen tiles alone: with one worker, who takes them in order, the parts are the whole.
+TEST_F(Simulator, CountsSomeTilesAlone) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = std::string("run --quiet --scene s.toml --size 40x40 --spp 1 --sky-samples 1 "
+                                          "--light-samples 0 --edge-pixels 4 --workers 1 -g chip.tiles=1 "
+                                          "-o a.exr --json a.json --machine ") +
+                              tiny + " ";
+    const auto run = [&](const std::string& options) {
+        const Outcome result = simulator(start + options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find("the same picture, bit for bit"), std::string::npos);
+        return report("a.json");
+    };
+    const nlohmann::json whole = run("");
+    const Film picture = read_exr(folder_ / "a.exr");
+    EXPECT_EQ(run("--tiles 0..24").at("cycles"), whole.at("cycles"));
+    const nlohmann::json first = run("--tiles 0..3"), rest = run("--tiles 4..24"), one = run("--tiles 4..4");
+    EXPECT_EQ(first.at("warm_up_cycles"), 0);
+    EXPECT_GE(rest.at("warm_up_cycles"), first.at("cycles"));
+    EXPECT_EQ(one.at("warm_up_cycles"), rest.at("warm_up_cycles"));
+    EXPECT_EQ(rest.at("options").at("tiles"), nlohmann::json({4, 24}));
+    EXPECT_EQ(rest.at("renderer").at("screen_tiles"), 21);
+    for (const auto& [name, count] : whole.at("renderer").at("counters").items()) {
+        const auto of = [&name = name](const nlohmann::json& a) {
+            return a.at("renderer").at("counters").at(name).get<std::int64_t>();
+        };
+        EXPECT_EQ(of(first) + of(rest), count) << name;
+        EXPECT_LE(of(one), of(rest)) << name;
+    }
+    const auto vops = [](const nlohmann::json& a) { return a.at("core").at("vops").get<std::int64_t>(); };
+    EXPECT_GT(vops(first) + vops(rest), vops(whole)) << "a worker begins twice";
+    EXPECT_LT(vops(first) + vops(rest), vops(whole) + 1000);
+    EXPECT_LT(vops(one), vops(rest));
+    // Tiles that were rendered, the first five along the curve, and none of the others.
+    const Film part = read_exr(folder_ / "a.exr");
+    for (const Plane& plane : picture.planes) {
+        const std::vector<float>& values = part.find(plane.name)->values;
+        for (std::size_t y = 0; y < 40; ++y)
+            for (std::size_t x = 0; x < 40; ++x) {
+                const bool there = (x < 16 && y < 16) || (x < 8 && y < 24);
+                ASSERT_EQ(values[y * 40 + x], there ? plane.values[y * 40 + x] : 0) << plane.name;
+            }
+    }
+    // Of the last frame.
+    const nlohmann::json warm = run("--frames 2 --tiles 4..24");
+    EXPECT_GT(warm.at("warm_up_cycles"), whole.at("cycles"));
+    nlohmann::json counters = warm.at("renderer").at("counters"), cold = rest.at("renderer").at("counters");
+    EXPECT_EQ(counters.at("pages_requested"), 0);
+    cold["pages_requested"] = 0;
+    EXPECT_EQ(counters, cold);
+    EXPECT_LE(warm.at("l2").at("misses"), rest.at("l2").at("misses"));
+}
+
+TEST_F(Simulator, RendersAPartOfThePicture) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start =
+        std::string("run --quiet --scene s.toml --size 64x48 --spp 1 --sky-samples 1 "
+                    "--light-samples 1 --edge-pixels 4 -o a.exr --json a.json --machine ") +
+        tiny + " ";
+    ASSERT_EQ(simulator(start).code, 0);
+    const Film whole = read_exr(folder_ / "a.exr");
+    const Outcome part = simulator(start + "--crop 16,16,30,32");
+    ASSERT_EQ(part.code, 0) << part.err;
+    EXPECT_NE(part.out.find("the same picture, bit for bit"), std::string::npos);
+    EXPECT_EQ(report("a.json").at("renderer").at("screen_tiles"), 16);
+    const Film film = read_exr(folder_ / "a.exr");
+    ASSERT_EQ(film.width, 30);
+    ASSERT_EQ(film.height, 32);
+    for (const Plane& plane : whole.planes)
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 30; ++x)
+                ASSERT_EQ(film.find(plane.name)->values[static_cast<std::size_t>(y * 30 + x)],
+                          plane.values[static_cast<std::size_t>((16 + y) * 64 + 16 + x)])
+                    << plane.name << ' ' << x << ' ' << y;
+    EXPECT_EQ(simulator(start + "--crop 16,16,30,33").code, 2);
+}
+
+// What kernels say to be dead is not written back: neither while the frame is rendered nor after it; and the
+// picture is the same.
+TEST_F(Simulator, DiscardsWhatIsDead) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = std::string("run --quiet --scene s.toml --size 40x40 --spp 1 --sky-samples 1 "
+                                          "--light-samples 1 --edge-pixels 2 -g sim.frame_end=write "
+                                          "--json a.json --machine ") +
+                              tiny + " ";
+    struct Written {
+        std::int64_t during = 0, at_end = 0, dropped = 0, discarded = 0, film = 0;
+    };
+    const auto run = [&](const std::string& options) {
+        const Outcome result = simulator(start + options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find("the same picture, bit for bit"), std::string::npos) << options;
+        const nlohmann::json r = report("a.json");
+        Written w;
+        for (const nlohmann::json& row : r.at("traffic")) {
+            const auto lines = row.at("memory_writes").get<std::int64_t>();
+            const std::string structure = row.at("structure");
+            if (structure == "frame buffer")
+                w.film += lines;
+            if (structure == "grids" || structure == "item lists" || structure == "kd nodes" ||
+                structure == "blended blocks")
+                (row.at("phase") == "frame end" ? w.at_end : w.during) += lines;
+        }
+        for (const char* level : {"l1", "l2"}) {
+            w.dropped += r.at(level).at("dropped").get<std::int64_t>();
+            w.discarded += r.at(level).at("discarded").get<std::int64_t>();
+        }
+        return w;
+    };
+    for (const std::string share : {"chip", "worker"}) {
+        // A cache for all of it, and one for a little.
+        for (const std::string size : {"4194304", "65536"}) {
+            SCOPED_TRACE(share + " " + size);
+            const std::string options = "--share " + share + " -g l2.size_bytes=" + size;
+            const Written off = run(options), on = run(options + " -g renderer.discard=on"),
+                          drop = run(options + " -g sim.frame_end=drop");
+            EXPECT_EQ(off.discarded, 0);
+            EXPECT_EQ(off.dropped, 0);
+            EXPECT_GT(drop.dropped, 0);
+            EXPECT_LE(drop.at_end, off.at_end);
+            EXPECT_EQ(drop.during, off.during);
+            EXPECT_GT(on.discarded, 500);
+            EXPECT_NEAR(static_cast<double>(on.film), static_cast<double>(off.film), 0.02 * 2500);
+            if (size == "4194304") { // a small one makes room for the film at the end, of whatever is there
+                EXPECT_GT(off.at_end, 200);
+                EXPECT_EQ(drop.at_end, 0);
+                // Tables of opened patches and of curves' lengths, among the grids, stay.
+                EXPECT_LT(on.at_end, off.at_end / 4);
+            }
+            EXPECT_LT(on.during + on.at_end, off.during + off.at_end);
+        }
+    }
+}
+
+} // namespace
+} // namespace razor
