@@ -76,7 +76,15 @@ enum LeftField : int {
     left_floats = 16
 };
 inline constexpr int packet_left_next = packet_left + left_fields * left_floats;
-inline constexpr int packet_floats = packet_left_next + 16;
+/// The beam of a group's rays (razor/kernels/beam.h): for each axis a line below and one above them.
+inline constexpr int packet_beam = packet_left_next + 16;
+enum BeamLine : int {
+    beam_base = 0, // at 0 of the group's axis
+    beam_rate = 1,
+    beam_above = 2, // the line above, likewise
+    beam_axis = 4   // the next axis
+};
+inline constexpr int packet_floats = packet_beam + 3 * beam_axis;
 
 /// So much further lies the scratch for tiles that are rendered in place of a wait (render_meanwhile() in
 /// razor/kernels/render.h).

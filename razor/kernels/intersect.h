@@ -9,40 +9,45 @@
 namespace razor::ISA_TARGET {
 inline namespace intersect_kernel {
 
-/// Boxes of m, one a lane, that some ray of the group may meet, widened and moved by `origin`, between the
-/// distances `enter` and `leave`: conservative, by interval arithmetic. Planes of axis k lie at low[k * step]
-/// and low[(k + 3) * step].
+/// Boxes of m, one a lane, widened and moved by `origin`, that the beam meets between `begin` and `end`.
+/// Planes of axis k lie at low[k * step] and low[(k + 3) * step].
 inline vmask boxes_met(const Group& g, pointer<const float> low, sint step, const svec& origin, sfloat widen,
-                       const vmask& m, vfloat enter, vfloat leave) {
-    sfloat shift[3] = {origin.x, origin.y, origin.z};
+                       sfloat begin, sfloat end, const vmask& m) {
     sint half = step * 3;
-    for (int k = 0; k < 3; ++k) {
-        if (branch(g.mixed[k]))
-            continue;
-        // With the axis flipped to a positive direction: entering plane minus the furthest origin, and so on.
-        sint near_at = select(g.sign[k] != 0, half, sint(0));
-        sint far_at = half - near_at;
-        pointer<const float> plane = low + step * k;
-        vfloat near_plane = load_vector(plane + near_at, m);
-        vfloat far_plane = load_vector(plane + far_at, m);
-        sfloat moved = g.flip[k] * shift[k];
-        vfloat flip = vfloat(g.flip[k]);
-        sfloat near_origin = g.near[k] - moved + widen;
-        sfloat far_origin = g.far[k] - moved - widen;
-        vfloat near_distance = near_plane * flip;
-        near_distance = near_distance - vfloat(near_origin);
-        vfloat far_distance = far_plane * flip;
-        far_distance = far_distance - vfloat(far_origin);
-        vfloat least = vfloat(g.least[k]);
-        vfloat most = vfloat(g.most[k]);
-        vmask ahead = near_distance >= vfloat(0.0F);
-        vfloat near_rate = select(ahead, least, most);
-        vmask before = far_distance >= vfloat(0.0F);
-        vfloat far_rate = select(before, most, least);
-        enter = max(near_distance * near_rate, enter);
-        leave = min(far_distance * far_rate, leave);
+    sfloat moved = component(origin, g.kz);
+    pointer<const float> side = low + step * g.kz;
+    vfloat from = load_vector(side, m);
+    vfloat to = load_vector(side + half, m);
+    from = max(from, vfloat(begin - moved - widen));
+    to = min(to, vfloat(end - moved + widen));
+    vmask met = m & (from <= to);
+    for (int k = 0; k < 2; ++k) {
+        sint axis = k == 0 ? g.kx : g.ky;
+        side = low + step * axis;
+        vfloat lowest = load_vector(side, m);
+        vfloat highest = load_vector(side + half, m);
+        sfloat shift = component(origin, axis);
+        // The line below is lowest where the box begins, if it rises, and so on.
+        sfloat rate = g.beam.low_rate[k];
+        sfloat base = fma(rate, moved, g.beam.low_base[k]);
+        sfloat wider = fma(abs(rate), widen, widen);
+        base = base - shift - wider;
+        vmask rises = vmask(rate > 0.0F);
+        vfloat at = select(rises, from, to);
+        vfloat slope = vfloat(rate);
+        at = fma(at, slope, vfloat(base));
+        met = met & (highest >= at);
+        rate = g.beam.high_rate[k];
+        base = fma(rate, moved, g.beam.high_base[k]);
+        wider = fma(abs(rate), widen, widen);
+        base = base - shift + wider;
+        rises = vmask(rate > 0.0F);
+        at = select(rises, to, from);
+        slope = vfloat(rate);
+        at = fma(at, slope, vfloat(base));
+        met = met & (lowest <= at);
     }
-    return m & (enter <= leave);
+    return met;
 }
 
 /// The up to 2 x 2 quads of a cell, row by row; neighbours in a row share two vertices and an edge.
@@ -176,13 +181,10 @@ inline void visit_cells(const Group& g, const View& v, const Slabs& scene, sfloa
     svec origin = load_svec(origin_at);
     sint shift = cells_shift(v.quads_u);
     sint cells = ((v.quads_v + 1) >> 1) << shift;
-    vfloat furthest = select(g.alive, hits.t, vfloat(-3.0e38F));
-    vfloat latest = vfloat(reduce_max(furthest));
-    vfloat earliest = vfloat(g.first_t);
     for (sint from = 0; branch(from < cells); from += isa::width) {
         vmask valid = first_lanes(cells - from);
-        vmask met =
-            boxes_met(g, v.words + (v.cells_at + from), cell_boxes, origin, widen, valid, earliest, latest);
+        vmask met = boxes_met(g, v.words + (v.cells_at + from), cell_boxes, origin, widen, g.beam.begin,
+                              g.beam.end, valid);
         for (; branch(any(met)); met = clear_first(met)) {
             sint cell = from + first(met);
             pointer<const float> box = v.words + v.cells_at + cell;

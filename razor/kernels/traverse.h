@@ -5,6 +5,7 @@
 // equal distances go to the lowest (patch, triangle).
 #pragma once
 
+#include "razor/kernels/beam.h"
 #include "razor/kernels/paper_levels.h"
 #include "razor/kernels/patch_levels.h"
 
@@ -83,8 +84,6 @@ inline Group make_group(const Context& c, const Rays& r, vmask alive, sint along
     g.shear_x = dx * g.scale_z;
     g.shear_y = dy * g.scale_z;
     g.t_min = r.t_min;
-    vfloat far_away(infinite);
-    g.first_t = reduce_min(select(alive, r.t_min, far_away));
 
     sfloat slack = position_slack(c);
     g.slack = slack;
@@ -102,15 +101,6 @@ inline Group make_group(const Context& c, const Rays& r, vmask alive, sint along
         vmask other = as_int(inverse) < vint(0);
         other = other ^ vmask(g.sign[k] != 0);
         g.mixed[k] = any(alive & other);
-        sfloat least_o = reduce_min(select(alive, o, far_away));
-        sfloat most_o = reduce_max(select(alive, o, vfloat(-infinite)));
-        sbool negative = g.sign[k] != 0;
-        g.flip[k] = select(negative, sfloat(-1.0F), sfloat(1.0F));
-        g.near[k] = select(negative, -least_o, most_o) + slack;
-        sfloat exit = select(negative, -most_o, least_o);
-        g.far[k] = exit - slack;
-        g.least[k] = reduce_min(select(alive, rate, far_away));
-        g.most[k] = reduce_max(select(alive, rate, vfloat(0.0F)));
     }
     return g;
 }
@@ -162,14 +152,10 @@ inline void intersect_leaf(const Context& c, Group& g, pointer<ItemList> list, v
     Listed listed;
     listed.box_step = stride;
     listed.level = load(field(list, &ItemList::level));
-    vfloat enter = max(cell.enter, g.t_min);
-    vfloat earliest = vfloat(reduce_min(select(here, enter, vfloat(infinite))));
     svec nowhere{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
     for (sint from = 0; branch(from < n); from += isa::width) {
-        vfloat leave = min(cell.leave, hits.t);
-        vfloat latest = vfloat(reduce_max(select(here, leave, vfloat(-infinite))));
         vmask valid = first_lanes(n - from);
-        vmask met = boxes_met(g, words + (stride + from), stride, nowhere, 0.0F, valid, earliest, latest);
+        vmask met = boxes_met(g, words + (stride + from), stride, nowhere, 0.0F, g.begin, g.end, valid);
         for (; branch(any(met)); met = clear_first(met)) {
             sint i = from + first(met);
             sint item = load(items + i);
@@ -203,6 +189,10 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
     clip_to_tree(c, r, enter, leave);
     vfloat never(infinity);
     enter = select(g.alive, enter, never);
+    vmask in_tree = enter <= leave;
+    if (branch(none(in_tree)))
+        return;
+    find_beam(c, g, in_tree, enter, leave);
     pointer<std::int32_t> mailbox = as<std::int32_t>(c.stack + scratch_mailbox);
     for (int i = 0; i < mailbox_slots; i += isa::width)
         store_vector(mailbox + i, vint(-1), first_lanes(mailbox_slots - i));
@@ -221,7 +211,19 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
         sint link = load(field(node, &KdNode::link));
         if (branch(state == node_inner)) {
             sint axis = load(field(node, &KdNode::axis));
-            vfloat plane = load_broadcast(field(node, &KdNode::split));
+            sfloat split = load(field(node, &KdNode::split));
+            // Is all of the beam on one side?
+            BeamSide side = side_of_beam(c, g, axis, split);
+            if (branch(side.high)) {
+                number = link + 1;
+                continue;
+            }
+            if (branch(side.low)) {
+                number = link;
+                continue;
+            }
+            CutBeam cut = cut_beam(g, axis, split);
+            vfloat plane(split);
             pointer<float> along = c.packets + axis * isa::width;
             vfloat o = load_vector(along + packet_origin);
             vfloat inverse = load_vector(along + packet_inverse);
@@ -253,19 +255,24 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
                 near_enter = select(other, far_enter, enter);
                 far_enter = select(other, enter, far_enter);
             }
+            sbool high_first = sign != 0;
             if (branch(none(to_far))) {
                 number = near;
                 enter = select(to_near, near_enter, never);
                 leave = near_leave;
+                clip_beam(g, cut, high_first);
                 continue;
             }
             far_enter = select(to_far, far_enter, never);
             if (branch(none(to_near))) {
                 number = far;
                 enter = far_enter;
+                clip_beam(g, cut, sign == 0);
                 continue;
             }
             store(as<std::int32_t>(top), far);
+            store(top + 1, select(high_first, g.begin, cut.high_begin));
+            store(top + 2, select(high_first, cut.low_end, g.end));
             store_vector(top + 16, far_enter);
             store_vector(top + (16 + isa::width), leave);
             top = top + stack_entry;
@@ -273,6 +280,7 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
             number = near;
             enter = select(to_near, near_enter, never);
             leave = near_leave;
+            clip_beam(g, cut, high_first);
             continue;
         }
         if (branch(link >= 0)) {
@@ -341,6 +349,8 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
             --depth;
             top = top + -stack_entry;
             number = load(as<std::int32_t>(top));
+            g.begin = load(top + 1);
+            g.end = load(top + 2);
             enter = load_vector(top + 16);
             leave = load_vector(top + (16 + isa::width));
             leave = min(hits.t, leave);

@@ -24,6 +24,13 @@ struct Hits {
     vint field;    // the lane whose field the block was blended for; -1: it was not
 };
 
+/// Lines of x and y over z below and above rays, where z is between `begin` and `end` (beam.h).
+struct Beam {
+    sfloat begin, end;
+    sfloat low_base[2], low_rate[2];
+    sfloat high_base[2], high_rate[2];
+};
+
 /// A group of rays of one packet whose directions are long along one axis, with all that is common to them.
 struct Group {
     vmask alive;
@@ -34,13 +41,10 @@ struct Group {
     vfloat t_min;
     sbool mixed[3]; // whether the directions' components differ in sign (unpermuted axes)
     sint sign[3];   // 1: the component is negative; of the first ray, where they differ
-    sfloat flip[3]; // 1 or -1
-    sfloat near[3],
-        far[3]; // bounds of flip * origin, with slack: a plane is entered no earlier, left no later
-    sfloat least[3], most[3]; // bounds of |1 / direction|
-    sfloat first_t;           // least t_min
-    sfloat slack;             // of positions
-    sbool morphs;             // whether vertices leave their anchors
+    Beam beam;
+    sfloat begin, end; // of the part of the beam that is in the cell at hand
+    sfloat slack;      // of positions
+    sbool morphs;      // whether vertices leave their anchors
     FieldBounds fields;
 };
 

@@ -52,6 +52,11 @@ inline vvec abs(const vvec& a) {
 inline vfloat largest(const vvec& a) {
     return max(a.x, max(a.y, a.z));
 }
+/// Along axis 0, 1 or 2.
+inline sfloat component(const svec& a, sint axis) {
+    sfloat of = select(axis == 1, a.y, a.z);
+    return select(axis == 0, a.x, of);
+}
 inline sfloat largest(const svec& a) {
     return max(a.x, max(a.y, a.z));
 }
