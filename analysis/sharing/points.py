@@ -17,7 +17,7 @@ import simulation  # noqa: E402
 from simulation import Mistake  # noqa: E402
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
-TILE = 16  # pixels of a screen tile, along a side
+TILE = 16  # crops begin at multiples of so many pixels: of whole screen tiles
 KIB, MIB = 1 << 10, 1 << 20
 SCENES = ("courtyard", "interior", "forest", "showcase")
 # Of frames of 1024 x 1024, in their middle: so that nobody sharing a tree takes most_operations at most.
