@@ -58,11 +58,18 @@ void tessellate(const TessellateArguments& a) {
         tessellate_block(a, a.blocks[i]);
 }
 
-/// A vector of rays as Embree takes them.
+/// A vector of rays as Embree takes them. Inactive ones are finite and end before they begin: where the
+/// processor has no sixteen lanes, Embree takes packets as streams, looks at no mask, and knows idle rays by
+/// that alone.
 void fill(RTCRay16* rays, const Rays& r) {
     alignas(64) lanes column[8];
-    const vfloat* value[8] = {&r.origin.x,    &r.origin.y,    &r.origin.z,    &r.t_min,
-                              &r.direction.x, &r.direction.y, &r.direction.z, &r.t_max};
+    vfloat zero(0.0F);
+    vvec origin = select(r.active, r.origin, {zero, zero, zero});
+    vvec direction = select(r.active, r.direction, {zero, zero, vfloat(1.0F)});
+    vfloat t_min = select(r.active, r.t_min, zero);
+    vfloat t_max = select(r.active, r.t_max, vfloat(-1.0F));
+    const vfloat* value[8] = {&origin.x,    &origin.y,    &origin.z,    &t_min,
+                              &direction.x, &direction.y, &direction.z, &t_max};
     for (int k = 0; k < 8; ++k)
         store_vector(pointer<float>(column[k]), *value[k]);
     for (int i = 0; i < packets; ++i) {
