@@ -1,6 +1,7 @@
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/blend_table.h"
+#include "razor/frame/light_records.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
 #include "razor/frame/view.h"
@@ -12,6 +13,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace razor {
@@ -32,19 +34,6 @@ int packet_samples_log2(int samples) {
     while ((2 << log2) < ISA_WIDTH && samples % (2 << log2) == 0)
         ++log2;
     return log2;
-}
-
-constexpr double pi = 3.14159265358979323846;
-
-/// Side of the square that each sample of a domain has to itself, times edge_pixels: all that a pixel takes
-/// share the domain.
-float sample_spacing(const Settings& s, double domain, int samples) {
-    return static_cast<float>(s.edge_pixels * std::sqrt(domain / std::max(samples, 1) / s.samples));
-}
-
-void put(float (&to)[3], const glm::dvec3& v) {
-    for (int i = 0; i < 3; ++i)
-        to[i] = static_cast<float>(v[i]);
 }
 
 } // namespace
@@ -346,7 +335,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);
     }
-    h.sky_spacing = sample_spacing(s, pi, s.sky_samples);
+    h.sky_spacing = sample_spacing(s, std::numbers::pi, s.sky_samples);
     h.reach = static_cast<float>(geometry.reach);
 }
 
@@ -355,22 +344,11 @@ void Frame::Impl::fill_lights(const Scene& scene) {
     header->light_count = 0;
     if (s.light_samples == 0)
         return;
-    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
-        const RectangleLight& light = scene.lights[l];
-        const glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
-        const double area = glm::length(normal);
-        if (!(area > 0 && std::max({light.radiance.x, light.radiance.y, light.radiance.z}) > 0))
-            continue;
-        LightRecord& r = header->lights.get()[header->light_count++];
-        put(r.corner, light.corner - geometry.origin);
-        put(r.edge_u, light.edge_u);
-        put(r.edge_v, light.edge_v);
-        put(r.normal, normal / area);
-        put(r.radiance, glm::dvec3(light.radiance) * (area / (pi * s.light_samples)));
-        r.spacing = sample_spacing(s, area, s.light_samples);
-        r.samples = s.light_samples;
-        r.dimension = light_dimension(static_cast<int>(l));
-    }
+    for (std::size_t l = 0; l < scene.lights.size(); ++l)
+        if (std::optional<LightRecord> record = light_record(scene.lights[l], s, geometry.origin)) {
+            record->dimension = light_dimension(static_cast<int>(l));
+            header->lights.get()[header->light_count++] = *record;
+        }
 }
 
 bool Frame::Impl::pose(const Scene& scene) {

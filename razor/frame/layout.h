@@ -208,16 +208,32 @@ constexpr std::int32_t light_dimension(int light) {
     return light == 0 ? dimension_light : dimension_count - 1 + light;
 }
 
-/// A rectangle that lights hits in front of it. Lights without radiance have no record.
+/// How a light's points are sampled (razor/kernels/light_samples.h).
+enum LightShape : std::int32_t {
+    light_rectangle,
+    light_disk,
+    light_sphere,
+    light_point, // and spots
+    light_directional
+};
+
+/// Lights without radiance have no record. What members mean depends on the shape, in this order: rectangle;
+/// disk; sphere; point; directional.
 struct alignas(line_bytes) LightRecord {
-    float corner[3]; // scene coordinates
-    float edge_u[3], edge_v[3];
-    float normal[3];        // unit
-    float radiance[3];      // x area / (pi x samples)
+    float corner[3];            // scene coordinates; of others than rectangles the middle
+    float edge_u[3], edge_v[3]; // of a disk radii at right angles
+    float normal[3];            // unit; to where a disk emits, of a spot its axis, towards directional light
+    /// Each / (pi x samples): radiance x area; x area; x 2 pi; intensity; irradiance x 2 / (1 + cos of the
+    /// angular radius).
+    float radiance[3];
     float spacing;          // of the samples that a pixel takes: see growth_to_area(), times edge_pixels
     std::int32_t samples;   // shadow rays a hit
     std::int32_t dimension; // of its sample points (razor/kernels/sampling.h)
-    std::int32_t padding[14];
+    std::int32_t shape;     // a LightShape
+    float radius;           // of a sphere
+    float versine;          // 1 - cos of a directional light's angular radius
+    float cone_begin, cone_scale; // of a spot: cosine where it ends, 1 / (cosine where it is whole - that)
+    std::int32_t padding[9];
 };
 static_assert(sizeof(LightRecord) == 2 * line_bytes);
 
@@ -506,7 +522,7 @@ struct FrameHeader {
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in
-/// razor/kernels/shade.h), so pictures depend on it: it is the same for all pictures and workers. A packet of
+/// razor/kernels/leave.h), so pictures depend on it: it is the same for all pictures and workers. A packet of
 /// 64 rays fills it.
 inline constexpr int tile_side = 8;
 

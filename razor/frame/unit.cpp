@@ -52,9 +52,16 @@ double frame_unit(const Scene& scene, const Box& all) {
         reaches(camera.position);
         reach = std::max({reach, camera.aperture_radius, camera.focus_distance});
     }
-    for (const RectangleLight& light : scene.lights)
-        for (const glm::dvec3& p : {light.corner, light.corner + light.edge_u, light.corner + light.edge_v})
-            reaches(p);
+    for (const Light& light : scene.lights) {
+        if (light.kind == LightKind::rectangle) {
+            for (const glm::dvec3& p :
+                 {light.corner, light.corner + light.edge_u, light.corner + light.edge_v})
+                reaches(p);
+        } else if (light.kind != LightKind::directional) {
+            reaches(light.position);
+            reaches(light.position + light.radius);
+        }
+    }
     if (extent >= std::ldexp(1.0, least_log2_extent) && extent <= std::ldexp(1.0, most_log2_extent) &&
         reach <= std::ldexp(1.0, most_log2_reach))
         return 1;
@@ -74,10 +81,14 @@ Scene scaled(Scene scene, double factor) {
     for (Group& group : scene.graph.groups)
         for (Placement& placement : group.placements)
             scale(placement, factor);
-    for (RectangleLight& light : scene.lights) {
+    for (Light& light : scene.lights) {
         light.corner *= factor;
         light.edge_u *= factor;
         light.edge_v *= factor;
+        light.position *= factor;
+        light.radius *= factor;
+        if (light.kind == LightKind::point || light.kind == LightKind::spot) // W / sr, over distances squared
+            light.radiance *= static_cast<float>(factor * factor);
     }
     scale(scene.camera, factor);
     if (scene.dicing_camera)

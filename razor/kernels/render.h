@@ -3,9 +3,9 @@
 #pragma once
 
 #include "razor/kernels/budget_tiles.h"
+#include "razor/kernels/light.h"
 #include "razor/kernels/refit.h"
 #include "razor/kernels/screen_curve.h"
-#include "razor/kernels/shade.h"
 #include "razor/kernels/stretches.h"
 
 namespace razor::ISA_TARGET {
@@ -118,8 +118,7 @@ inline void add_sample(const Context& c, const Rays& r, const vint& pixel, const
     sint lights = load(field(c.frame, &FrameHeader::light_count));
     pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
     for (sint n = 0; branch(n < lights); ++n) {
-        sint samples = load(field(light, &LightRecord::samples));
-        vfloat gathered = gather_light<F>(c, s, TowardsLight{light}, samples);
+        vfloat gathered = gather_light<F>(c, s, light);
         reflect(load_broadcast_vec(field(light, &LightRecord::radiance)), gathered);
         light = light + 1;
     }

@@ -73,7 +73,7 @@ struct SceneDescription {
     Camera camera;
     std::optional<Camera> dicing_camera;
     glm::vec3 sky{0};
-    std::vector<RectangleLight> lights;
+    std::vector<Light> lights;
     double frame_rate = 24; // frames a second
     CameraKeys camera_keys;
     std::vector<LightKeys> light_keys; // of each light, or none

@@ -142,13 +142,13 @@ Camera camera_for(const PointCloud& points, const Settings& settings) {
 }
 
 /// A rectangle three radii away at the upper left of the camera, facing the centre.
-RectangleLight light_for(const Extent& extent) {
+Light light_for(const Extent& extent) {
     const glm::dvec3 towards = camera_direction();
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), towards));
     const glm::dvec3 from = glm::normalize(glm::dvec3(0, 1.15, 0) - 0.75 * right + 0.55 * towards);
     const double side = 2 * extent.radius;
     const glm::dvec3 across = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), from));
-    RectangleLight light;
+    Light light;
     light.edge_u = side * across;
     light.edge_v = side * glm::cross(across, from); // u x v points from the light to the centre
     light.corner = extent.centre + 3.0 * extent.radius * from - 0.5 * light.edge_u - 0.5 * light.edge_v;

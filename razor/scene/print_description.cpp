@@ -2,6 +2,7 @@
 #include "razor/scene/animation/read_keys.h"
 #include "razor/scene/animation/read_playback.h"
 #include "razor/scene/description.h"
+#include "razor/scene/light_fields.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/words.h"
@@ -105,10 +106,14 @@ std::string to_toml(const SceneDescription& description) {
         fmt::format_to(out, "\n[animation]\nrate = {}\n", toml_number(description.frame_rate));
     }
     for (std::size_t l = 0; l < description.lights.size(); ++l) {
-        const RectangleLight& light = description.lights[l];
-        fmt::format_to(out, "\n[[light]]\ncorner = {}\nedge_u = {}\nedge_v = {}\nradiance = {}\n",
-                       toml_value(light.corner), toml_value(light.edge_u), toml_value(light.edge_v),
-                       toml_value(light.radiance));
+        const Light& light = description.lights[l];
+        fmt::format_to(out, "\n[[light]]\nkind = {}\n", toml_text(word_of(light_words, light.kind)));
+        visit_light_fields(
+            light.kind,
+            [&](std::string_view name, Range, bool, const auto& value) {
+                fmt::format_to(out, "{} = {}\n", name, toml_value(value));
+            },
+            light);
         if (l < description.light_keys.size()) {
             text += to_toml(description.light_keys[l], "light");
         }

@@ -16,6 +16,9 @@ inline constexpr Range edge_pixels_range{0.01, 1e4};
 inline constexpr Range coordinate_range{-1e30, 1e30};
 inline constexpr Range fov_range{1e-3, 179}; // degrees
 inline constexpr Range radiance_range{0, 1e9};
+inline constexpr Range light_radius_range{0, 1e30}; // of disks and spheres
+inline constexpr Range cone_range{0, 180};          // degrees
+inline constexpr Range angular_radius_range{0, 89}; // degrees
 inline constexpr Range signed_scale_range{-1e30, 1e30};
 inline constexpr Range time_range{0, 1e6};          // seconds, of keys
 inline constexpr Range frame_rate_range{1e-3, 1e6}; // frames a second

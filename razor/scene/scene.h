@@ -4,6 +4,7 @@
 #pragma once
 
 #include "razor/scene/graph/graph.h"
+#include "razor/scene/light.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -94,12 +95,6 @@ inline double focus_distance(const Camera& camera) {
     return camera.focus_distance > 0 ? camera.focus_distance : glm::length(camera.target - camera.position);
 }
 
-/// One-sided rectangle: corner + s edge_u + t edge_v, s,t in [0,1]; emits towards cross(edge_u, edge_v).
-struct RectangleLight {
-    glm::dvec3 corner{0}, edge_u{1, 0, 0}, edge_v{0, 0, 1};
-    glm::vec3 radiance{1}; // W / (m^2 sr), linear RGB
-};
-
 /// Which level of detail rays see.
 enum class Lod : std::uint8_t {
     recursive, // every ray its own, continuously (razor/kernels/morph.h)
@@ -154,7 +149,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     SceneGraph graph; // where they are drawn; without groups: each once, where its points lie
     std::vector<Material> materials;
-    std::vector<RectangleLight> lights;
+    std::vector<Light> lights;
     glm::vec3 sky{0}; // constant radiance
     Camera camera;
     std::optional<Camera> dicing_camera; // from which levels of detail are measured; else `camera`

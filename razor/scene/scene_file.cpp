@@ -6,6 +6,7 @@
 #include "razor/scene/crop.h"
 #include "razor/scene/error.h"
 #include "razor/scene/framing.h"
+#include "razor/scene/light_fields.h"
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
@@ -68,13 +69,20 @@ Camera read_camera(TomlTable& table) {
     return camera;
 }
 
-RectangleLight read_light(TomlTable& table) {
-    RectangleLight light;
-    light.corner = table.vector("corner", light.corner, coordinate_range);
-    light.edge_u = table.vector("edge_u", light.edge_u, coordinate_range);
-    light.edge_v = table.vector("edge_v", light.edge_v, coordinate_range);
-    light.radiance =
-        glm::vec3(table.vector_or_number("radiance", glm::dvec3(light.radiance), radiance_range));
+Light read_light(TomlTable& table) {
+    Light light;
+    light.kind = choose(table, "kind", light.kind, light_words);
+    const auto read = [&](std::string_view name, Range range, bool or_number, auto& value) {
+        using Value = std::remove_reference_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, double>) {
+            value = table.number(name, value, range);
+        } else {
+            const glm::dvec3 preset(value);
+            value = Value(or_number ? table.vector_or_number(name, preset, range)
+                                    : table.vector(name, preset, range));
+        }
+    };
+    visit_light_fields(light.kind, read, light);
     return light;
 }
 
@@ -162,7 +170,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     animation.finish();
     for (TomlTable& light : root.tables("light")) {
         scene.lights.push_back(read_light(light));
-        scene.light_keys.push_back(read_light_keys(light));
+        scene.light_keys.push_back(read_light_keys(light, scene.lights.back().kind));
         light.finish();
         check(light, mistake_of(scene.lights.back()));
     }

@@ -30,6 +30,15 @@ inline constexpr std::array<Word<LevelOfDetail>, 23> lod_words{{
     {"fixed:7", {Lod::fixed, 7}},    {"fixed:8", {Lod::fixed, 8}},
 }};
 
+inline constexpr std::array<Word<LightKind>, 6> light_words{{
+    {"rectangle", LightKind::rectangle},
+    {"disk", LightKind::disk},
+    {"sphere", LightKind::sphere},
+    {"point", LightKind::point},
+    {"spot", LightKind::spot},
+    {"directional", LightKind::directional},
+}};
+
 inline constexpr std::array<Word<Interpolation>, 3> interpolation_words{{
     {"step", Interpolation::step},
     {"linear", Interpolation::linear},

@@ -161,7 +161,7 @@ Scene scene_of(const Mesh& mesh, double edges_across) {
     s.meshes.push_back(mesh);
     s.meshes.back().edge_length = size / edges_across;
     s.materials.push_back({"grey", {0.6F, 0.5F, 0.4F}});
-    RectangleLight light;
+    Light light;
     light.corner = centre + glm::dvec3(-0.5, 1.2, 0.8) * size;
     light.edge_u = glm::dvec3(0.6, 0, 0) * size;
     light.edge_v = glm::dvec3(0, 0.2, -0.6) * size;

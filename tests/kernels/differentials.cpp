@@ -375,7 +375,7 @@ TEST(Differentials, ConvexShapesDoNotShadowThemselves) {
             scene.sky = glm::vec3(0);
             const dvec3 middle = scene.camera.position + dvec3(2, 3, 0);
             const dvec3 to = glm::normalize(scene.camera.target - middle);
-            RectangleLight light;
+            Light light;
             light.edge_u = size * glm::normalize(glm::cross(dvec3(0, 1, 0), to));
             light.edge_v = size * glm::normalize(glm::cross(to, light.edge_u));
             light.corner = middle - 0.5 * light.edge_u - 0.5 * light.edge_v;

@@ -35,7 +35,7 @@ Scene lit_block() {
     s.lights = {{{-1, 4, -1}, {1.5, 0, 0}, {0, 0, 1.5}, {9, 1, 2}},
                 {{4, 1, 2}, {0, 0.02, 0}, {0.01, 0, -0.02}, {900, 3000, 100}},
                 {{-5, 3, 4}, {1, 0, 1}, {-1, 2, 1}, {1, 2, 12}}};
-    for (RectangleLight& light : s.lights) // they look at the block
+    for (Light& light : s.lights) // they look at the block
         if (glm::dot(glm::cross(light.edge_u, light.edge_v), light.corner) > 0)
             std::swap(light.edge_u, light.edge_v);
     s.camera.position = {2.5, 2.5, 4};
@@ -96,7 +96,7 @@ TEST(Lights, OneWithoutRadianceCostsNoRays) {
     EXPECT_EQ(light_rays(dark), light_rays(none));
     for (const char* colour : colours)
         EXPECT_EQ(dark.film.find(colour)->values, none.film.find(colour)->values);
-    for (RectangleLight& light : with.lights)
+    for (Light& light : with.lights)
         light.radiance = glm::vec3(0);
     EXPECT_EQ(light_rays(rendered(with)), 0);
     without.settings.light_samples = 0;
@@ -111,7 +111,7 @@ TEST(Lights, PiecesOfALightGiveItsLight) {
     pieces.lights.clear();
     constexpr int side = 8;
     for (int i = 0; i < side * side; ++i) {
-        RectangleLight piece = whole.lights[0];
+        Light piece = whole.lights[0];
         piece.edge_u /= side;
         piece.edge_v /= side;
         piece.corner += piece.edge_u * double(i % side) + piece.edge_v * double(i / side);
@@ -147,7 +147,7 @@ TEST(Lights, SamplesAreAsFarApartAsTheirLightsAreLarge) {
     const FrameHeader& h = frame.header();
     ASSERT_EQ(h.light_count, 2);
     for (int n = 0; n < 2; ++n) {
-        const RectangleLight& light = scene.lights[static_cast<std::size_t>(n) + 1];
+        const Light& light = scene.lights[static_cast<std::size_t>(n) + 1];
         const LightRecord& record = h.lights.get()[n];
         const double area = glm::length(glm::cross(light.edge_u, light.edge_v));
         EXPECT_FLOAT_EQ(record.spacing, static_cast<float>(2 * std::sqrt(area / (3 * 5))));
@@ -200,7 +200,7 @@ TEST(Lights, EqualSumsOverTheirSamples) {
             const dvec3 p = scene.camera.position + glm::normalize(d) * depth + 1e-5 * n;
             dvec3 sum(0);
             for (std::size_t l = 0; l < scene.lights.size(); ++l) {
-                const RectangleLight& light = scene.lights[l];
+                const Light& light = scene.lights[l];
                 const dvec3 across = glm::cross(light.edge_u, light.edge_v);
                 for (std::uint32_t s = 0; s < 3; ++s) {
                     const std::uint32_t dimension = l == 0 ? 2 : 4 + static_cast<std::uint32_t>(l);

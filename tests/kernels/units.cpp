@@ -30,7 +30,7 @@ Scene restated(Scene scene, double factor) {
             if (p.local.matrix)
                 p.local.matrix->translation *= factor;
         }
-    for (RectangleLight& light : scene.lights)
+    for (Light& light : scene.lights)
         for (glm::dvec3* v : {&light.corner, &light.edge_u, &light.edge_v})
             *v *= factor;
     std::vector<Camera*> cameras{&scene.camera};

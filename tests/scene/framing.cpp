@@ -47,7 +47,7 @@ double check_framed(const Scene& scene) {
     }
     EXPECT_LT(reach, 1);
     EXPECT_EQ(scene.lights.size(), 1U);
-    const RectangleLight& light = scene.lights[0];
+    const Light& light = scene.lights[0];
     const glm::dvec3 emits = glm::cross(light.edge_u, light.edge_v);
     EXPECT_GT(glm::length(emits), 0);
     const glm::dvec3 to_model = camera.target - (light.corner + 0.5 * light.edge_u + 0.5 * light.edge_v);

@@ -1,6 +1,7 @@
 // Exact equality of scenes, with messages.
 #pragma once
 
+#include "razor/scene/light_fields.h"
 #include "razor/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -63,10 +64,11 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.sky, b.sky);
     ASSERT_EQ(a.lights.size(), b.lights.size());
     for (std::size_t i = 0; i < a.lights.size(); ++i) {
-        EXPECT_EQ(a.lights[i].corner, b.lights[i].corner);
-        EXPECT_EQ(a.lights[i].edge_u, b.lights[i].edge_u);
-        EXPECT_EQ(a.lights[i].edge_v, b.lights[i].edge_v);
-        EXPECT_EQ(a.lights[i].radiance, b.lights[i].radiance);
+        EXPECT_EQ(a.lights[i].kind, b.lights[i].kind);
+        visit_light_fields(
+            a.lights[i].kind,
+            [](std::string_view name, Range, bool, const auto& x, const auto& y) { EXPECT_EQ(x, y) << name; },
+            a.lights[i], b.lights[i]);
     }
     ASSERT_EQ(a.materials.size(), b.materials.size());
     for (std::size_t i = 0; i < a.materials.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/scene/animation/track.h"
+#include "razor/scene/light_fields.h"
 
 #include <glm/vec3.hpp>
 
@@ -28,11 +29,19 @@ struct CameraKeys {
     bool operator==(const CameraKeys&) const = default;
 };
 
+/// Of those that a light of its kind has (light_fields.h).
 struct LightKeys {
+    LightKind kind = LightKind::rectangle;
     Timing timing;
-    Track<glm::dvec3> corner, edge_u, edge_v, radiance;
+    Track<glm::dvec3> corner, edge_u, edge_v, radiance, position, direction;
+    Track<double> radius, cone_angle, cone_delta, angular_radius;
 
-    bool any() const { return !corner.empty() || !edge_u.empty() || !edge_v.empty() || !radiance.empty(); }
+    bool any() const {
+        bool some = false;
+        visit_light_fields(
+            kind, [&](auto, auto, auto, const auto& track) { some |= !track.empty(); }, *this);
+        return some;
+    }
     bool operator==(const LightKeys&) const = default;
 };
 

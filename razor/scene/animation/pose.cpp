@@ -1,6 +1,7 @@
 #include "razor/scene/animation/pose.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/light_fields.h"
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
@@ -37,12 +38,18 @@ void pose(Camera& camera, const CameraKeys& keys, double t) {
     camera.focus_distance = std::max(camera.focus_distance, 0.0);
 }
 
-void pose(RectangleLight& light, const LightKeys& keys, double t) {
-    follow(light.corner, keys.corner, keys.timing, t);
-    follow(light.edge_u, keys.edge_u, keys.timing, t);
-    follow(light.edge_v, keys.edge_v, keys.timing, t);
-    if (!keys.radiance.empty())
-        light.radiance = glm::max(glm::vec3(keys.radiance.at(t, keys.timing)), glm::vec3(0));
+void pose(Light& light, const LightKeys& keys, double t) {
+    const auto pose_field = [&](std::string_view, Range range, bool, auto& value, const auto& track) {
+        using Value = std::remove_reference_t<decltype(value)>;
+        if (track.empty())
+            return;
+        const auto now = track.at(t, keys.timing);
+        if constexpr (std::is_same_v<Value, double>)
+            value = std::clamp(now, range.least, range.most); // cubics pass beyond their keys
+        else
+            value = Value(glm::clamp(now, glm::dvec3(range.least), glm::dvec3(range.most)));
+    };
+    visit_light_fields(light.kind, pose_field, light, keys);
 }
 
 void check(const std::optional<Mistake>& mistake, const SceneDescription& scene, double seconds,
@@ -128,7 +135,22 @@ std::optional<Mistake> mistake_of(const Camera& camera, const std::string& name)
     return std::nullopt;
 }
 
-std::optional<Mistake> mistake_of(const RectangleLight& light) {
+std::optional<Mistake> mistake_of(const Light& light) {
+    using enum LightKind;
+    const auto has_radius = [&] { return light.kind == disk || light.kind == sphere; };
+    const auto has_direction = [&] {
+        return light.kind == disk || light.kind == spot || light.kind == directional;
+    };
+    if (has_radius() && !(light.radius > 0))
+        return Mistake{"radius", "light.radius is 0; make it positive, or the light a point"};
+    if (has_direction() && light.direction == glm::dvec3(0))
+        return Mistake{"direction", "light.direction is zero; write where the light goes"};
+    if (light.kind == spot && !(light.cone_angle > 0))
+        return Mistake{"cone_angle", "light.cone_angle is 0; make it positive"};
+    if (light.kind == spot && light.cone_delta > light.cone_angle)
+        return Mistake{"cone_delta", "light.cone_delta exceeds light.cone_angle; make it smaller"};
+    if (light.kind != rectangle)
+        return std::nullopt;
     if (light.edge_u == glm::dvec3(0) || light.edge_v == glm::dvec3(0) ||
         glm::length(glm::cross(glm::normalize(light.edge_u), glm::normalize(light.edge_v))) < 1e-9)
         return Mistake{"edge_u",

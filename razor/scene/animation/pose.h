@@ -24,6 +24,6 @@ struct Mistake {
     std::string key, message;
 };
 std::optional<Mistake> mistake_of(const Camera& camera, const std::string& name);
-std::optional<Mistake> mistake_of(const RectangleLight& light);
+std::optional<Mistake> mistake_of(const Light& light);
 
 } // namespace razor

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 
 namespace razor {
 namespace {
@@ -32,10 +33,12 @@ void visit_tracks(Keys& k, Visit visit) {
 template <class Keys, class Visit>
 requires std::same_as<std::remove_const_t<Keys>, LightKeys>
 void visit_tracks(Keys& k, Visit visit) {
-    visit("corner", k.corner, coordinate_range, false);
-    visit("edge_u", k.edge_u, coordinate_range, false);
-    visit("edge_v", k.edge_v, coordinate_range, false);
-    visit("radiance", k.radiance, radiance_range, true);
+    visit_light_fields(
+        k.kind,
+        [&](std::string_view name, Range range, bool or_number, auto& track) {
+            visit(name, track, range, or_number);
+        },
+        k);
 }
 
 void read_value(TomlTable& key, std::string_view name, double time, Track<double>& track, Range range, bool) {
@@ -62,8 +65,7 @@ Timing read_timing(TomlTable& table, bool keys) {
     return timing;
 }
 
-template <class Keys> Keys read_keys(TomlTable& table) {
-    Keys keys;
+template <class Keys> Keys read_keys(TomlTable& table, Keys keys = {}) {
     std::vector<TomlTable> tables = table.tables("key");
     keys.timing = read_timing(table, !tables.empty());
     double last = -1;
@@ -122,8 +124,10 @@ TransformKeys read_transform_keys(TomlTable& table) {
 CameraKeys read_camera_keys(TomlTable& table) {
     return read_keys<CameraKeys>(table);
 }
-LightKeys read_light_keys(TomlTable& table) {
-    return read_keys<LightKeys>(table);
+LightKeys read_light_keys(TomlTable& table, LightKind kind) {
+    LightKeys keys;
+    keys.kind = kind;
+    return read_keys(table, std::move(keys));
 }
 std::string to_toml(const TransformKeys& keys, std::string_view header) {
     return print_keys(keys, header);

@@ -1,6 +1,6 @@
 // Tessellation and shading of the baseline, compiled once a target. Where a sample lies, where a ray leaves a
 // surface and how light is weighed is Razor's own code; rays are traced by Embree, sixteen at once.
-#include "razor/kernels/shade.h"
+#include "razor/kernels/light_samples.h"
 #include "tests/benchmarks/embree/records.h"
 
 #include <algorithm>
@@ -258,7 +258,7 @@ vvec three(const float (&p)[3]) {
     return load_broadcast_vec(at(p));
 }
 
-/// As sample_light() of razor/kernels/shade.h.
+/// As sample_rectangle() of razor/kernels/light_samples.h.
 LightRays light_rays(const LightSource& light, const Surface& s, const vint& sample) {
     vpoint on = sample_square(s.pixel, sample, light.dimension);
     vvec point = madd(on.v, three(light.edge_v), madd(on.u, three(light.edge_u), three(light.corner)));

@@ -55,7 +55,9 @@ FrameView view_of_scene(const Scene& scene, const glm::dvec3& origin) {
 std::vector<LightSource> lights_of_scene(const Scene& scene, const glm::dvec3& origin) {
     std::vector<LightSource> lights;
     for (std::size_t n = 0; n < scene.lights.size(); ++n) {
-        const RectangleLight& light = scene.lights[n];
+        const Light& light = scene.lights[n];
+        if (light.kind != LightKind::rectangle)
+            throw UserError("the baseline knows rectangle lights only; render this scene without it");
         const glm::dvec3 normal = glm::cross(light.edge_u, light.edge_v);
         const double area = glm::length(normal);
         if (!(area > 0) || !shines(light.radiance))

@@ -1,0 +1,103 @@
+// The light that hits receive, on matte surfaces, by shadow rays. Shadow packets hold width/4 neighbouring
+// hits x 4 samples.
+#pragma once
+
+#include "razor/kernels/light_samples.h"
+
+namespace razor::ISA_TARGET {
+inline namespace light_kernel {
+
+inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
+    Surface p;
+    p.hit = m;
+    p.position = permute(s.position, from);
+    p.geometric = permute(s.geometric, from);
+    p.shading = permute(s.shading, from);
+    p.target = permute(s.target, from);
+    p.growth = permute(s.growth, from);
+    p.pixel = permute(s.pixel, from);
+    p.sample = permute(s.sample, from);
+    return p;
+}
+
+/// Rays of one hit in a packet, at most: 2^rays_log2.
+inline constexpr int rays_of_hit_log2 = 2;
+
+/// Where shadow rays go: to points of one light, or in directions about the normal.
+struct TowardsRectangle {
+    static constexpr RayKind kind = kind_light;
+    pointer<LightRecord> light;
+    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
+        return sample_rectangle(c, s, light, number);
+    }
+};
+struct TowardsShape {
+    static constexpr RayKind kind = kind_light;
+    pointer<LightRecord> light;
+    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
+        return sample_shape(c, s, light, number);
+    }
+};
+struct TowardsSky {
+    static constexpr RayKind kind = kind_sky;
+    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
+        return sample_sky(c, s, number);
+    }
+};
+
+/// Sum over `samples` shadow rays a hit of the weights of those that arrive.
+template <Features F, class Towards>
+[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, const Towards& towards,
+                                             sint samples) {
+    phase_scope phase(phase_light);
+    // Few samples leave room for more hits.
+    sint fewer_log2 = samples - 1;
+    sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), fewer_log2);
+    sint per_hit = sint(1) << per_hit_log2;
+    sint hits_per_packet = sint(isa::width) >> per_hit_log2;
+    pointer<float> sums = c.packets + packet_sum;
+    store_vector(sums, vfloat(0.0F));
+    vint order = compress(lane_index(), s.hit);
+    sint hits = count(s.hit);
+    vint member = lane_index() & vint(per_hit - 1);
+    vint rank = lane_index() >> vint(per_hit_log2);
+    for (sint from = 0; branch(from < hits); from += hits_per_packet) {
+        vint place = rank + vint(from);
+        vmask present = place < vint(hits);
+        vint lane = permute(order, place);
+        Surface here = permute(s, lane, present);
+        vint first_sample = here.sample * vint(samples);
+        for (sint k = 0; branch(k < samples); k += per_hit) {
+            vint number = member + vint(k);
+            vmask wanted = number < vint(samples);
+            LightRays l = towards.sample(c, here, number + first_sample);
+            l.rays.active = l.rays.active & wanted;
+            if (branch(any(l.rays.active))) {
+                Hits blocked = trace_packet<F, Towards::kind>(c, l.rays);
+                vmask arrives = l.rays.active & (blocked.patch < vint(0));
+                vfloat part = select(arrives, l.weight, vfloat(0.0F));
+                for (sint step = 1; branch(step < per_hit); step = step + step) {
+                    vint pair = lane_index() ^ vint(step);
+                    part = part + permute(part, pair);
+                }
+                vmask leader = present & (member == vint(0));
+                vfloat before = gather(sums, lane, leader);
+                scatter(sums, lane, before + part, leader);
+            }
+        }
+    }
+    return load_vector(sums);
+}
+
+/// The same of a light. Rectangles, the usual ones, have a loop of their own.
+template <Features F>
+inline vfloat gather_light(const Context& c, const Surface& s, pointer<LightRecord> light) {
+    sint samples = load(field(light, &LightRecord::samples));
+    sint shape = load(field(light, &LightRecord::shape));
+    if (branch(shape == light_rectangle))
+        return gather_light<F>(c, s, TowardsRectangle{light}, samples);
+    return gather_light<F>(c, s, TowardsShape{light}, samples);
+}
+
+} // namespace light_kernel
+} // namespace razor::ISA_TARGET

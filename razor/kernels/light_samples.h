@@ -1,0 +1,210 @@
+// Shadow rays: to points of lights, in directions to distant ones, and to a constant sky.
+#pragma once
+
+#include "razor/kernels/leave.h"
+
+namespace razor::ISA_TARGET {
+inline namespace light_kernel {
+
+/// A unit vector around which `n` is the z axis: branch-free orthonormal basis (Duff et al., JCGT 2017).
+inline vvec to_world(const vvec& n, const vfloat& x, const vfloat& y, const vfloat& z) {
+    vint sign_bit = as_int(n.z) & vint(std::int32_t(0x80000000U));
+    vfloat sign = as_float(sign_bit | as_int(vfloat(1.0F)));
+    vfloat a = vfloat(-1.0F) / (sign + n.z);
+    vfloat b = n.x * n.y * a;
+    vfloat sx = sign * n.x;
+    vvec tangent;
+    tangent.x = fma(sx, n.x * a, vfloat(1.0F));
+    tangent.y = sign * b;
+    tangent.z = -sx;
+    vvec bitangent;
+    bitangent.x = b;
+    vfloat ya = n.y * a;
+    bitangent.y = fma(n.y, ya, sign);
+    bitangent.z = -n.y;
+    vvec w = madd(y, bitangent, tangent * x);
+    return madd(z, n, w);
+}
+
+/// Rays to the light and what they carry if nothing is in the way.
+struct LightRays {
+    Rays rays;
+    vfloat weight; // of the light's radiance (or the sky's), before albedo
+};
+
+/// Rays to a point of the light for each lane, active where there is one, and 1 / their length.
+inline LightRays rays_to(const Surface& s, const vvec& point, vfloat& inverse) {
+    vvec way = point - s.position;
+    vfloat square = dot(way, way);
+    vfloat zero(0.0F);
+    vmask apart = square > zero;
+    inverse = reciprocal_sqrt(select(apart, square, vfloat(1.0F)));
+    LightRays l;
+    l.rays.origin = s.position;
+    l.rays.direction = way * inverse;
+    l.rays.t_min = zero;
+    l.rays.t_max = (square * inverse) * (1.0F - 1.0e-5F);
+    l.rays.active = apart;
+    return l;
+}
+
+/// The light of a flat one-sided shape, sampled by area: `point` of it for each lane.
+inline LightRays sample_area(const Context& c, const Surface& s, pointer<LightRecord> light,
+                             const vvec& point) {
+    vvec normal = load_broadcast_vec(field(light, &LightRecord::normal));
+    vfloat inverse;
+    LightRays l = rays_to(s, point, inverse);
+    vfloat zero(0.0F);
+    vfloat cos_surface = dot(s.shading, l.rays.direction);
+    vfloat cos_light = -dot(normal, l.rays.direction);
+    vmask faces = l.rays.active & (cos_surface > zero);
+    faces = faces & (cos_light > zero);
+    l.rays.active = s.hit & faces;
+    vfloat spacing = load_broadcast(field(light, &LightRecord::spacing));
+    leave_surface(c, s, growth_to_area(s.target, spacing, cos_light, inverse), l.rays);
+    vfloat cosines = cos_surface * cos_light;
+    l.weight = cosines * (inverse * inverse);
+    return l;
+}
+
+inline LightRays sample_rectangle(const Context& c, const Surface& s, pointer<LightRecord> light,
+                                  const vint& sample) {
+    sint dimension = load(field(light, &LightRecord::dimension));
+    vpoint at = sample_square(s.pixel, sample, dimension);
+    vvec corner = load_broadcast_vec(field(light, &LightRecord::corner));
+    vvec edge_u = load_broadcast_vec(field(light, &LightRecord::edge_u));
+    vvec edge_v = load_broadcast_vec(field(light, &LightRecord::edge_v));
+    return sample_area(c, s, light, madd(at.v, edge_v, madd(at.u, edge_u, corner)));
+}
+
+inline LightRays sample_disk(const Context& c, const Surface& s, pointer<LightRecord> light,
+                             const vpoint& square) {
+    vpoint at = concentric_disk(square);
+    vvec middle = load_broadcast_vec(field(light, &LightRecord::corner));
+    vvec edge_u = load_broadcast_vec(field(light, &LightRecord::edge_u));
+    vvec edge_v = load_broadcast_vec(field(light, &LightRecord::edge_v));
+    return sample_area(c, s, light, madd(at.v, edge_v, madd(at.u, edge_u, middle)));
+}
+
+/// A direction in the cone about the unit vector `axis` whose 1 - cos is `versine`, each solid angle as
+/// likely as any other; `sine_square` of its angle to the axis. By 1 - cos, which is exact also for narrow
+/// cones.
+inline vvec sample_cone(const vvec& axis, const vpoint& square, const vfloat& versine, vfloat& sine_square) {
+    vfloat own = square.u * versine;
+    sine_square = own * (vfloat(2.0F) - own);
+    sine_square = max(sine_square, 0.0F);
+    vfloat radius = sqrt(sine_square);
+    vfloat angle = square.v * 6.28318530717958647692F;
+    return to_world(axis, radius * cos(angle), radius * sin(angle), vfloat(1.0F) - own);
+}
+
+/// Of the cone in which the sphere is seen (Shirley, Wang & Zimmerman, Monte Carlo Techniques for Direct
+/// Lighting Calculations, 1996). Hits within the sphere see nothing of it.
+inline LightRays sample_sphere(const Context& c, const Surface& s, pointer<LightRecord> light,
+                               const vpoint& square) {
+    vvec middle = load_broadcast_vec(field(light, &LightRecord::corner));
+    vfloat radius = load_broadcast(field(light, &LightRecord::radius));
+    vfloat inverse;
+    LightRays l = rays_to(s, middle, inverse);
+    vvec way = middle - s.position;
+    vfloat away = dot(way, way);
+    vfloat own = radius * radius;
+    vmask outside = away > own;
+    vfloat zero(0.0F);
+    vfloat of_cone = (radius * inverse) * (radius * inverse);
+    of_cone = min(of_cone, 1.0F);
+    vfloat versine = of_cone / (sqrt(vfloat(1.0F) - of_cone) + vfloat(1.0F));
+    vfloat sine_square;
+    vvec axis = l.rays.direction;
+    l.rays.direction = sample_cone(axis, square, versine, sine_square);
+    vfloat along = dot(way, l.rays.direction);
+    vfloat depth = own - away * sine_square;
+    vfloat first = along - sqrt(max(depth, 0.0F));
+    l.rays.t_max = first * (1.0F - 1.0e-5F);
+    vfloat cos_surface = dot(s.shading, l.rays.direction);
+    vmask faces = outside & (cos_surface > zero);
+    l.rays.active = s.hit & faces;
+    vfloat spacing = load_broadcast(field(light, &LightRecord::spacing));
+    leave_surface(c, s, growth_to_area(s.target, spacing, vfloat(1.0F), inverse), l.rays);
+    l.weight = cos_surface * versine;
+    return l;
+}
+
+/// The one ray to a point; of a spot as much as its cone lets through, a cubic of the cosine from its end to
+/// where it is whole.
+inline LightRays sample_point(const Context& c, const Surface& s, pointer<LightRecord> light) {
+    vvec axis = load_broadcast_vec(field(light, &LightRecord::normal));
+    vfloat begin = load_broadcast(field(light, &LightRecord::cone_begin));
+    vfloat scale = load_broadcast(field(light, &LightRecord::cone_scale));
+    vfloat inverse;
+    LightRays l = rays_to(s, load_broadcast_vec(field(light, &LightRecord::corner)), inverse);
+    vfloat zero(0.0F);
+    vfloat cosine = -dot(axis, l.rays.direction);
+    vfloat share = (cosine - begin) * scale;
+    share = min(max(share, 0.0F), 1.0F);
+    vfloat smooth = share * share * fma(share, vfloat(-2.0F), vfloat(3.0F));
+    vfloat cos_surface = dot(s.shading, l.rays.direction);
+    vmask faces = l.rays.active & (cos_surface > zero);
+    faces = faces & (share > zero);
+    l.rays.active = s.hit & faces;
+    leave_surface(c, s, growth_to_area(s.target, zero, vfloat(1.0F), inverse), l.rays);
+    l.weight = cos_surface * smooth * (inverse * inverse);
+    return l;
+}
+
+inline LightRays sample_directional(const Context& c, const Surface& s, pointer<LightRecord> light,
+                                    const vpoint& square) {
+    vvec axis = load_broadcast_vec(field(light, &LightRecord::normal));
+    vfloat versine = load_broadcast(field(light, &LightRecord::versine));
+    vfloat sine_square;
+    LightRays l;
+    l.rays.origin = s.position;
+    l.rays.direction = sample_cone(axis, square, versine, sine_square);
+    vfloat zero(0.0F);
+    l.rays.t_min = zero;
+    l.rays.t_max = vfloat(infinite);
+    l.weight = dot(s.shading, l.rays.direction);
+    l.rays.active = s.hit & (l.weight > zero);
+    leave_surface(c, s, load_broadcast(field(light, &LightRecord::spacing)), l.rays);
+    return l;
+}
+
+/// Of all shapes but rectangles.
+inline LightRays sample_shape(const Context& c, const Surface& s, pointer<LightRecord> light,
+                              const vint& sample) {
+    sint shape = load(field(light, &LightRecord::shape));
+    if (branch(shape == light_point))
+        return sample_point(c, s, light);
+    sint dimension = load(field(light, &LightRecord::dimension));
+    vpoint at = sample_square(s.pixel, sample, dimension);
+    if (branch(shape == light_disk))
+        return sample_disk(c, s, light, at);
+    if (branch(shape == light_sphere))
+        return sample_sphere(c, s, light, at);
+    return sample_directional(c, s, light, at);
+}
+
+/// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance /
+/// samples.
+inline LightRays sample_sky(const Context& c, const Surface& s, const vint& sample) {
+    vpoint at = sample_square(s.pixel, sample, dimension_sky);
+    vfloat radius = sqrt(at.u);
+    vfloat height = sqrt(vfloat(1.0F) - at.u);
+    vfloat angle = at.v * 6.28318530717958647692F;
+    vfloat x = radius * cos(angle);
+    vfloat y = radius * sin(angle);
+    LightRays l;
+    l.rays.origin = s.position;
+    l.rays.direction = to_world(s.shading, x, y, height);
+    vfloat zero(0.0F);
+    l.rays.t_min = zero;
+    l.rays.t_max = vfloat(infinite);
+    l.rays.active = s.hit & (dot(s.geometric, l.rays.direction) > zero);
+    vfloat spacing = load_broadcast(field(c.frame, &FrameHeader::sky_spacing));
+    leave_surface(c, s, growth_to_sky(spacing, height), l.rays);
+    l.weight = vfloat(1.0F);
+    return l;
+}
+
+} // namespace light_kernel
+} // namespace razor::ISA_TARGET
