@@ -10,6 +10,8 @@ find_package(OpenEXR CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(Boost 1.74 COMPONENTS context REQUIRED)
 find_package(zstd CONFIG REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(LibLZMA REQUIRED)
 
 # Debian's OpenSubdiv CMake package names static libraries that Debian does not ship.
 find_path(OPENSUBDIV_INCLUDE opensubdiv/bfr/surface.h REQUIRED)

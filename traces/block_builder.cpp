@@ -1,0 +1,56 @@
+#include "traces/block_builder.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace traces {
+
+BlockBuilder::BlockBuilder() : recent_(1024) {}
+
+std::uint32_t BlockBuilder::find(const Class& c) {
+    const auto [found, made] = numbers_.try_emplace(c, static_cast<std::uint32_t>(table_.size()));
+    if (made)
+        table_.push_back(c);
+    return found->second;
+}
+
+void BlockBuilder::take(Block& block) {
+    block.clear();
+    const std::size_t n = size();
+    std::vector<std::uint32_t> order(n); // those of a stream side by side
+    std::iota(order.begin(), order.end(), 0U);
+    const bool sorted = std::is_sorted(streams_.begin(), streams_.end());
+    if (!sorted)
+        std::stable_sort(order.begin(), order.end(),
+                         [this](std::uint32_t a, std::uint32_t b) { return streams_[a] < streams_[b]; });
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::uint32_t stream = streams_[order[i]];
+        if (block.segments.empty() || block.segments.back().stream != stream)
+            block.segments.push_back({stream, i, i});
+        block.segments.back().end = i + 1;
+    }
+    if (sorted) {
+        block.times.swap(times_);
+        block.addresses.swap(addresses_);
+        block.classes.swap(classes_);
+    } else {
+        block.times.resize(n);
+        block.addresses.resize(n);
+        block.classes.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            block.times[i] = times_[order[i]];
+            block.addresses[i] = addresses_[order[i]];
+            block.classes[i] = classes_[order[i]];
+        }
+    }
+    block.table.swap(table_);
+    times_.clear();
+    addresses_.clear();
+    classes_.clear();
+    streams_.clear();
+    table_.clear();
+    numbers_.clear();
+    std::fill(recent_.begin(), recent_.end(), Recent{});
+}
+
+} // namespace traces

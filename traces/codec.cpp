@@ -1,0 +1,229 @@
+#include "traces/codec.h"
+
+#include "traces/error.h"
+#include "traces/varint.h"
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace traces {
+namespace {
+
+constexpr std::size_t columns = 4; // table, classes, addresses, times
+constexpr std::size_t header_bytes = 16 + 8 + columns * 8;
+
+/// From the most frequent to the least.
+std::vector<std::uint32_t> by_frequency(const Block& block) {
+    std::vector<std::uint32_t> count(block.table.size(), 0);
+    for (const std::uint32_t c : block.classes)
+        ++count[c];
+    std::vector<std::uint32_t> order(count.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return count[a] > count[b]; });
+    return order;
+}
+
+/// Trailing zeros that all addresses have.
+unsigned common_shift(const std::vector<std::uint64_t>& addresses) {
+    std::uint64_t any = 0;
+    for (const std::uint64_t a : addresses)
+        any |= a;
+    return any == 0 ? 0 : static_cast<unsigned>(std::countr_zero(any));
+}
+
+/// Bytes that numbers below `n` take.
+std::uint32_t bytes_for(std::size_t n) {
+    return n <= 1U << 8U ? 1 : n <= 1U << 16U ? 2 : 3;
+}
+
+void put_table(const Block& block, const std::vector<std::uint32_t>& order, std::string& out) {
+    std::uint64_t stream = 0, site = 0;
+    for (const Segment& s : block.segments) {
+        append_varint(out, s.stream - stream);
+        append_varint(out, s.end - s.begin);
+        stream = s.stream;
+    }
+    for (const std::uint32_t number : order) {
+        const Class& c = block.table[number];
+        append_varint(out, static_cast<std::uint64_t>(c.kind));
+        append_varint(out, c.size);
+        append_varint(out, c.structure);
+        append_varint(out, c.phase);
+        append_varint(out, c.work);
+        append_varint(out, zigzag(c.site - site));
+        site = c.site;
+    }
+}
+
+[[noreturn]] void refuse(const std::string& place, const char* what) {
+    throw Error(fmt::format("{}: {}; the file is damaged, record or copy it again", place, what));
+}
+
+} // namespace
+
+void Encoder::Free::operator()(ZSTD_CCtx_s* c) const {
+    ZSTD_freeCCtx(c);
+}
+
+Encoder::Encoder(int zstd_level) : context_(ZSTD_createCCtx()), level_(zstd_level) {}
+Encoder::~Encoder() = default;
+
+void Encoder::compress(const std::string& column, std::string& out) {
+    const std::size_t begin = out.size();
+    out.resize(begin + ZSTD_compressBound(column.size()));
+    const std::size_t n = ZSTD_compressCCtx(context_.get(), out.data() + begin, out.size() - begin,
+                                            column.data(), column.size(), level_);
+    if (ZSTD_isError(n) != 0)
+        throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(n)));
+    out.resize(begin + n);
+}
+
+void Encoder::encode(const Block& block, std::string& out) {
+    const std::size_t n = block.size();
+    const std::vector<std::uint32_t> order = by_frequency(block);
+    std::vector<std::uint32_t> rank(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        rank[order[i]] = static_cast<std::uint32_t>(i);
+    const unsigned shift = common_shift(block.addresses);
+    const std::uint32_t id_bytes = bytes_for(order.size());
+    const std::uint64_t first_time = block.times.front();
+
+    table_.clear();
+    put_table(block, order, table_);
+    classes_.resize(n * id_bytes);
+    for (std::uint32_t plane = 0; plane < id_bytes; ++plane)
+        for (std::size_t i = 0; i < n; ++i)
+            classes_[plane * n + i] = static_cast<char>(rank[block.classes[i]] >> (8 * plane));
+    std::vector<std::uint64_t> last(order.size(), 0);
+    addresses_.resize(n * longest_varint);
+    char* to = addresses_.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::uint64_t a = block.addresses[i] >> shift;
+        std::uint64_t& before = last[block.classes[i]];
+        to = put_varint(to, zigzag(a - before));
+        before = a;
+    }
+    addresses_.resize(static_cast<std::size_t>(to - addresses_.data()));
+    times_.resize(n * longest_varint);
+    to = times_.data();
+    for (const Segment& s : block.segments) {
+        std::uint64_t before = first_time;
+        for (std::size_t i = s.begin; i < s.end; ++i) {
+            to = put_varint(to, zigzag(block.times[i] - before));
+            before = block.times[i];
+        }
+    }
+    times_.resize(static_cast<std::size_t>(to - times_.data()));
+
+    const std::size_t begin = out.size();
+    append_fixed(out, static_cast<std::uint32_t>(n));
+    append_fixed(out, static_cast<std::uint32_t>(block.segments.size()));
+    append_fixed(out, static_cast<std::uint32_t>(order.size()));
+    append_fixed(out, static_cast<std::uint32_t>(shift));
+    append_fixed(out, first_time);
+    out.resize(begin + header_bytes);
+    std::string sizes;
+    for (const std::string* column : {&table_, &classes_, &addresses_, &times_}) {
+        const std::size_t before = out.size();
+        compress(*column, out);
+        append_fixed(sizes, static_cast<std::uint32_t>(column->size()));
+        append_fixed(sizes, static_cast<std::uint32_t>(out.size() - before));
+    }
+    std::copy(sizes.begin(), sizes.end(), out.begin() + static_cast<std::ptrdiff_t>(begin + 24));
+}
+
+void Decoder::Free::operator()(ZSTD_DCtx_s* c) const {
+    ZSTD_freeDCtx(c);
+}
+
+Decoder::Decoder() : context_(ZSTD_createDCtx()) {}
+Decoder::~Decoder() = default;
+
+void Decoder::decode(const std::string& bytes, const Limits& limits, const std::string& place, Block& block) {
+    if (bytes.size() < header_bytes)
+        refuse(place, "a block is shorter than its own header");
+    const std::size_t n = fixed_at<std::uint32_t>(bytes.data());
+    const std::size_t segments = fixed_at<std::uint32_t>(bytes.data() + 4);
+    const std::size_t classes = fixed_at<std::uint32_t>(bytes.data() + 8);
+    const std::uint32_t shift = fixed_at<std::uint32_t>(bytes.data() + 12);
+    const std::uint64_t first_time = fixed_at<std::uint64_t>(bytes.data() + 16);
+    if (n == 0 || n > most_references || segments == 0 || segments > n || classes == 0 || classes > n ||
+        shift > 63)
+        refuse(place, "a block claims impossible counts");
+    const std::uint32_t id_bytes = bytes_for(classes);
+    const std::array<std::size_t, columns> most = {(segments * 2 + classes * 6) * longest_varint,
+                                                   n * id_bytes, n * longest_varint, n * longest_varint};
+    std::size_t at = header_bytes, column = 0;
+    for (std::string* raw : {&table_, &classes_, &addresses_, &times_}) {
+        const std::size_t raw_bytes = fixed_at<std::uint32_t>(bytes.data() + 24 + column * 8);
+        const std::size_t stored = fixed_at<std::uint32_t>(bytes.data() + 28 + column * 8);
+        if (raw_bytes > most[column++] || stored > bytes.size() - at)
+            refuse(place, "a block claims columns that are too long");
+        raw->resize(raw_bytes);
+        const std::size_t got =
+            ZSTD_decompressDCtx(context_.get(), raw->data(), raw_bytes, bytes.data() + at, stored);
+        if (ZSTD_isError(got) != 0 || got != raw_bytes)
+            refuse(place, "a column of a block does not decompress to what it should");
+        at += stored;
+    }
+    if (at != bytes.size() || classes_.size() != n * id_bytes)
+        refuse(place, "a block's columns do not fill it");
+
+    VarintReader table(table_.data(), table_.data() + table_.size());
+    block.clear();
+    std::uint64_t stream = 0, site = 0;
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < segments; ++i) {
+        const std::uint64_t step = table.next(), length = table.next();
+        if (step > ~std::uint32_t{0} - stream || (i != 0 && step == 0) || length == 0 || length > n - end)
+            refuse(place, "a block's streams are not in order");
+        stream += step;
+        block.segments.push_back({static_cast<std::uint32_t>(stream), end, end + length});
+        end += length;
+    }
+    for (std::size_t i = 0; i < classes; ++i) {
+        const std::uint64_t kind = table.next(), size = table.next(), structure = table.next(),
+                            phase = table.next(), work = table.next();
+        site += unzigzag(table.next());
+        if (kind >= kind_names.size() || size > ~std::uint32_t{0} || structure >= limits.structures ||
+            phase >= limits.phases || work >= limits.work || site > limits.sites)
+            refuse(place, "a block names what the description does not");
+        block.table.push_back({site, static_cast<std::uint32_t>(size), static_cast<std::uint16_t>(structure),
+                               static_cast<std::uint16_t>(phase), static_cast<std::uint16_t>(work),
+                               static_cast<Kind>(kind)});
+    }
+    if (table.bad() || !table.ended() || end != n)
+        refuse(place, "a block's table does not fit its counts");
+
+    block.classes.resize(n);
+    const auto* planes = reinterpret_cast<const std::uint8_t*>(classes_.data());
+    for (std::size_t i = 0; i < n; ++i)
+        block.classes[i] = planes[i];
+    for (std::uint32_t plane = 1; plane < id_bytes; ++plane)
+        for (std::size_t i = 0; i < n; ++i)
+            block.classes[i] |= std::uint32_t{planes[plane * n + i]} << (8 * plane);
+    if (*std::max_element(block.classes.begin(), block.classes.end()) >= classes)
+        refuse(place, "a reference is of a class that its block does not have");
+
+    block.addresses.resize(n);
+    last_.assign(classes, 0);
+    VarintReader addresses(addresses_.data(), addresses_.data() + addresses_.size());
+    for (std::size_t i = 0; i < n; ++i)
+        block.addresses[i] = (last_[block.classes[i]] += unzigzag(addresses.next())) << shift;
+    block.times.resize(n);
+    VarintReader times(times_.data(), times_.data() + times_.size());
+    for (const Segment& s : block.segments) {
+        std::uint64_t t = first_time;
+        for (std::size_t i = s.begin; i < s.end; ++i)
+            block.times[i] = t += unzigzag(times.next());
+    }
+    if (addresses.bad() || !addresses.ended() || times.bad() || !times.ended())
+        refuse(place, "a block's addresses or times do not fit its count");
+}
+
+} // namespace traces

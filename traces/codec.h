@@ -1,0 +1,54 @@
+// A block as bytes and back (README.md says which).
+#pragma once
+
+#include "traces/reference.h"
+
+#include <memory>
+#include <string>
+
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+namespace traces {
+
+class Encoder {
+public:
+    explicit Encoder(int zstd_level = 3);
+    ~Encoder();
+    /// Appends the block to `out`. It holds at least one and at most most_references references.
+    void encode(const Block& block, std::string& out);
+
+private:
+    struct Free {
+        void operator()(ZSTD_CCtx_s* c) const;
+    };
+    void compress(const std::string& column, std::string& out);
+
+    std::unique_ptr<ZSTD_CCtx_s, Free> context_;
+    int level_;
+    std::string table_, classes_, addresses_, times_; // columns
+};
+
+class Decoder {
+public:
+    Decoder();
+    ~Decoder();
+    /// How many names a trace has of each.
+    struct Limits {
+        std::size_t structures, phases, work;
+        std::uint64_t sites; // the last number; unbounded where they are addresses
+    };
+    /// Replaces `block`, which keeps these limits. Throws Error where the bytes are no block, whatever they
+    /// are: "`place`: ...".
+    void decode(const std::string& bytes, const Limits& limits, const std::string& place, Block& block);
+
+private:
+    struct Free {
+        void operator()(ZSTD_DCtx_s* c) const;
+    };
+    std::unique_ptr<ZSTD_DCtx_s, Free> context_;
+    std::string table_, classes_, addresses_, times_; // columns
+    std::vector<std::uint64_t> last_;                 // address, by class
+};
+
+} // namespace traces

@@ -1,0 +1,68 @@
+#include "traces/description.h"
+
+#include "traces/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <bit>
+
+namespace traces {
+
+using json = nlohmann::ordered_json;
+
+namespace {
+
+/// Numbers in it are of 16 bits.
+bool bad_table(const std::vector<std::string>& names) {
+    return names.empty() || names.size() > 65536;
+}
+
+} // namespace
+
+std::string to_json(const Description& d) {
+    const json out = {{"program", d.program},
+                      {"level", d.level},
+                      {"time", d.time},
+                      {"line_bytes", d.line_bytes},
+                      {"sites", d.site_addresses ? "addresses" : "names"},
+                      {"sample", d.sample},
+                      {"filters", d.filters},
+                      {"structures", d.structures},
+                      {"phases", d.phases},
+                      {"work", d.work},
+                      {"streams", d.streams},
+                      {"configuration", d.configuration}};
+    return out.dump(1, ' ', false, json::error_handler_t::replace);
+}
+
+Description description_from_json(const std::string& text, const std::string& place) {
+    Description d;
+    try {
+        const json in = json::parse(text);
+        in.at("program").get_to(d.program);
+        in.at("level").get_to(d.level);
+        in.at("time").get_to(d.time);
+        in.at("line_bytes").get_to(d.line_bytes);
+        d.site_addresses = in.at("sites").get<std::string>() == "addresses";
+        in.at("sample").get_to(d.sample);
+        in.at("filters").get_to(d.filters);
+        in.at("structures").get_to(d.structures);
+        in.at("phases").get_to(d.phases);
+        in.at("work").get_to(d.work);
+        in.at("streams").get_to(d.streams);
+        in.at("configuration").get_to(d.configuration);
+    } catch (const json::exception& e) {
+        throw Error(fmt::format("{}: the description is not of this format ({}); record the trace again",
+                                place, e.what()));
+    }
+    if ((d.line_bytes != 0 && !std::has_single_bit(d.line_bytes)) || !(d.sample > 0 && d.sample <= 1) ||
+        bad_table(d.structures) || bad_table(d.phases) || bad_table(d.work))
+        throw Error(
+            fmt::format("{}: the description has impossible values (a line that is no power of two, a "
+                        "sample outside (0, 1], or a table of no or too many names); record the trace again",
+                        place));
+    return d;
+}
+
+} // namespace traces

@@ -1,0 +1,32 @@
+// What a trace says of itself: the text at its beginning.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace traces {
+
+struct Description {
+    std::string program; // that made it, with its version
+    std::string level;   // where references were seen: core, l1, l2, ..., dram; empty: unknown
+    std::string time =
+        "order"; // what times count: cycles, instructions, seconds; order: only which came first
+    std::uint64_t line_bytes = 0; // of the lines there, a power of two; 0: none are known
+    /// Whether Class::site is the address of an instruction, else a number of `sites`.
+    bool site_addresses = false;
+    /// Of all lines this fraction was recorded: those with hash_of_line() below it (sample.h).
+    double sample = 1;
+    std::string filters;       // what else was left out, in words; empty: nothing
+    std::string configuration; // of what was traced, whole
+    std::vector<std::string> structures = {"unknown"}, phases = {"unknown"}, work = {"unknown"};
+    std::vector<std::string> streams; // names, as far as there are any
+    std::vector<std::string> sites;   // the first has number 1; grows while a trace is read
+};
+
+/// JSON, one object. The sites are no part of it.
+std::string to_json(const Description& description);
+/// Throws Error: "`place`: ...".
+Description description_from_json(const std::string& text, const std::string& place);
+
+} // namespace traces

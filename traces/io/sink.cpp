@@ -1,0 +1,113 @@
+#include "traces/io/sink.h"
+
+#include "traces/error.h"
+#include "traces/io/compress.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <unistd.h>
+
+namespace traces {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileSink final : public Sink {
+public:
+    explicit FileSink(const std::string& path) : path_(path) {
+        std::error_code ignored;
+        const fs::file_status status = fs::status(path_, ignored);
+        if (fs::exists(status) && !fs::is_regular_file(status)) {
+            if (fs::is_directory(status))
+                throw Error(fmt::format("{}: is a folder; name a file", path));
+            temporary_ = path_; // a pipe or device is written as it is
+        } else {
+            temporary_ = path_;
+            temporary_ += fmt::format(".part{}", getpid());
+        }
+        file_ = std::fopen(temporary_.c_str(), "wb");
+        if (file_ == nullptr)
+            throw Error(
+                fmt::format("{}: cannot be written ({}); check the folder", path, std::strerror(errno)));
+    }
+    ~FileSink() override {
+        if (file_ != nullptr)
+            std::fclose(file_);
+        std::error_code ignored;
+        if (!committed_ && temporary_ != path_)
+            fs::remove(temporary_, ignored);
+    }
+    void write(std::string_view bytes) override {
+        if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
+            fail();
+    }
+    void commit() override {
+        const int closed = std::fclose(file_);
+        file_ = nullptr;
+        if (closed != 0)
+            fail();
+        std::error_code error;
+        if (temporary_ != path_)
+            fs::rename(temporary_, path_, error);
+        if (error)
+            throw Error(
+                fmt::format("{}: cannot be named ({}); check the folder", path_.string(), error.message()));
+        committed_ = true;
+    }
+
+private:
+    [[noreturn]] void fail() const {
+        throw Error(
+            fmt::format("{}: cannot be written ({}); check the disk", path_.string(), std::strerror(errno)));
+    }
+
+    fs::path path_, temporary_;
+    std::FILE* file_ = nullptr;
+    bool committed_ = false;
+};
+
+class StandardOutput final : public Sink {
+public:
+    void write(std::string_view bytes) override {
+        if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size())
+            fail();
+    }
+    void commit() override {
+        if (std::fflush(stdout) != 0)
+            fail();
+    }
+
+private:
+    [[noreturn]] static void fail() {
+        throw Error(
+            fmt::format("standard output: cannot be written ({}); check who reads it", std::strerror(errno)));
+    }
+};
+
+class MemorySink final : public Sink {
+public:
+    explicit MemorySink(std::string& bytes) : bytes_(bytes) {}
+    void write(std::string_view bytes) override { bytes_ += bytes; }
+    void commit() override {}
+
+private:
+    std::string& bytes_;
+};
+
+} // namespace
+
+std::unique_ptr<Sink> open_sink(const std::string& path) {
+    if (path == "-")
+        return std::make_unique<StandardOutput>();
+    return compressing(std::make_unique<FileSink>(path), path);
+}
+
+std::unique_ptr<Sink> memory_sink(std::string& bytes) {
+    return std::make_unique<MemorySink>(bytes);
+}
+
+} // namespace traces

@@ -1,0 +1,76 @@
+// Numbers as bytes: LEB128, seven bits a byte, lowest first; signed ones zigzag; fixed ones little-endian.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace traces {
+
+/// Small where a signed number is near 0; wraps around.
+inline std::uint64_t zigzag(std::uint64_t d) {
+    return d << 1U ^ (0 - (d >> 63U));
+}
+inline std::uint64_t unzigzag(std::uint64_t z) {
+    return z >> 1U ^ (0 - (z & 1U));
+}
+
+inline constexpr std::size_t longest_varint = 10;
+
+/// Writes to where there is room for longest_varint bytes; returns the end.
+inline char* put_varint(char* to, std::uint64_t x) {
+    while (x >= 0x80) {
+        *to++ = static_cast<char>(x | 0x80U);
+        x >>= 7U;
+    }
+    *to++ = static_cast<char>(x);
+    return to;
+}
+inline void append_varint(std::string& out, std::uint64_t x) {
+    char bytes[longest_varint]; // NOLINT: filled as far as used
+    out.append(bytes, put_varint(bytes, x));
+}
+template <class Number> void append_fixed(std::string& out, Number x) {
+    for (std::size_t i = 0; i < sizeof(Number); ++i)
+        out.push_back(static_cast<char>(std::uint64_t{x} >> (8 * i)));
+}
+template <class Number> Number fixed_at(const char* from) {
+    std::uint64_t x = 0;
+    for (std::size_t i = 0; i < sizeof(Number); ++i)
+        x |= std::uint64_t{static_cast<std::uint8_t>(from[i])} << (8 * i);
+    return static_cast<Number>(x);
+}
+
+/// Reads numbers from bytes; where they end too early, or one is too long, `bad` and 0.
+class VarintReader {
+public:
+    VarintReader(const char* begin, const char* end) : at_(begin), end_(end) {}
+
+    std::uint64_t next() {
+        if (at_ != end_ && static_cast<signed char>(*at_) >= 0) [[likely]]
+            return static_cast<std::uint8_t>(*at_++);
+        return longer();
+    }
+    bool bad() const { return bad_; }
+    bool ended() const { return at_ == end_; }
+
+private:
+    std::uint64_t longer() {
+        std::uint64_t x = 0;
+        for (unsigned shift = 0; at_ != end_ && shift < 64; shift += 7) {
+            const auto byte = static_cast<std::uint8_t>(*at_++);
+            x |= std::uint64_t{byte & 0x7FU} << shift;
+            if (byte < 0x80) {
+                bad_ |= shift == 63 && byte > 1;
+                return x;
+            }
+        }
+        bad_ = true;
+        return 0;
+    }
+
+    const char *at_, *end_;
+    bool bad_ = false;
+};
+
+} // namespace traces

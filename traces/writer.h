@@ -1,0 +1,38 @@
+// Writes a trace, streaming: what was written can be read if the rest never comes.
+#pragma once
+
+#include "traces/codec.h"
+#include "traces/description.h"
+#include "traces/index.h"
+#include "traces/io/sink.h"
+
+#include <memory>
+
+namespace traces {
+
+class Writer {
+public:
+    /// Begins the file with the description, whose sites are left out: add_sites() gives them.
+    Writer(std::unique_ptr<Sink> sink, const Description& description);
+
+    /// Names of sites, which get the next numbers, 1 being the first. Before the blocks that use them.
+    void add_sites(const std::vector<std::string>& names);
+    /// Writes a block, if it is not empty.
+    void write(const Block& block);
+    /// Ends the file with its index. Throws Error.
+    void finish();
+
+    std::uint64_t bytes() const { return at_; }
+    std::uint64_t references() const { return index_.references(); }
+
+private:
+    void chunk(std::string_view name, std::string_view bytes);
+
+    std::unique_ptr<Sink> sink_;
+    Encoder encoder_;
+    Index index_;
+    std::uint64_t at_ = 0;
+    std::string bytes_; // of the block at hand
+};
+
+} // namespace traces
