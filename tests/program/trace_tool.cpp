@@ -1,0 +1,114 @@
+// razor-trace: files and pipes, exit codes, one line for each mistake, and nothing half-written.
+#include "tests/program/run.h"
+
+#include <nlohmann/json.hpp>
+
+namespace razor {
+namespace {
+
+class TraceTool : public ::testing::Test {
+protected:
+    Outcome tool(const std::string& arguments) const {
+        return run(program + " " + arguments, folder_.path());
+    }
+    std::string text(const std::string& name) const {
+        std::ifstream file(folder_ / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    const std::string program = quoted_argument(RAZOR_TRACE);
+    TemporaryFolder folder_;
+};
+
+TEST_F(TraceTool, ConvertsThroughFilesPipesAndCompression) {
+    const std::string din = "2 401000 3\n0 7fff0010 8\n1 7fff0010 8\n0 20 4\n";
+    folder_.file("a.din", din);
+    for (const char* format : {"rzt", "csv", "lackey"}) {
+        SCOPED_TRACE(format);
+        const std::string f(format);
+        Outcome result = tool("convert a.din b." + f + ".xz");
+        EXPECT_EQ(result.code, 0);
+        EXPECT_EQ(result.err, "");
+        result = tool("convert b." + f + ".xz - --to din");
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.out, din);
+        result = tool("convert - - --from din --to " + f + " < a.din | " + program +
+                      " convert - c.din.gz --from " + f + " && " + program + " convert c.din.gz -  --to din");
+        EXPECT_EQ(result.out, din) << result.err;
+    }
+    const Outcome lossy = tool("convert a.din d.ramulator");
+    EXPECT_EQ(lossy.code, 0);
+    EXPECT_EQ(lossy.err,
+              "razor-trace: ramulator does not hold all of din: sizes are lost; 1 fetch references are "
+              "left out\n");
+    EXPECT_EQ(text("d.ramulator"), "0x7fff0010 R\n0x7fff0010 W\n0x20 R\n");
+}
+
+TEST_F(TraceTool, SaysWhatIsInATrace) {
+    folder_.file("a.din", "2 401000 3\n0 7fff0010 8\n1 7fff0010 8\n0 20 4\n");
+    ASSERT_EQ(tool("convert a.din a.rzt").code, 0);
+    const nlohmann::json j = nlohmann::json::parse(tool("info a.rzt --json").out);
+    EXPECT_EQ(j.at("references"), 4);
+    EXPECT_EQ(j.at("referenced_bytes"), 23);
+    EXPECT_EQ(j.at("complete"), true);
+    EXPECT_EQ(j.at("bytes"), text("a.rzt").size());
+    EXPECT_EQ(j.at("kinds").at(0), nlohmann::json::parse(R"({"name": "read", "references": 2})"));
+    EXPECT_NE(tool("info a.rzt").out.find("4 references"), std::string::npos);
+
+    const std::string whole = text("a.rzt");
+    folder_.file("cut.rzt", whole.substr(0, whole.size() - 10));
+    const nlohmann::json cut = nlohmann::json::parse(tool("info cut.rzt --json").out);
+    EXPECT_EQ(cut.at("complete"), false);
+    EXPECT_EQ(cut.at("references"), 4);
+    EXPECT_NE(tool("info cut.rzt").out.find("cut off"), std::string::npos);
+    const Outcome saved = tool("convert cut.rzt saved.din");
+    EXPECT_EQ(saved.code, 0);
+    EXPECT_NE(saved.err.find("cut off"), std::string::npos);
+}
+
+TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
+    folder_.file("a.din", "0 10 4\n0 xy 4\n");
+    folder_.file("unknown", "0 10 4\n");
+    folder_.file("bad.rzt", "no trace\n");
+    const std::size_t before = folder_.count();
+    for (const auto& [arguments, cause] : std::vector<std::pair<std::string, std::string>>{
+             {"", "required"},
+             {"inform", "--help"},
+             {"info", "TRACE"},
+             {"info none", "none: cannot be opened"},
+             {"info .", "is a folder"},
+             {"info unknown", "--from"},
+             {"info bad.rzt", "bad.rzt"},
+             {"info a.din", "a.din, line 2: 'xy' is no address"},
+             {"convert a.din b.rzt", "a.din, line 2"},
+             {"convert a.din b.csv.gz", "a.din, line 2"},
+             {"convert a.din b", "--to"},
+             {"convert a.din b.rzt --from dim", "--from dim"},
+             {"convert unknown no/b.rzt --from din", "no/b.rzt: cannot be written"},
+             {"convert unknown b.rzt --from champsim", "7 of 64 bytes"}}) {
+        const Outcome result = tool(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_EQ(result.out, "") << arguments;
+        EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
+        EXPECT_EQ(folder_.count(), before) << arguments;
+    }
+    // Not even where one is asked to stop.
+    const Outcome stopped = run("((while echo 0 10 4; do :; done) 2>/dev/null | timeout -s INT 0.5 " +
+                                    program + " convert - b.rzt --from din)",
+                                folder_.path());
+    EXPECT_NE(stopped.err.find("interrupted; nothing written"), std::string::npos) << stopped.err;
+    EXPECT_EQ(folder_.count(), before);
+}
+
+TEST_F(TraceTool, KeepsWhatWasThereBefore) {
+    folder_.file("a.din", "0 10 4\nx\n");
+    folder_.file("b.csv", "mine");
+    EXPECT_EQ(tool("convert a.din b.csv").code, 2);
+    EXPECT_EQ(text("b.csv"), "mine");
+    EXPECT_EQ(tool("--version").code, 0);
+    EXPECT_NE(tool("--help").out.find("ramulator"), std::string::npos);
+}
+
+} // namespace
+} // namespace razor

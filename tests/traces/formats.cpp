@@ -1,0 +1,304 @@
+// Other formats of traces: each reads what it wrote and what its own tool writes, keeps what it holds,
+// refuses what it is not by one line, and a conversion says what is lost.
+#include "tests/traces/samples.h"
+#include "traces/convert.h"
+#include "traces/error.h"
+#include "traces/in_time.h"
+#include "traces/summary.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <map>
+
+namespace traces {
+namespace {
+
+/// What a format says of bytes: all references in order of time.
+std::vector<Reference> read_as(const char* format, const std::string& bytes,
+                               Description* description = nullptr) {
+    const auto input = format_by_name("--from", format).read(memory_source(bytes, "sample"));
+    std::vector<Reference> out;
+    for (Block block; input->next(block);)
+        each_in_time(block, [&](const Segment& s, std::size_t i) {
+            out.push_back({block.times[i], block.addresses[i], s.stream, block.what(i)});
+        });
+    if (description != nullptr)
+        *description = input->description();
+    return out;
+}
+
+struct Converted {
+    std::string bytes, lost;
+};
+Converted converted(const char* from, const std::string& bytes, const char* to) {
+    Converted out;
+    const auto input = format_by_name("--from", from).read(memory_source(bytes, "sample"));
+    const Format& target = format_by_name("--to", to);
+    const auto output = target.write(memory_sink(out.bytes));
+    Conversion conversion(*input, *output, target.holds);
+    while (conversion.step()) {
+    }
+    output->finish();
+    out.lost = conversion.lost();
+    return out;
+}
+
+/// A trace of ours with all kinds, extremes, and several streams, in order of time.
+std::string own_trace(std::vector<Reference>& references) {
+    Description d = test::small_description();
+    for (int i = 0; i < 9; ++i)
+        d.sites.push_back("file " + std::to_string(i) + ", \"x\":" + std::to_string(i));
+    references = test::mixed_references(3000, 5);
+    std::uint64_t time = 0;
+    std::string bytes;
+    const auto output = write_own(memory_sink(bytes));
+    output->describe(d);
+    for (Reference& r : references) {
+        r.time = ++time;
+        output->write(r);
+    }
+    output->finish();
+    return bytes;
+}
+
+TEST(TraceFormats, WhatAFormatHoldsComesBack) {
+    std::vector<Reference> all;
+    const std::string own = own_trace(all);
+    for (const Format& f : formats()) {
+        SCOPED_TRACE(f.name);
+        const std::string name(f.name);
+        const std::string there = converted("rzt", own, name.c_str()).bytes;
+        Description back_description;
+        const std::vector<Reference> back = read_as(name.c_str(), there, &back_description);
+        std::vector<Reference> expected;
+        for (Reference r : all) {
+            const Holds& holds = f.holds;
+            std::vector<Kind> kinds = {r.what.kind};
+            if (!holds.holds(r.what.kind)) {
+                if (r.what.kind == Kind::modify)
+                    kinds = {Kind::read, Kind::write};
+                else if (r.what.kind == Kind::write_back || r.what.kind == Kind::write_through)
+                    kinds = {Kind::write};
+                else
+                    kinds = {};
+            }
+            for (const Kind kind : kinds) {
+                r.what.kind = kind;
+                expected.push_back(r);
+            }
+        }
+        ASSERT_EQ(back.size(), expected.size());
+        for (std::size_t i = 0; i < back.size(); ++i) {
+            const Reference &b = back[i], &e = expected[i];
+            ASSERT_EQ(b.address, e.address) << i;
+            ASSERT_EQ(b.what.kind, e.what.kind) << i;
+            ASSERT_EQ(b.time, f.holds.time ? e.time : i) << i;
+            ASSERT_EQ(b.stream, f.holds.streams ? e.stream : 0) << i;
+            ASSERT_EQ(b.what.size, f.holds.size ? e.what.size : 0) << i;
+            if (f.holds.names && name != "csv") {
+                ASSERT_TRUE(b.what == e.what) << i;
+            }
+            if (name == "csv" && e.what.site != 0) {
+                ASSERT_EQ(back_description.sites[b.what.site - 1],
+                          "file " + std::to_string(e.what.site - 1) +
+                              ", \"x\":" + std::to_string(e.what.site - 1));
+            }
+            if (name == "champsim") {
+                ASSERT_EQ(b.what.site, 0x400000 + 4 * e.what.site) << i;
+            }
+        }
+        // What was lost once is not lost twice.
+        const Converted again = converted(name.c_str(), there, name.c_str());
+        EXPECT_EQ(again.bytes == there, name != "csv");                    // whose structures are not read
+        EXPECT_EQ(again.lost, name == "champsim" ? "times are lost" : ""); // an instruction for each
+    }
+}
+
+TEST(TraceFormats, SaysWhatATargetCannotHold) {
+    std::vector<Reference> all;
+    const std::string own = own_trace(all);
+    std::map<Kind, int> count;
+    for (const Reference& r : all)
+        ++count[r.what.kind];
+    const std::string lost = converted("rzt", own, "din").lost;
+    EXPECT_EQ(lost.find("times, threads, sites, structures, phases and work are lost"), 0U) << lost;
+    EXPECT_NE(
+        lost.find(std::to_string(count[Kind::modify]) + " modify references are a read and a write each"),
+        std::string::npos)
+        << lost;
+    EXPECT_NE(lost.find(std::to_string(count[Kind::flush]) + " flush references are left out"),
+              std::string::npos);
+    EXPECT_EQ(lost.find("size"), std::string::npos) << lost;
+    EXPECT_EQ(lost.find('\n'), std::string::npos);
+    EXPECT_EQ(converted("rzt", own, "csv").lost, "");
+    EXPECT_EQ(converted("rzt", own, "rzt").lost, "");
+}
+
+TEST(TraceFormats, ReadsWhatOtherToolsWrite) {
+    struct Case {
+        const char *format, *text;
+        std::vector<Reference> references;
+    };
+    const Case cases[] = {
+        {"din",
+         "2 7fbb 3\n1 0x10\nr 20 4\n\nc 40 8\r\nv 80",
+         {{0, 0x7fbb, 0, {.size = 3, .kind = Kind::fetch}},
+          {1, 0x10, 0, {.kind = Kind::write}},
+          {2, 0x20, 0, {.size = 4}},
+          {3, 0x40, 0, {.size = 8, .kind = Kind::write_back}},
+          {4, 0x80, 0, {.kind = Kind::flush}}}},
+        {"lackey",
+         "==12== Lackey\n==12== \nI  04016a80,3\n L 1ffeffe7e8,16\n S 10,8\n M 20,4\n==12== end\n",
+         {{0, 0x4016a80, 0, {.size = 3, .kind = Kind::fetch}},
+          {1, 0x1ffeffe7e8, 0, {.size = 16}},
+          {2, 0x10, 0, {.size = 8, .kind = Kind::write}},
+          {3, 0x20, 0, {.size = 4, .kind = Kind::modify}}}},
+        {"csv",
+         "kind,address,note,size\nwrite,0x40,\"a, \"\"b\"\"\",8\nfetch,80,,2\n",
+         {{0, 0x40, 0, {.size = 8, .kind = Kind::write}}, {1, 0x80, 0, {.size = 2, .kind = Kind::fetch}}}},
+        {"dramsim3",
+         "0x12340 READ 5\n0x40 WRITE 17\n",
+         {{5, 0x12340, 0, {}}, {17, 0x40, 0, {.kind = Kind::write}}}},
+        {"ramulator", "0x12340 R\n0x40 W\n", {{0, 0x12340, 0, {}}, {1, 0x40, 0, {.kind = Kind::write}}}},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.format);
+        const std::vector<Reference> got = read_as(c.format, c.text);
+        ASSERT_EQ(got.size(), c.references.size());
+        for (std::size_t i = 0; i < got.size(); ++i)
+            EXPECT_TRUE(test::equal(got[i], c.references[i])) << i;
+    }
+    std::string instruction(64, '\0'); // at 0x401000, reads 0x2000 and 0x3000, writes 0x4000
+    instruction[1] = instruction[2] = 0x10;
+    instruction[2] = 0x40;
+    instruction[17] = 0x40;
+    instruction[33] = 0x20;
+    instruction[41] = 0x30;
+    const std::vector<Reference> got = read_as("champsim", std::string(64, '\0') + instruction);
+    ASSERT_EQ(got.size(), 3U);
+    EXPECT_TRUE(test::equal(got[0], {1, 0x2000, 0, {.site = 0x401000}}));
+    EXPECT_TRUE(test::equal(got[1], {1, 0x3000, 0, {.site = 0x401000}}));
+    EXPECT_TRUE(test::equal(got[2], {1, 0x4000, 0, {.site = 0x401000, .kind = Kind::write}}));
+}
+
+TEST(TraceFormats, RefusesByOneLineThatSaysWhere) {
+    const std::string long_line(200000, 'x');
+    struct Case {
+        const char* format;
+        std::string text, place, cause;
+    };
+    const Case cases[] = {
+        {"din", "0 10 4\n7 10 4\n", "sample, line 2: ", "no label"},
+        {"din", "0 10 4\n0 1g 4\n", "sample, line 2: ", "'1g' is no address"},
+        {"din", "0 10000000000000000\n", "sample, line 1: ", "is no address"},
+        {"din", "0\n", "sample, line 1: ", "'' is no address"},
+        {"din", "0 10 4294967296\n", "sample, line 1: ", "is no size"},
+        {"din", "0 10 -1\n", "sample, line 1: ", "'-1' is no size"},
+        {"din", "0 10 4\n" + long_line, "sample, line 2: ", "64 KiB"},
+        {"din", std::string("\x80\x01\n", 3), "sample, line 1: ", "no label"},
+        {"lackey", "I  10,4\n X 10,4\n", "sample, line 2: ", "none of I, L, S, M"},
+        {"lackey", " L 10\n", "sample, line 1: ", "'' is no size"},
+        {"csv", "kind,size\nread,4\n", "sample, line 1: ", "no column address"},
+        {"csv", "address,address\n", "sample, line 1: ", "twice"},
+        {"csv", "cycles,address,order\n", "sample, line 1: ", "twice"},
+        {"csv", "address,kind\n10,raed\n", "sample, line 2: ", "kind that there is not"},
+        {"csv", "address,kind\n10\n", "sample, line 2: ", "1 fields instead of 2"},
+        {"csv", "address,kind\n10,\"read\n", "sample, line 2: ", "without an end"},
+        {"dramsim3", "0x10 READ\n", "sample, line 1: ", "'' is no cycle"},
+        {"dramsim3", "0x10 REED 3\n", "sample, line 1: ", "neither READ nor WRITE"},
+        {"ramulator", "0x10\n", "sample, line 1: ", "neither READ nor WRITE"},
+        {"champsim", std::string(100, '\0'), "sample, instruction 1: ", "36 of 64 bytes"},
+        {"champsim", std::string(64, '\7'), "sample, instruction 0: ", "neither that it branches"},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.text.substr(0, 40));
+        try {
+            read_as(c.format, c.text);
+            ADD_FAILURE() << "was taken";
+        } catch (const Error& e) {
+            const std::string what = e.what();
+            EXPECT_TRUE(what.starts_with(c.place)) << what;
+            EXPECT_NE(what.find(c.cause), std::string::npos) << what;
+            EXPECT_NE(what.find("; "), std::string::npos) << "no mend: " << what;
+            EXPECT_EQ(what.find('\n'), std::string::npos);
+            for (const char letter : what)
+                EXPECT_TRUE(letter >= ' ' && letter <= '~');
+        }
+    }
+}
+
+TEST(TraceFormats, AreKnownByNameBeginningAndSuffix) {
+    EXPECT_EQ(format_by_suffix("a.din.gz")->name, "din");
+    EXPECT_EQ(format_by_suffix("x.champsimtrace.xz")->name, "champsim");
+    EXPECT_EQ(format_by_suffix("a.gz"), nullptr);
+    EXPECT_THROW(format_by_name("--from", "dine"), Error);
+    std::vector<Reference> all;
+    const auto own = memory_source(own_trace(all), "x.din");
+    EXPECT_EQ(format_of_input("", "x.din", *own).name, "rzt");
+    EXPECT_EQ(format_of_input("csv", "x.din", *own).name, "csv");
+    EXPECT_EQ(format_of_input("", "x.csv", *memory_source("0 1\n", "x")).name, "csv");
+    EXPECT_THROW(format_of_input("", "x", *memory_source("0 1\n", "x")), Error);
+    EXPECT_THROW(format_of_output("", "-"), Error);
+}
+
+TEST(TraceFormats, ASummaryCountsEveryReferenceInEveryTable) {
+    std::vector<Reference> all;
+    const std::string own = own_trace(all);
+    const auto input = read_own(memory_source(own, "x"));
+    Summary summary;
+    for (Block block; input->next(block);)
+        summary.add(block);
+    const nlohmann::json j =
+        nlohmann::json::parse(summary.json(input->description(), {"x", "rzt", "", 6000}));
+    EXPECT_EQ(j.at("references"), all.size());
+    EXPECT_EQ(j.at("bytes_per_reference"), 2.0);
+    EXPECT_EQ(j.at("times"), nlohmann::json::parse("[1, 3000]"));
+    EXPECT_EQ(j.at("complete"), true);
+    for (const char* table : {"threads", "structures", "phases", "work", "kinds"}) {
+        std::uint64_t sum = 0;
+        for (const auto& row : j.at(table))
+            sum += row.at("references").get<std::uint64_t>();
+        EXPECT_EQ(sum, all.size()) << table;
+    }
+    std::map<std::string, int> kinds, structures;
+    const std::vector<std::string> names = test::small_description().structures;
+    for (const Reference& r : all) {
+        ++kinds[kind_names[static_cast<std::size_t>(r.what.kind)]];
+        ++structures[names[r.what.structure]];
+    }
+    for (const auto& row : j.at("kinds"))
+        EXPECT_EQ(row.at("references"), kinds[row.at("name")]);
+    for (const auto& row : j.at("structures"))
+        EXPECT_EQ(row.at("references"), structures[row.at("name")]);
+}
+
+/// A real input, of an x86 program; through all formats that hold it.
+TEST(TraceFormats, ARealTraceSurvives) {
+    const std::string path = RAZOR_SHARED_SCENES "/traces/simple_app.din.gz";
+    if (!std::filesystem::exists(path))
+        GTEST_SKIP() << "no " << path;
+    std::string text(std::size_t{1} << 23, '\0');
+    text.resize(open_source(path)->read(text.data(), text.size()));
+    const std::vector<Reference> original = read_as("din", text);
+    EXPECT_EQ(original.size(), 179896U);
+    std::string bytes = text;
+    const char* at = "din";
+    for (const char* next : {"rzt", "lackey", "csv", "rzt", "din"}) {
+        const Converted c = converted(at, bytes, next);
+        EXPECT_EQ(c.lost, "") << next;
+        bytes = c.bytes;
+        at = next;
+        if (std::string(next) == "rzt") {
+            EXPECT_LT(bytes.size(), 0.8 * static_cast<double>(original.size()));
+        }
+    }
+    const std::vector<Reference> back = read_as("din", bytes);
+    ASSERT_EQ(back.size(), original.size());
+    for (std::size_t i = 0; i < back.size(); ++i)
+        ASSERT_TRUE(test::equal(back[i], original[i])) << i;
+}
+
+} // namespace
+} // namespace traces

@@ -1,0 +1,73 @@
+#include "traces/convert.h"
+
+#include "traces/in_time.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace traces {
+
+bool Conversion::step() {
+    const bool more = input_.next(block_);
+    output_.describe(input_.description());
+    if (more)
+        each_in_time(block_, [&](const Segment& s, std::size_t i) {
+            convert({block_.times[i], block_.addresses[i], s.stream, block_.what(i)});
+        });
+    return more;
+}
+
+/// What a target without the kind gets in its place: of a line or word that is written, a write; of a
+/// modification, a read and a write; of what is no access, nothing.
+void Conversion::convert(Reference r) {
+    ++read_;
+    streams_ |= r.stream != 0;
+    size_ |= r.what.size != 0;
+    sites_ |= r.what.site != 0;
+    names_ |= r.what.structure != 0 || r.what.phase != 0 || r.what.work != 0;
+    const auto put = [&](Kind kind) {
+        r.what.kind = kind;
+        output_.write(r);
+        ++written_;
+    };
+    const Kind kind = r.what.kind;
+    const auto number = static_cast<std::size_t>(kind);
+    if (holds_.holds(kind)) {
+        put(kind);
+    } else if (kind == Kind::modify) {
+        ++replaced_[number];
+        put(Kind::read);
+        put(Kind::write);
+    } else if (kind == Kind::write_back || kind == Kind::write_through) {
+        ++replaced_[number];
+        put(Kind::write);
+    } else {
+        ++left_out_[number];
+    }
+}
+
+std::string Conversion::lost() const {
+    std::vector<std::string> fields, parts;
+    const auto field = [&](bool met, bool held, const char* name) {
+        if (met && !held)
+            fields.emplace_back(name);
+    };
+    field(input_.description().time != "order", holds_.time, "times");
+    field(streams_, holds_.streams, "threads");
+    field(size_, holds_.size, "sizes");
+    field(sites_, holds_.sites, "sites");
+    field(names_, holds_.names, "structures, phases and work");
+    if (!fields.empty())
+        parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
+    for (std::size_t k = 0; k < kind_names.size(); ++k) {
+        if (replaced_[k] != 0)
+            parts.push_back(
+                fmt::format("{} {} references are {}", replaced_[k], kind_names[k],
+                            static_cast<Kind>(k) == Kind::modify ? "a read and a write each" : "writes"));
+        if (left_out_[k] != 0)
+            parts.push_back(fmt::format("{} {} references are left out", left_out_[k], kind_names[k]));
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+} // namespace traces

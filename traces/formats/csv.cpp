@@ -1,0 +1,187 @@
+// A table: the first row names the columns (time, stream, kind, address, size, site, structure, phase, work),
+// of which a file to be read needs address alone, in any order. Addresses are hexadecimal, the rest decimal.
+// Structures, phases and work are written as names and not read: those of a trace are known before its rows.
+#include "traces/formats/text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+namespace traces {
+namespace {
+
+/// After the times.
+constexpr std::array<std::string_view, 8> columns = {"stream", "kind",      "address", "size",
+                                                     "site",   "structure", "phase",   "work"};
+constexpr std::array<std::string_view, 4> units = {"cycles", "instructions", "seconds", "order"};
+enum Column : std::size_t { stream, kind, address, size, site, time, unread };
+
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"") == std::string::npos)
+        return text;
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"')
+            out += '"';
+        out += c;
+    }
+    return out + '"';
+}
+
+class CsvInput final : public TextInput {
+public:
+    explicit CsvInput(std::unique_ptr<Source> source) : TextInput(std::move(source)) {}
+    std::string note() const override {
+        return unread_.empty() ? "" : fmt::format("{}: columns that are not read: {}", name(), unread_);
+    }
+
+private:
+    void parse(std::string_view line) override {
+        if (line.empty())
+            return;
+        split(line);
+        if (order_.empty()) {
+            learn_columns();
+            return;
+        }
+        if (fields_.size() != order_.size())
+            refuse(fmt::format("has {} fields instead of {}", fields_.size(), order_.size()),
+                   "give each column one");
+        Reference r;
+        r.time = count();
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            read(r, order_[i], fields_[i]);
+        add(r);
+    }
+    void split(std::string_view line) {
+        fields_.clear();
+        for (bool more = true; more;) {
+            std::string field;
+            if (line.starts_with('"')) {
+                std::size_t i = 1;
+                for (; i < line.size(); ++i) {
+                    if (line[i] == '"' && (i + 1 == line.size() || line[i + 1] != '"'))
+                        break;
+                    i += line[i] == '"' ? 1 : 0;
+                    field += line[i];
+                }
+                if (i >= line.size())
+                    refuse("has a quotation without an end", "end it by a \"");
+                line.remove_prefix(i + 1);
+            } else {
+                const std::size_t end = std::min(line.find(','), line.size());
+                field = line.substr(0, end);
+                line.remove_prefix(end);
+            }
+            fields_.push_back(std::move(field));
+            more = line.starts_with(',');
+            line.remove_prefix(more ? 1 : line.size());
+        }
+    }
+    void learn_columns() {
+        for (const std::string& name : fields_) {
+            const auto* const found = std::find(columns.begin(), columns.end(), name);
+            auto n = std::min(static_cast<std::size_t>(found - columns.begin()), std::size_t{time});
+            if (std::find(units.begin(), units.end(), name) != units.end())
+                description_.time = name;
+            else if (n == time)
+                n = unread;
+            if (n != unread && std::find(order_.begin(), order_.end(), n) != order_.end())
+                refuse(fmt::format("names the column {} twice", n == time ? "of times" : name),
+                       "name it once");
+            if (n == unread)
+                unread_ += (unread_.empty() ? "" : ", ") + name;
+            order_.push_back(n);
+        }
+        if (std::find(order_.begin(), order_.end(), address) == order_.end())
+            refuse("names no column address", "begin the file with the names of its columns");
+    }
+    void read(Reference& r, std::size_t column, const std::string& field) {
+        switch (column) {
+        case time:
+            r.time = number(field, 10, "time");
+            break;
+        case stream:
+            r.stream = static_cast<std::uint32_t>(number(field, 10, "stream", 0xFFFFFFFF));
+            break;
+        case address:
+            r.address = number(field, 16, "address");
+            break;
+        case size:
+            r.what.size = static_cast<std::uint32_t>(number(field, 10, "size", 0xFFFFFFFF));
+            break;
+        case site:
+            r.what.site = site_number(field);
+            break;
+        case kind: {
+            const auto* const found = std::find(kind_names.begin(), kind_names.end(), field);
+            if (found == kind_names.end())
+                refuse("has a kind that there is not",
+                       fmt::format("kinds are {}", fmt::join(kind_names, ", ")));
+            r.what.kind = static_cast<Kind>(found - kind_names.begin());
+            break;
+        }
+        default:
+            break;
+        }
+    }
+    std::uint64_t site_number(const std::string& name) {
+        if (name.empty())
+            return 0;
+        const auto [found, fresh] = sites_.try_emplace(name, description_.sites.size() + 1);
+        if (fresh)
+            description_.sites.push_back(name);
+        return found->second;
+    }
+
+    std::vector<std::size_t> order_; // numbers in `columns`
+    std::vector<std::string> fields_;
+    std::string unread_;
+    std::map<std::string, std::uint64_t> sites_;
+};
+
+class CsvOutput final : public BufferedOutput {
+public:
+    explicit CsvOutput(std::unique_ptr<Sink> sink) : BufferedOutput(std::move(sink)) {}
+    void describe(const Description& d) override {
+        if (!begun_)
+            room() += fmt::format("{},{}\n", d.time, fmt::join(columns, ","));
+        begun_ = true;
+        addresses_ = d.site_addresses;
+        for (const auto& [from, to] : {std::pair{&d.structures, &structures_},
+                                       {&d.phases, &phases_},
+                                       {&d.work, &work_},
+                                       {&d.sites, &sites_}})
+            for (std::size_t i = to->size(); i < from->size(); ++i)
+                to->push_back(quoted((*from)[i]));
+    }
+    void write(const Reference& r) override {
+        const Class& c = r.what;
+        auto to = std::back_inserter(room());
+        fmt::format_to(to, "{},{},{},0x{:x},{},", r.time, r.stream,
+                       kind_names[static_cast<std::size_t>(c.kind)], r.address, c.size);
+        if (c.site != 0 && addresses_)
+            fmt::format_to(to, "0x{:x}", c.site);
+        else if (c.site != 0)
+            room() += sites_[c.site - 1];
+        fmt::format_to(to, ",{},{},{}\n", structures_[c.structure], phases_[c.phase], work_[c.work]);
+    }
+
+private:
+    bool begun_ = false, addresses_ = false;
+    std::vector<std::string> structures_, phases_, work_, sites_; // quoted
+};
+
+} // namespace
+
+std::unique_ptr<Input> read_csv(std::unique_ptr<Source> source) {
+    return std::make_unique<CsvInput>(std::move(source));
+}
+std::unique_ptr<Output> write_csv(std::unique_ptr<Sink> sink) {
+    return std::make_unique<CsvOutput>(std::move(sink));
+}
+
+} // namespace traces

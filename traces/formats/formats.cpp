@@ -1,0 +1,122 @@
+#include "traces/chunk.h"
+#include "traces/error.h"
+#include "traces/formats/format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace traces {
+namespace {
+
+// Kinds:                                               read  write modif fetch prefe w.bac w.thr flush
+constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, true, true, true, true},
+                                              din = {true, true, false, true, false, false, false, false},
+                                              lackey = {true, true, true, true, false, false, false, false},
+                                              plain = {true, true, false, false, false, false, false, false};
+
+// time, streams, size, sites, names, kinds
+constexpr Format table[] = {
+    {"rzt",
+     "this project's own, by blocks of columns",
+     ".rzt",
+     {true, true, true, true, true, all},
+     read_own,
+     write_own},
+    {"din",
+     "Dinero IV: label, hexadecimal address, size",
+     ".din .xdin",
+     {false, false, true, false, false, din},
+     read_din,
+     write_din},
+    {"csv",
+     "a row a reference, columns by name",
+     ".csv",
+     {true, true, true, true, true, all},
+     read_csv,
+     write_csv},
+    {"lackey",
+     "valgrind --tool=lackey --trace-mem=yes",
+     ".lackey",
+     {false, false, true, false, false, lackey},
+     read_lackey,
+     write_lackey},
+    {"dramsim3",
+     "DRAMsim3: address, READ or WRITE, cycle",
+     ".dramsim3",
+     {true, false, false, false, false, plain},
+     read_dramsim3,
+     write_dramsim3},
+    {"ramulator",
+     "Ramulator's DRAM traces: address, R or W",
+     ".ramulator",
+     {false, false, false, false, false, plain},
+     read_ramulator,
+     write_ramulator},
+    {"champsim",
+     "ChampSim: 64 bytes an instruction, as many as references",
+     ".champsim .champsimtrace",
+     {false, false, false, true, false, plain},
+     read_champsim,
+     write_champsim},
+};
+
+std::string names() {
+    std::string out;
+    for (const Format& f : table)
+        out += (out.empty() ? "" : ", ") + std::string(f.name);
+    return out;
+}
+
+} // namespace
+
+std::span<const Format> formats() {
+    return table;
+}
+
+const Format& format_by_name(std::string_view option, std::string_view name) {
+    const auto* const found =
+        std::find_if(std::begin(table), std::end(table), [&](const Format& f) { return f.name == name; });
+    if (found == std::end(table))
+        throw Error(fmt::format("{} {}: there is no such format; choose of {}", option, name, names()));
+    return *found;
+}
+
+const Format* format_by_suffix(std::string_view path) {
+    for (const std::string_view packed : {".gz", ".xz", ".zst"})
+        if (path.ends_with(packed)) {
+            path.remove_suffix(packed.size());
+            break;
+        }
+    for (const Format& f : table)
+        for (std::string_view rest = f.suffixes; !rest.empty();) {
+            const std::size_t end = std::min(rest.find(' '), rest.size());
+            if (path.ends_with(rest.substr(0, end)))
+                return &f;
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+    return nullptr;
+}
+
+const Format& format_of_input(std::string_view name, const std::string& path, PeekingSource& source) {
+    if (!name.empty())
+        return format_by_name("--from", name);
+    if (source.peek(magic.size()).starts_with(magic))
+        return table[0];
+    if (const Format* f = format_by_suffix(path))
+        return *f;
+    throw Error(fmt::format("{}: its format shows neither in its name nor at its beginning; say which by "
+                            "--from: {}",
+                            source.name(), names()));
+}
+
+const Format& format_of_output(std::string_view name, const std::string& path) {
+    if (!name.empty())
+        return format_by_name("--to", name);
+    if (const Format* f = format_by_suffix(path))
+        return *f;
+    throw Error(fmt::format("{}: its name does not show a format; say which by --to: {}",
+                            path == "-" ? "standard output" : path, names()));
+}
+
+} // namespace traces

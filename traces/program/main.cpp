@@ -1,0 +1,121 @@
+// razor-trace: what is in a trace, and the same in another format.
+#include "traces/convert.h"
+#include "traces/error.h"
+#include "traces/summary.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+namespace {
+
+constexpr int mistake_exit = 2, failure_exit = 1, interrupted_exit = 130;
+volatile std::sig_atomic_t interrupted = 0;
+
+std::string formats_text() {
+    std::string out = "formats:\n";
+    for (const traces::Format& f : traces::formats())
+        out += fmt::format("  {:<10} {} ({})\n", f.name, f.meaning, f.suffixes);
+    return out + "A format shows in a name's ending, before .gz, .xz or .zst; '-' is a standard stream.";
+}
+
+struct Info {
+    std::string file, from;
+    bool json = false;
+
+    int run() const {
+        auto source = traces::open_source(file);
+        const traces::Format& format = traces::format_of_input(from, file, *source);
+        traces::Summary::File about{source->name(), std::string(format.name), "", 0};
+        const auto input = format.read(std::move(source));
+        traces::Summary summary;
+        for (traces::Block block; interrupted == 0 && input->next(block);)
+            summary.add(block);
+        if (interrupted != 0)
+            return interrupted_exit;
+        about.note = input->note();
+        std::error_code none;
+        if (std::filesystem::is_regular_file(file, none))
+            about.bytes = std::filesystem::file_size(file, none);
+        fmt::print("{}", json ? summary.json(input->description(), about)
+                              : summary.text(input->description(), about));
+        return 0;
+    }
+};
+
+struct Convert {
+    std::string in, out, from, to;
+
+    int run() const {
+        auto source = traces::open_source(in);
+        const traces::Format& source_format = traces::format_of_input(from, in, *source);
+        const traces::Format& target = traces::format_of_output(to, out);
+        const auto input = source_format.read(std::move(source));
+        const auto output = target.write(traces::open_sink(out));
+        traces::Conversion conversion(*input, *output, target.holds);
+        while (interrupted == 0 && conversion.step()) {
+        }
+        if (interrupted != 0) {
+            fmt::print(stderr, "razor-trace: interrupted; nothing written\n");
+            return interrupted_exit;
+        }
+        output->finish();
+        if (!input->note().empty())
+            fmt::print(stderr, "razor-trace: {}\n", input->note());
+        if (const std::string lost = conversion.lost(); !lost.empty())
+            fmt::print(stderr, "razor-trace: {} does not hold all of {}: {}\n", target.name,
+                       source_format.name, lost);
+        return 0;
+    }
+};
+
+/// One line.
+int complain(std::string text, int code) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    fmt::print(stderr, "razor-trace: {}\n", text);
+    return code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Says what is in a trace of memory references, and converts it.", "razor-trace");
+    app.set_version_flag("--version", "razor-trace " RAZOR_VERSION);
+    app.require_subcommand(1);
+    app.footer(formats_text());
+    Info info;
+    CLI::App& informing = *app.add_subcommand("info", "say what is in a trace, in counts");
+    informing.add_option("TRACE", info.file, "a trace of any format, or -")->required();
+    informing.add_option("--from", info.from, "its format; without it, as it begins or is named")
+        ->type_name("FORMAT");
+    informing.add_flag("--json", info.json, "for programs, with the configuration of what was traced");
+    Convert convert;
+    CLI::App& converting = *app.add_subcommand("convert", "write a trace in another format");
+    converting.add_option("IN", convert.in, "a trace of any format, or -")->required();
+    converting.add_option("OUT", convert.out, "the file to write, whole or not at all, or -")->required();
+    converting.add_option("--from", convert.from, "the format of IN; without it, as it begins or is named")
+        ->type_name("FORMAT");
+    converting.add_option("--to", convert.to, "the format of OUT; without it, as it is named")
+        ->type_name("FORMAT");
+    for (const int signal : {SIGINT, SIGTERM})
+        std::signal(signal, [](int) { interrupted = 1; });
+    try {
+        app.parse(argc, argv);
+        return informing.parsed() ? info.run() : convert.run();
+    } catch (const CLI::Success& help) {
+        return app.exit(help, std::cout, std::cerr);
+    } catch (const CLI::ParseError& e) {
+        return complain(fmt::format("{}; see razor-trace --help", e.what()), mistake_exit);
+    } catch (const traces::Error& e) {
+        return complain(e.what(), mistake_exit);
+    } catch (const std::bad_alloc&) {
+        return complain("out of memory", failure_exit);
+    } catch (const std::exception& e) {
+        return complain(fmt::format("internal error: {}", e.what()), failure_exit);
+    }
+}
