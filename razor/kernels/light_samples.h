@@ -95,7 +95,10 @@ inline vvec sample_cone(const vvec& axis, const vpoint& square, const vfloat& ve
     sine_square = max(sine_square, 0.0F);
     vfloat radius = sqrt(sine_square);
     vfloat angle = square.v * 6.28318530717958647692F;
-    return to_world(axis, radius * cos(angle), radius * sin(angle), vfloat(1.0F) - own);
+    vfloat x = radius * cos(angle);
+    vfloat y = radius * sin(angle);
+    vfloat z = vfloat(1.0F) - own;
+    return to_world(axis, x, y, z);
 }
 
 /// Of the cone in which the sphere is seen (Shirley, Wang & Zimmerman, Monte Carlo Techniques for Direct
@@ -111,8 +114,8 @@ inline LightRays sample_sphere(const Context& c, const Surface& s, pointer<Light
     vfloat own = radius * radius;
     vmask outside = away > own;
     vfloat zero(0.0F);
-    vfloat of_cone = (radius * inverse) * (radius * inverse);
-    of_cone = min(of_cone, 1.0F);
+    vfloat sine = radius * inverse;
+    vfloat of_cone = min(sine * sine, 1.0F);
     vfloat versine = of_cone / (sqrt(vfloat(1.0F) - of_cone) + vfloat(1.0F));
     vfloat sine_square;
     vvec axis = l.rays.direction;
@@ -142,13 +145,15 @@ inline LightRays sample_point(const Context& c, const Surface& s, pointer<LightR
     vfloat cosine = -dot(axis, l.rays.direction);
     vfloat share = (cosine - begin) * scale;
     share = min(max(share, 0.0F), 1.0F);
-    vfloat smooth = share * share * fma(share, vfloat(-2.0F), vfloat(3.0F));
+    vfloat bend = fma(share, vfloat(-2.0F), vfloat(3.0F));
+    vfloat smooth = (share * share) * bend;
     vfloat cos_surface = dot(s.shading, l.rays.direction);
     vmask faces = l.rays.active & (cos_surface > zero);
     faces = faces & (share > zero);
     l.rays.active = s.hit & faces;
     leave_surface(c, s, growth_to_area(s.target, zero, vfloat(1.0F), inverse), l.rays);
-    l.weight = cos_surface * smooth * (inverse * inverse);
+    vfloat received = cos_surface * smooth;
+    l.weight = received * (inverse * inverse);
     return l;
 }
 
