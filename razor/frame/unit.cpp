@@ -58,8 +58,9 @@ double frame_unit(const Scene& scene, const Box& all) {
                  {light.corner, light.corner + light.edge_u, light.corner + light.edge_v})
                 reaches(p);
         } else if (light.kind != LightKind::directional) {
+            const bool wide = light.kind == LightKind::disk || light.kind == LightKind::sphere;
             reaches(light.position);
-            reaches(light.position + light.radius);
+            reaches(light.position + (wide ? light.radius : 0));
         }
     }
     if (extent >= std::ldexp(1.0, least_log2_extent) && extent <= std::ldexp(1.0, most_log2_extent) &&

@@ -43,7 +43,8 @@ void visit_light_fields(LightKind kind, Visit visit, Lights&... lights) {
     }
     if (kind == directional)
         visit("angular_radius", angular_radius_range, false, lights.angular_radius...);
-    visit(emission_name(kind), radiance_range, true, lights.radiance...);
+    const bool by_direction = kind == point || kind == spot;
+    visit(emission_name(kind), by_direction ? intensity_range : radiance_range, true, lights.radiance...);
 }
 
 } // namespace razor

@@ -16,6 +16,7 @@ inline constexpr Range edge_pixels_range{0.01, 1e4};
 inline constexpr Range coordinate_range{-1e30, 1e30};
 inline constexpr Range fov_range{1e-3, 179}; // degrees
 inline constexpr Range radiance_range{0, 1e9};
+inline constexpr Range intensity_range{0, 1e30};    // W / sr: of large scenes, as squared lengths
 inline constexpr Range light_radius_range{0, 1e30}; // of disks and spheres
 inline constexpr Range cone_range{0, 180};          // degrees
 inline constexpr Range angular_radius_range{0, 89}; // degrees
