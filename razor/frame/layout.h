@@ -226,13 +226,13 @@ struct alignas(line_bytes) LightRecord {
     /// Each / (pi x samples): radiance x area; x area; x 2 pi; intensity; irradiance x 2 / (1 + cos of the
     /// angular radius).
     float radiance[3];
-    float spacing;          // of the samples that a pixel takes: see growth_to_area(), times edge_pixels
-    std::int32_t samples;   // shadow rays a hit
-    std::int32_t dimension; // of its sample points (razor/kernels/sampling.h)
-    std::int32_t shape;     // a LightShape
-    float radius;           // of a sphere
-    float versine;          // 1 - cos of a directional light's angular radius
-    float cone_begin, cone_scale; // of a spot: cosine where it ends, 1 / (cosine where it is whole - that)
+    float spacing;              // of the samples that a pixel takes: see growth_to_area(), times edge_pixels
+    std::int32_t samples;       // shadow rays a hit
+    std::int32_t dimension;     // of its sample points (razor/kernels/sampling.h)
+    std::int32_t shape;         // a LightShape
+    float radius;               // of a sphere
+    float versine;              // 1 - cos of a directional light's angular radius
+    float cone_end, cone_scale; // of a spot: 1 - cos where it ends, 1 / (that - where it is whole)
     std::int32_t padding[9];
 };
 static_assert(sizeof(LightRecord) == 2 * line_bytes);

@@ -28,6 +28,12 @@ dvec3 unit(const dvec3& v) {
     return glm::normalize(v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
 }
 
+/// 1 - cos, exact also for small angles.
+double versine(double angle) {
+    const double half = std::sin(angle / 2);
+    return 2 * half * half;
+}
+
 /// Fills all but radiance and spacing. `domain`: what samples are spread over, an area or a solid angle;
 /// `factor`: of the radiance, see LightRecord, without pi and samples.
 void fill_shape(const Light& light, const dvec3& origin, LightRecord& r, double& domain, double& factor) {
@@ -63,25 +69,24 @@ void fill_shape(const Light& light, const dvec3& origin, LightRecord& r, double&
         break;
     case LightKind::point:
         r.shape = light_point;
-        r.cone_begin = -2; // all directions are within
+        r.cone_end = 4; // all directions are within
         r.cone_scale = 1;
         break;
     case LightKind::spot: {
-        const double end = std::cos(glm::radians(light.cone_angle));
-        const double whole = std::cos(glm::radians(light.cone_angle - light.cone_delta));
+        const double end = versine(glm::radians(light.cone_angle));
+        const double whole = versine(glm::radians(light.cone_angle - light.cone_delta));
         r.shape = light_point;
         put(r.normal, unit(light.direction));
-        r.cone_begin = static_cast<float>(end);
-        r.cone_scale = static_cast<float>(1 / std::max(whole - end, 1e-6)); // a sharp edge is nearly so
+        r.cone_end = static_cast<float>(end);
+        r.cone_scale = static_cast<float>(1 / std::max(end - whole, 1e-6 * end)); // a sharp edge is nearly so
         break;
     }
     case LightKind::directional: {
         const double angle = glm::radians(light.angular_radius);
-        const double half = std::sin(angle / 2);
         r.shape = light_directional;
         put(r.normal, -unit(light.direction));
-        r.versine = static_cast<float>(2 * half * half);
-        domain = 4 * pi * half * half;
+        r.versine = static_cast<float>(versine(angle));
+        domain = 2 * pi * versine(angle);
         // The irradiance E of a uniform cone facing it is pi L sin^2, and 2 pi (1 - cos) its solid angle.
         factor = 2 / (1 + std::cos(angle));
         break;

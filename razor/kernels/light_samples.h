@@ -137,13 +137,14 @@ inline LightRays sample_sphere(const Context& c, const Surface& s, pointer<Light
 /// where it is whole.
 inline LightRays sample_point(const Context& c, const Surface& s, pointer<LightRecord> light) {
     vvec axis = load_broadcast_vec(field(light, &LightRecord::normal));
-    vfloat begin = load_broadcast(field(light, &LightRecord::cone_begin));
+    vfloat end = load_broadcast(field(light, &LightRecord::cone_end));
     vfloat scale = load_broadcast(field(light, &LightRecord::cone_scale));
     vfloat inverse;
     LightRays l = rays_to(s, load_broadcast_vec(field(light, &LightRecord::corner)), inverse);
     vfloat zero(0.0F);
-    vfloat cosine = -dot(axis, l.rays.direction);
-    vfloat share = (cosine - begin) * scale;
+    vvec aside = axis + l.rays.direction; // |aside|^2 / 2 is 1 - cos, exact also for narrow cones
+    vfloat versine = dot(aside, aside) * 0.5F;
+    vfloat share = (end - versine) * scale;
     share = min(max(share, 0.0F), 1.0F);
     vfloat bend = fma(share, vfloat(-2.0F), vfloat(3.0F));
     vfloat smooth = (share * share) * bend;

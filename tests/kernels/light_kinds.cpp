@@ -95,9 +95,9 @@ double cosine_at_origin() {
 }
 
 TEST(LightKinds, PointsFollowTheInverseSquare) {
-    const double square = glm::dot(place, place);
+    const double apart = glm::dot(place, place);
     const Scene scene = lit_floor(light_at_place(LightKind::point));
-    expect_irradiance(scene, dvec3(emitted) * (cosine_at_origin() / square), 1e-4, "point");
+    expect_irradiance(scene, dvec3(emitted) * (cosine_at_origin() / apart), 1e-4, "point");
     EXPECT_EQ(lit(scene, "plain").rays, 64) << "one ray a hit tells all";
     Light below = light_at_place(LightKind::point);
     below.position.y = -2;
@@ -105,10 +105,10 @@ TEST(LightKinds, PointsFollowTheInverseSquare) {
 }
 
 TEST(LightKinds, SpotsFallOffWithinTheirCone) {
-    const double square = glm::dot(place, place);
+    const double apart = glm::dot(place, place);
     const dvec3 axis = -glm::normalize(place);
     const dvec3 across = glm::normalize(glm::cross(axis, dvec3(0, 0, 1)));
-    const dvec3 whole = dvec3(emitted) * (cosine_at_origin() / square);
+    const dvec3 whole = dvec3(emitted) * (cosine_at_origin() / apart);
     Light spot = light_at_place(LightKind::spot);
     spot.cone_angle = 40;
     spot.cone_delta = 20;
@@ -125,6 +125,19 @@ TEST(LightKinds, SpotsFallOffWithinTheirCone) {
     spot.cone_delta = 0;
     spot.direction = axis + 0.1 * across;
     expect_irradiance(lit_floor(spot), whole, 1e-4, "sharp");
+    // Of a cone too narrow for cosines of 24 bits: whole on its axis, half in the middle of its fall, none
+    // beyond.
+    spot.cone_angle = 0.02;
+    spot.cone_delta = 0.01;
+    const auto square_of = [](double degrees) { return glm::radians(degrees) * glm::radians(degrees); };
+    const double middle = std::sqrt((square_of(0.01) + square_of(0.02)) / 2);
+    for (const auto& [angle, share] : {std::pair{0.0, 1.0}, {middle, 0.5}, {glm::radians(0.025), 0.0}}) {
+        spot.direction = std::cos(angle) * axis + std::sin(angle) * across;
+        Scene scene = lit_floor(spot);
+        scene.camera.fov_degrees = 1e-5;
+        scene.meshes.front() = square(dvec3(0), 0.1); // from which rays begin no further than a part of that
+        expect_irradiance(scene, share * whole, 2e-2, "narrow, angle " + std::to_string(angle));
+    }
 }
 
 TEST(LightKinds, DirectionalLightIsTheSameEverywhere) {
@@ -157,19 +170,19 @@ TEST(LightKinds, DisksLightWhatIsInFrontOfThem) {
     disk.position = place;
     disk.radius = 0.01;
     disk.direction = {0.3, -1, 0.2};
-    const double square = glm::dot(place, place);
+    const double apart = glm::dot(place, place);
     const double cosine = glm::dot(glm::normalize(disk.direction), -glm::normalize(place));
-    expect_irradiance(lit_floor(disk), dvec3(emitted) * (pi * 1e-4 * cosine * cosine_at_origin() / square),
+    expect_irradiance(lit_floor(disk), dvec3(emitted) * (pi * 1e-4 * cosine * cosine_at_origin() / apart),
                       1e-3, "small");
 }
 
 TEST(LightKinds, SpheresLightAsTheirSolidAngleDoes) {
     Light sphere = light_at_place(LightKind::sphere);
-    const double square = glm::dot(place, place);
+    const double apart = glm::dot(place, place);
     for (const double radius : {1.2, 0.5, 1e-3}) { // all of it above the horizon
         sphere.radius = radius;
         expect_irradiance(lit_floor(sphere),
-                          dvec3(emitted) * (pi * radius * radius / square * cosine_at_origin()), 2e-3,
+                          dvec3(emitted) * (pi * radius * radius / apart * cosine_at_origin()), 2e-3,
                           "radius " + std::to_string(radius));
     }
     sphere.radius = 4;
