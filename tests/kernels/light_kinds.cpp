@@ -98,7 +98,7 @@ TEST(LightKinds, PointsFollowTheInverseSquare) {
     const double apart = glm::dot(place, place);
     const Scene scene = lit_floor(light_at_place(LightKind::point));
     expect_irradiance(scene, dvec3(emitted) * (cosine_at_origin() / apart), 1e-4, "point");
-    EXPECT_EQ(lit(scene, "plain").rays, 64) << "one ray a hit tells all";
+    EXPECT_EQ(lit(scene, native_targets().front()->name).rays, 64) << "one ray a hit tells all";
     Light below = light_at_place(LightKind::point);
     below.position.y = -2;
     expect_irradiance(lit_floor(below), dvec3(0), 0, "below");
@@ -146,13 +146,13 @@ TEST(LightKinds, DirectionalLightIsTheSameEverywhere) {
     const double cosine = 6.0 / 7.0;
     Scene scene = lit_floor(sun);
     expect_irradiance(scene, dvec3(emitted) * cosine, 1e-5, "sharp");
-    EXPECT_EQ(lit(scene, "plain").rays, 64) << "one ray a hit tells all";
+    EXPECT_EQ(lit(scene, native_targets().front()->name).rays, 64) << "one ray a hit tells all";
     for (dvec3* p : {&scene.camera.position, &scene.camera.target})
         *p += dvec3(11, 0, -13);
     expect_irradiance(scene, dvec3(emitted) * cosine, 1e-5, "elsewhere");
     sun.angular_radius = 25; // all of it above the horizon
     expect_irradiance(lit_floor(sun), dvec3(emitted) * cosine, 2e-3, "wide");
-    EXPECT_EQ(lit(lit_floor(sun), "plain").rays, 64 * 64);
+    EXPECT_EQ(lit(lit_floor(sun), native_targets().front()->name).rays, 64 * 64);
     sun.angular_radius = 0.267;
     expect_irradiance(lit_floor(sun), dvec3(emitted) * cosine, 1e-4, "sun");
     sun.direction = {1, 2, 3};
@@ -202,7 +202,7 @@ TEST(LightKinds, ShadowsEndAtTheLight) {
         light.direction = -place;
         light.radius = 0.2;
         const std::string name = "kind " + std::to_string(static_cast<int>(kind));
-        const dvec3 open = lit(lit_floor(light), "plain").irradiance;
+        const dvec3 open = lit(lit_floor(light), native_targets().front()->name).irradiance;
         EXPECT_GT(open.x, 0.01) << name;
         expect_irradiance(screened(light, 0.5, 0.4), dvec3(0), 0, name);
         expect_irradiance(screened(light, 1.3, 0.4), open, 1e-6, name + " before the screen");
@@ -224,7 +224,7 @@ TEST(LightKinds, PicturesDoNotDependOnTheUnitOfLength) {
         light.radius = 0.5;
         Scene scene = lit_floor(light);
         scene.settings.light_samples = 4;
-        const dvec3 usual = lit(scene, "plain").irradiance;
+        const dvec3 usual = lit(scene, native_targets().front()->name).irradiance;
         EXPECT_GT(usual.y, 0) << kind;
         expect_irradiance(scaled(scene, std::ldexp(1.0, 5)), usual, 1e-5, "kind " + std::to_string(kind));
         // So far out of range that the frame takes a unit of its own.
