@@ -1,29 +1,38 @@
 #!/bin/sh
 # What the simulated kernels do, and in which order, must not depend on the compiler: builds op_stream with g++ and
-# with clang++ and compares every event. Usage: compare_compilers.sh [BUILD_FOLDER]. Exit code 1: they differ, and the
-# first events that do are printed.
+# with clang++ and compares every event. Usage: compare_compilers.sh [BUILD_FOLDER], or, of builds that are there,
+# compare_compilers.sh ONE OTHER. Exit code 1: they differ, and the first events that do are printed.
 set -eu
-source=$(cd "$(dirname "$0")/../.." && pwd)
-build=${1:-${TMPDIR:-/tmp}/razor-compare-compilers}
-gxx=${GXX:-g++}
-clangxx=${CLANGXX:-$(command -v clang++ || command -v clang++-14)}
-launcher=$(command -v ccache || true)
 
-for compiler in "$gxx" "$clangxx"; do
-    name=$(basename "$compiler")
-    cmake -S "$source" -B "$build/$name" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DRAZOR_BENCHMARKS=OFF \
-        -DRAZOR_TARGETS=simulated ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"} ${CMAKE_ARGUMENTS:-} >/dev/null
-    cmake --build "$build/$name" --target op_stream -- ${NINJA_ARGUMENTS:-} >"$build/$name/log" || {
-        cat "$build/$name/log"
-        exit 1
-    }
-    "$build/$name/tests/kernels/op_stream" >"$build/$name/hashes"
+build_both() {
+    source=$(cd "$(dirname "$0")/../.." && pwd)
+    gxx=${GXX:-g++}
+    clangxx=${CLANGXX:-$(command -v clang++ || command -v clang++-14)}
+    launcher=$(command -v ccache || true)
+    one=$1/$(basename "$gxx")
+    other=$1/$(basename "$clangxx")
+    for compiler in "$gxx" "$clangxx"; do
+        folder=$1/$(basename "$compiler")
+        cmake -S "$source" -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DRAZOR_BENCHMARKS=OFF \
+            -DRAZOR_TARGETS=simulated ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"} ${CMAKE_ARGUMENTS:-} >/dev/null
+        cmake --build "$folder" --target op_stream -- ${NINJA_ARGUMENTS:-} >"$folder/log" || {
+            cat "$folder/log"
+            exit 1
+        }
+    done
+}
+
+if [ $# = 2 ]; then
+    one=$1
+    other=$2
+else
+    build_both "${1:-${TMPDIR:-/tmp}/razor-compare-compilers}"
+fi
+for folder in "$one" "$other"; do
+    "$folder/tests/kernels/op_stream" >"$folder/hashes"
 done
-
-one=$build/$(basename "$gxx")
-other=$build/$(basename "$clangxx")
 if cmp -s "$one/hashes" "$other/hashes"; then
-    echo "$(basename "$gxx") and $(basename "$clangxx"): the same events, $(wc -l <"$one/hashes") hashes"
+    echo "$(basename "$one") and $(basename "$other"): the same events, $(wc -l <"$one/hashes") hashes"
     exit 0
 fi
 # The scene and the last event at which both agreed.
@@ -35,6 +44,6 @@ for folder in "$one" "$other"; do
     "$folder/tests/kernels/op_stream" "$before" $((before + 4097)) |
         awk -v scene="$scene" '!/ /{ in_scene = ($0 == scene) } in_scene' >"$folder/events"
 done
-echo "$(basename "$gxx") and $(basename "$clangxx") differ in $scene, after event $before:"
+echo "$(basename "$one") and $(basename "$other") differ in $scene, after event $before:"
 diff -U 30 "$one/events" "$other/events" | head -n "${LINES_SHOWN:-80}"
 exit 1

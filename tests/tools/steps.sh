@@ -4,7 +4,7 @@ razor=razor/program/razor # within a build folder
 simulator=sim/program/razor-sim
 # Run by g++'s build alone: studies and whole runs, of which every part has tests of its own.
 only_by_gcc='ValidatesItself|^(Sweep|Whole)\.|^(sweep|calibration|sharing|analysis|embree)_|^kernels_operand_order|^isa_(refused|lint)|^tree$'
-# Not under sanitizers either, but by clang without them: the longest ones that take the paths of others.
+# Not under sanitizers either: the longest ones that take the paths of others.
 not_sanitized='^Zoom|LevelsOfTorus|(Watertight|BruteForce|Fields|Continuity)\..*_(stretched|bilinear)'
 not_sanitized+='|LevelsThatJumpHaveHoles|OfChecksAreTheScenes|RunsCopernicus|CountsTheSameInAllUnits|DiscardsWhatIsDead'
 not_sanitized+='|WritesATimeSeries|CacheOracle.SyntheticStream'
@@ -60,7 +60,7 @@ summary() {
         printf '%s\n' "$line"
     done
     printf 'in all %d s, %d s of processors\n' $SECONDS "$(children_seconds)"
-    for folder in release clang asan-ubsan; do
+    for folder in release asan-ubsan; do
         if [[ -e build/$folder/tests.xml ]]; then
             read -r tests failures disabled skips < <(count_tests "build/$folder/tests.xml")
             passed=$((passed + tests - failures - disabled - skips))
@@ -102,9 +102,10 @@ run_tests() {
     fi
 }
 
-# What clang makes of a test is seen under its sanitizers; here those that are not run there.
-run_clang_tests() {
-    run_tests clang -R "$not_sanitized" -E "$only_by_gcc"
+# What is compared with g++'s. What clang makes of the tests is seen under its sanitizers.
+build_by_clang() {
+    configure clang build/clang -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON -DRAZOR_BENCHMARKS=OFF
+    compile build/clang razor-sim op_stream fuzz_obj
 }
 
 # Ten times as slow, and one trial shows an error of memory as well as ten do.
@@ -148,7 +149,7 @@ compare_compilers() {
         "build/release/$razor" compare --identical $folder/release.exr $folder/clang.exr
     done
     # Every event of the simulated kernels, in order.
-    CCACHE_BASEDIR=$PWD CLANGXX=clang++-14 tests/kernels/compare_compilers.sh build/compare/events
+    tests/kernels/compare_compilers.sh build/release build/clang
 }
 
 fuzz() {
