@@ -4,6 +4,28 @@
 #include <numeric>
 
 namespace traces {
+namespace {
+
+/// Numbers of references, those of a stream side by side, each stream's in order.
+std::vector<std::uint32_t> by_stream(const std::vector<std::uint32_t>& streams) {
+    std::vector<std::uint32_t> order(streams.size());
+    const std::uint32_t most = *std::max_element(streams.begin(), streams.end());
+    if (most > 1U << 16U) {
+        std::iota(order.begin(), order.end(), 0U);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return streams[a] < streams[b]; });
+        return order;
+    }
+    std::vector<std::uint32_t> next(std::size_t{most} + 2, 0); // where each stream's next one goes
+    for (const std::uint32_t s : streams)
+        ++next[s + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (std::uint32_t i = 0; i < streams.size(); ++i)
+        order[next[streams[i]]++] = i;
+    return order;
+}
+
+} // namespace
 
 BlockBuilder::BlockBuilder() : recent_(1024) {}
 
@@ -17,14 +39,10 @@ std::uint32_t BlockBuilder::find(const Class& c) {
 void BlockBuilder::take(Block& block) {
     block.clear();
     const std::size_t n = size();
-    std::vector<std::uint32_t> order(n); // those of a stream side by side
-    std::iota(order.begin(), order.end(), 0U);
     const bool sorted = std::is_sorted(streams_.begin(), streams_.end());
-    if (!sorted)
-        std::stable_sort(order.begin(), order.end(),
-                         [this](std::uint32_t a, std::uint32_t b) { return streams_[a] < streams_[b]; });
+    const std::vector<std::uint32_t> order = sorted ? std::vector<std::uint32_t>() : by_stream(streams_);
     for (std::size_t i = 0; i < n; ++i) {
-        const std::uint32_t stream = streams_[order[i]];
+        const std::uint32_t stream = streams_[sorted ? i : order[i]];
         if (block.segments.empty() || block.segments.back().stream != stream)
             block.segments.push_back({stream, i, i});
         block.segments.back().end = i + 1;

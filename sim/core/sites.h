@@ -19,6 +19,9 @@ public:
         return k.file != nullptr ? k.number : note(where);
     }
 
+    /// File and line, to number.
+    const std::map<std::pair<std::string, std::uint32_t>, std::uint32_t>& all() const { return all_; }
+
 private:
     struct Known {
         const char* file = nullptr;

@@ -81,16 +81,32 @@ constexpr std::array<std::int32_t, width> in_order = [] {
 
 // --- which lines an operation touches
 
+/// For a trace: accesses of one line share its bytes evenly.
+void Engine::note_touch(const Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
+                        std::uint32_t accesses, cycle at) const {
+    if (!h.tile->tap->is_at(TraceLevel::core))
+        return;
+    const std::uint32_t step = accesses == 1 ? 0 : bytes / accesses / 4 * 4;
+    for (std::uint32_t i = 0; i < accesses; ++i) {
+        const std::uint32_t rest = bytes - i * step;
+        h.tile->attribution.note_always(write ? traces::Kind::write : traces::Kind::read, address + i * step,
+                                        step == 0 || i + 1 == accesses ? rest : step, at, h.column, h.number,
+                                        h.trace_site);
+    }
+}
+
 /// One machine access; across lines, one of each.
 inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from,
                           Data& data) {
     std::uint64_t high = address + bytes - 1;
     if (address >> line_shift_ == high >> line_shift_) [[likely]] {
-        touch_line(h, address >> line_shift_, write, 1, slots_of(bytes), from, data);
+        touch_line(h, address, bytes, write, 1, slots_of(bytes), from, data);
         return;
     }
-    for (std::uint64_t line = address >> line_shift_; line <= high >> line_shift_; ++line)
-        touch_line(h, line, write, 1, slots_in(line, address, high), from, data);
+    for (std::uint64_t line = address >> line_shift_; line <= high >> line_shift_; ++line) {
+        const std::uint64_t low = std::max(address, line << line_shift_);
+        touch_line(h, low, bytes_in(low, high), write, 1, slots_in(line, address, high), from, data);
+    }
 }
 
 /// Consecutive lanes: an access for each machine instruction with a lane that is on, and each line it
@@ -104,14 +120,18 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
         while (address < end) {
             const std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
             const auto pieces = static_cast<std::uint32_t>(next - address) >> piece_shift_;
-            touch_line(h, address >> line_shift_, write, pieces, pieces * slots, from, data);
+            touch_line(h, address, static_cast<std::uint32_t>(next - address), write, pieces, pieces * slots,
+                       from, data);
             address = next;
         }
         return;
     }
     std::uint64_t piece_mask = ~std::uint64_t{0} >> (64 - piece_lanes_);
-    std::uint64_t run_line = 0;
+    std::uint64_t run_line = 0, run_low = 0, run_high = 0;
     std::uint32_t run = 0, run_slots = 0;
+    const auto touch_run = [&] {
+        touch_line(h, run_low, bytes_in(run_low, run_high), write, run, run_slots, from, data);
+    };
     for (std::uint32_t i = 0; i < pieces_; ++i) {
         std::uint64_t on = lanes >> (i * piece_lanes_) & piece_mask;
         if (on == 0)
@@ -121,16 +141,19 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
         std::uint64_t high = piece + 4 * static_cast<unsigned>(63 - std::countl_zero(on)) + 3;
         for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line) {
             if (run != 0 && line != run_line) {
-                touch_line(h, run_line, write, run, run_slots, from, data);
+                touch_run();
                 run = run_slots = 0;
             }
+            if (run == 0)
+                run_low = std::max(low, line << line_shift_);
             run_line = line;
+            run_high = high;
             ++run;
             run_slots += slots_in(line, low, high);
         }
     }
     if (run != 0)
-        touch_line(h, run_line, write, run, run_slots, from, data);
+        touch_run();
 }
 
 inline void Engine::read_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, cycle from, Data& data) {
@@ -151,22 +174,24 @@ inline void Engine::write_lanes(Hart& h, std::uint64_t address, std::uint64_t la
 void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                            bool write, cycle from, Data& data) {
     const bool by_lane = write ? lane_scatter_ : lane_gather_;
-    auto line_of = [&](std::uint32_t lane) {
-        return (address + static_cast<std::uint64_t>(std::int64_t{index[lane]} * 4)) >> line_shift_;
+    auto address_of = [&](std::uint32_t lane) {
+        return address + static_cast<std::uint64_t>(std::int64_t{index[lane]} * 4);
     };
     for (std::uint32_t i = 0; i < width; i += piece_lanes_) {
-        std::array<std::uint64_t, 64> seen; // NOLINT: filled as far as used
+        std::array<std::uint64_t, 64> seen, first; // NOLINT: filled as far as used
         std::uint32_t distinct = 0;
         for (std::uint32_t lane = i; lane < i + piece_lanes_; ++lane) {
             if ((lanes >> lane & 1U) == 0)
                 continue;
-            std::uint64_t line = line_of(lane);
+            const std::uint64_t at = address_of(lane), line = at >> line_shift_;
             auto* end = seen.begin() + distinct;
-            if (by_lane || std::find(seen.begin(), end, line) == end)
+            if (by_lane || std::find(seen.begin(), end, line) == end) {
+                first[distinct] = at;
                 seen[distinct++] = line;
+            }
         }
         for (std::uint32_t k = 0; k < distinct; ++k)
-            touch_line(h, seen[k], write, 1, 1, from, data);
+            touch_line(h, first[k], 4, write, 1, 1, from, data);
     }
 }
 
@@ -226,6 +251,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
     const std::uint64_t last = place + pieces * piece_lanes_ * 4 - 1;
     Due now = begin(h);
     h.site = {};
+    h.trace_site = 0;
     if (unstored) {
         ++h.counters.spill_stores;
         Issued at = issue(h, vector_kind(store_kind), pieces, now);
@@ -384,6 +410,9 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
     if (may_prefetch(h, address(p))) {
         cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
         ++h.core->l1.counters().busy_cycles;
+        note_core(h, traces::Kind::prefetch, address(p), line_bytes_, t);
+        if (recorder_ != nullptr)
+            h.tile->tap->site = h.trace_site;
         h.core->l1.prefetch(address(p), t, h.column);
     }
     finish_issue(h, at, 0);
@@ -419,6 +448,7 @@ void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     std::uint32_t lines = last > first ? static_cast<std::uint32_t>(last - first) : 0;
     Issued at = issue(h, store_kind, std::max(1U, lines), ready);
     for (std::uint64_t line = first; line < last; ++line) {
+        note_core(h, traces::Kind::flush, line << line_shift_, line_bytes_, at.first);
         h.core->l1.discard(line << line_shift_);
         discard_below(h, line << line_shift_, begin, end, at.first);
     }
@@ -504,14 +534,16 @@ void scatter(site where, const void* p, const std::int32_t* index, std::uint64_t
     n.engine.note_site(n.hart, where);
     n.engine.scatter(n.hart, p, index, lanes, n.ready);
 }
-void prefetch(site, const void* p, const stamp& address) {
+void prefetch(site where, const void* p, const stamp& address) {
     Next n;
     n.address(address);
+    n.engine.note_trace_site(n.hart, where);
     n.engine.prefetch(n.hart, p, n.ready);
 }
-void discard(site, const void* p, std::uint32_t bytes, const stamp& address) {
+void discard(site where, const void* p, std::uint32_t bytes, const stamp& address) {
     Next n;
     n.address(address);
+    n.engine.note_trace_site(n.hart, where);
     n.engine.discard(n.hart, p, bytes, n.ready);
 }
 

@@ -31,11 +31,11 @@ public:
     void charge(Attribution& attribution) { attribution_ = &attribution; }
 
     Answer read(const Access& a) override {
-        ++attribution_->cell(a.address, a.column).memory_reads;
+        attribution_->count_memory_read(a.address, a.bytes, a.at, a.column);
         return memory_.read(a);
     }
     Answer write(const Access& a) override {
-        ++attribution_->cell(a.address, a.column).memory_writes;
+        attribution_->count_memory_write(a.address, a.bytes, a.at, a.column);
         return memory_.write(a);
     }
 

@@ -107,7 +107,7 @@ void Coherence::plan_recall(Asking& a, std::uint64_t line) {
         if (told.holds) {
             ++counters_.recalls_received;
             // A sharer's too: who writes a shared word has changed the line before the directory hears of it.
-            told.changed = at.share(line, line_bytes_, a.r.column);
+            told.changed = at.share(line, line_bytes_, a.r.at, a.r.column);
             counters_.written_back += told.changed ? 1 : 0;
             at.lose(line, line_bytes_);
         } else {
@@ -143,7 +143,7 @@ void Coherence::plan_forward(Asking& a, Directory::Line& l) {
         a.out.from = Outcome::owner;
         bool dirty = false;
         if (!r.exclusive) {
-            dirty = told.changed = from.share(r.read, line_bytes_, r.column);
+            dirty = told.changed = from.share(r.read, line_bytes_, r.at, r.column);
             l.sharers.push_back(owner);
             counters_.written_back += dirty ? 1 : 0;
         } else if (!under_way(owner).asks(r.read)) {
@@ -188,7 +188,7 @@ bool Coherence::give(const Request& r, Directory::Line& l) {
         if (!l.shared_by(who))
             l.sharers.push_back(who);
         ++counters_.shared;
-        return cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.column);
+        return cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.at, r.column);
     }
     cache(who).grant(r.read, line_bytes_);
     return false;

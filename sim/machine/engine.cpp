@@ -80,7 +80,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                  narrow(config.lanes.store_references)},
       hold_policy_(config.core.switch_policy == "stall"), tlb_(config.tlb.any()),
       holds_misses_(config.tlb.misses == "stall"), page_shift_(log2(config.tlb.page_bytes)),
-      in_order_(config.core.window == 1 || hold_policy_),
+      recorder_(options.recorder), in_order_(config.core.window == 1 || hold_policy_),
       prediction_(config.core.predictor == "none"        ? Prediction::none
                   : config.core.predictor == "perfect"   ? Prediction::perfect
                   : config.core.predictor == "taken"     ? Prediction::taken
@@ -136,6 +136,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
             }
         }
     }
+    trace();
     for (Tile& tile : tiles_) {
         order_.push_back(&tile);
         follow_events(tile);
@@ -145,6 +146,24 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     const Placement placement(config.chip);
     for (int w = 0; w < workers; ++w)
         harts_[wide(placement.number(placement.of(w)))].worker = w;
+}
+
+/// Tiles, caches and the way to memory note for the recorder what they do.
+void Engine::trace() {
+    if (recorder_ == nullptr)
+        return;
+    recorder_->begin(labels_, lines_.structures());
+    for (Tile& tile : tiles_) {
+        tile.tap = &recorder_->tap(tile.number);
+        tile.attribution.trace(*tile.tap);
+        const auto number_all = [&tile](auto& all, auto cache) {
+            for (std::size_t i = 0; i < all.size(); ++i)
+                cache(all[i]).trace_as(static_cast<std::uint32_t>(tile.number * all.size() + i));
+        };
+        number_all(tile.cores, [](Core& core) -> Cache& { return core.l1; });
+        for (unsigned level = 1; level < tile_levels_; ++level)
+            number_all(tile.caches[level], [](Cache& cache) -> Cache& { return cache; });
+    }
 }
 
 /// In how many cycles so many instructions of a kind issue at the least.
@@ -364,6 +383,8 @@ bool Engine::run_window() {
         forget_tickets(*tile);
         tile->attribution.publish_notes();
     }
+    if (recorder_ != nullptr)
+        recorder_->collect();
     return true;
 }
 

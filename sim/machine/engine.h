@@ -76,6 +76,11 @@ public:
     void note_site(Hart& h, site where) const {
         if (strides_) [[unlikely]]
             h.site = {h.tile->load_sites.number(where), true};
+        note_trace_site(h, where);
+    }
+    void note_trace_site(Hart& h, site where) const {
+        if (recorder_ != nullptr) [[unlikely]]
+            h.trace_site = h.tile->tap->site_number(where);
     }
 
     // --- operands (rules 1 and 3): each makes `ready` no earlier than the operand, or notes that its time is
@@ -201,11 +206,21 @@ private:
     void charge(Hart& h, std::uint32_t overhead, Due ready);
     void count(Hart& h, std::uint32_t instructions, bool vector);
     void touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from, Data& data);
-    void touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots,
-                    cycle& from, Data& data);
+    void touch_line(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, std::uint32_t accesses,
+                    std::uint32_t slots, cycle& from, Data& data);
+    void note_touch(const Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
+                    std::uint32_t accesses, cycle at) const;
+    void note_core(Hart& h, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, cycle at) const {
+        if (recorder_ != nullptr && h.tile->tap->is_at(TraceLevel::core)) [[unlikely]]
+            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site);
+    }
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
                        bool write, cycle from, Data& data);
+    /// Bytes of a line, from `low` on, up to `high`.
+    std::uint32_t bytes_in(std::uint64_t low, std::uint64_t high) const {
+        return static_cast<std::uint32_t>(std::min(high, low | (line_bytes_ - 1)) - low) + 1;
+    }
     std::uint32_t slots_of(std::uint32_t bytes) const {
         return (bytes + (1U << port_byte_shift_) - 1) >> port_byte_shift_;
     }
@@ -299,6 +314,7 @@ private:
     static void check_label(const char* what, std::size_t number, std::size_t count);
 
     void describe_kinds();
+    void trace();
     // --- windows
     bool run_window();
     void find_active_tiles();
@@ -359,7 +375,8 @@ private:
     bool hold_policy_;
     bool tlb_, holds_misses_; // tlb.misses
     unsigned page_shift_;
-    bool in_order_; // operations act when they are ready, not when the issue window reaches them
+    Recorder* recorder_; // or null
+    bool in_order_;      // operations act when they are ready, not when the issue window reaches them
     enum class Prediction { counters, taken, not_taken, none, perfect } prediction_;
 
     const std::byte* base_;

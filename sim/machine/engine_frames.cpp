@@ -29,6 +29,8 @@ void Engine::begin_part(cycle t) {
 /// Intervals, and lines that count as touched, begin here.
 void Engine::begin_counting() {
     lines_.forget_touched();
+    if (recorder_ != nullptr)
+        recorder_->start(cycles_);
     intervals_.begin(cycles_, sums());
     if (intervals_.wanted())
         for (Hart& h : harts_)

@@ -139,7 +139,7 @@ bool ImmediateBeyond::serves_alone(const Request& r) {
     }
     if (r.stage != Request::writes || !caches_.empty())
         return false;
-    ++attribution_of(r).cell(r.write, r.column).memory_writes; // an owner's, on its way since
+    attribution_of(r).count_memory_write(r.write, r.bytes, r.at, r.column); // an owner's, on its way since
     memory_.write(r.write, ways_.in_order(r.at));
     return true;
 }
@@ -158,7 +158,7 @@ Answer ImmediateBeyond::read_coherently(const Request& r) {
     const Coherence::Outcome out = ask_others(r, there);
     cycle ready = out.at;
     if (out.from == Coherence::Outcome::below) {
-        ++attribution_of(r).cell(r.read, r.column).memory_reads;
+        attribution_of(r).count_memory_read(r.read, line_bytes_, out.at, r.column);
         ready = memory_.read(r.read, ways_.in_order(out.at));
         ready = ways_.answer(asker(r), r.read, line_bytes_, std::max(ready, out.known));
         coherence_->arrives(r, std::max(ready, out.finished));

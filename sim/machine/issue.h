@@ -137,9 +137,11 @@ inline void Engine::charge_overhead(Hart& h, std::uint32_t overhead, Due ready) 
         issue(h, integer_kind, whole, ready);
 }
 
-inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses,
-                               std::uint32_t slots, cycle& from, Data& data) {
+/// `accesses` of a line, of so many bytes in all from the address on.
+inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
+                               std::uint32_t accesses, std::uint32_t slots, cycle& from, Data& data) {
     Core& core = *h.core;
+    const std::uint64_t line = address >> line_shift_;
     Calendar::Span s = core.ports.take(from << port_shift_, slots);
     core.l1.counters().busy_cycles += slots;
     cycle at = s.first >> port_shift_;
@@ -149,13 +151,19 @@ inline void Engine::touch_line(Hart& h, std::uint64_t line, bool write, std::uin
         h.tile->site = h.site;
         h.site.first = false;
     }
+    if (recorder_ != nullptr) [[unlikely]]
+        h.tile->tap->site = h.trace_site;
     Answer a = core.l1.access(line, write, accesses, at, h.column);
     while (a.refused)
         [[unlikely]] {
             from = at = await_room(h, at, a.ready);
             data.granted = std::max(data.granted, at);
+            if (recorder_ != nullptr)
+                h.tile->tap->site = h.trace_site;
             a = core.l1.access(line, write, accesses, at, h.column);
         }
+    if (recorder_ != nullptr) [[unlikely]]
+        note_touch(h, address, bytes, write, accesses, at);
     cycle last = (s.last >> port_shift_) + l1_latency_; // through the ports
     if (is_ticket(a.ready)) {
         data.tickets[data.open++] = a.ready;

@@ -6,6 +6,7 @@
 #include "sim/machine/issue.h"
 
 #include <bit>
+#include <utility>
 
 namespace sim {
 
@@ -14,10 +15,12 @@ void Engine::assemble(Hart& h, std::uint32_t instructions, std::uint32_t referen
     h.counters.assembly_instructions += instructions;
     h.counters.assembly_references += references;
     h.site = {};
+    const std::uint32_t trace_site = std::exchange(h.trace_site, 0U);
     if (instructions > references)
         issue_all(h, integer_kind, instructions - references, ready);
     touch_stack(h, references - references / 2, true, ready);
     touch_stack(h, references / 2, false, ready);
+    h.trace_site = trace_site;
 }
 
 void Engine::touch_stack(Hart& h, std::uint32_t references, bool write, Due ready) {
@@ -30,7 +33,7 @@ void Engine::touch_stack(Hart& h, std::uint32_t references, bool write, Due read
             h.counters.assembly_stores += n;
         Data data;
         cycle from = translated(h, h.spill_base, h.spill_base + 3, at.first);
-        touch_line(h, h.spill_base >> line_shift_, write, n, n, from, data);
+        touch_line(h, h.spill_base, 4, write, n, n, from, data);
         if (write)
             stored(h, data);
         else

@@ -5,6 +5,7 @@
 #include "sim/config/config.h"
 #include "sim/machine/report.h"
 #include "sim/network/network.h"
+#include "sim/trace/recorder.h"
 
 #include <atomic>
 #include <functional>
@@ -39,6 +40,8 @@ struct RunOptions {
     std::uint32_t host_order = 0;
     /// Filled with all messages of the network, for who compares.
     std::vector<Network::Sent>* messages = nullptr;
+    /// Records what counts; the caller finishes it.
+    Recorder* recorder = nullptr;
     /// Ends the run at the next window's beginning once it is true.
     const std::atomic<bool>* stop = nullptr;
 };

@@ -284,7 +284,7 @@ void QueuedBeyond::ask_others(Request r) {
     r.decision = new_decision();
     coherence_->ask(r, r.at + coherence_->look_up(),
                     {[this, r](cycle at) {
-                         ++attribution_of(r).cell(r.read, r.column).memory_reads;
+                         attribution_of(r).count_memory_read(r.read, line_bytes_, at, r.column);
                          arrive(keep({.goes = Transfer::to_be_read,
                                       .who = asker(r),
                                       .address = r.read,
@@ -324,7 +324,7 @@ void QueuedBeyond::is_over(const Request& r, const Coherence::Outcome& out) {
 
 /// What an owner had changed comes to memory, as others read it.
 void QueuedBeyond::write_owners(const Request& r) {
-    ++attribution_of(r).cell(r.write, r.column).memory_writes;
+    attribution_of(r).count_memory_write(r.write, r.bytes, r.at, r.column);
     arrive(keep({.goes = Transfer::to_be_written,
                  .who = asker(r),
                  .address = r.write,

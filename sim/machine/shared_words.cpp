@@ -56,6 +56,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
+        note_core(h, traces::Kind::modify, a, 4, begins);
         h.tile->site = {};
         Access change{a, line_bytes_, begins + l1_latency_, h.column}; // a read that leaves the line dirty
         change.modify = change.owned = true;                           // its line is claimed by itself
@@ -177,7 +178,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         Data data;
         cycle from = t;
         h.site = {};
-        touch_line(h, a >> line_shift_, false, 1, 1, from, data);
+        touch_line(h, a, 4, false, 1, 1, from, data);
         ready.later(Due(data.last, data.from));
         if (data.open != 0) {
             data.first = data.last = ready.at();
@@ -188,6 +189,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         invalidate_elsewhere(h, a, t, chip);
         if (kind == isa::timing::atomic::store_release) {
             ++h.counters.releases;
+            note_core(h, traces::Kind::write_through, a, 4, t);
             Access release{a, line_bytes_, t + l1_latency_, h.column};
             release.forced = release.owned = true;
             release.asker = h.core->l1.number();
@@ -347,24 +349,26 @@ void Engine::note_level_of(Hart& h, const void* p, std::uint64_t bytes, const vo
 
 namespace isa::timing {
 
-void before_atomic(site, atomic kind, const void* p, const stamp& address, const stamp& operands) {
+void before_atomic(site where, atomic kind, const void* p, const stamp& address, const stamp& operands) {
     sim::Engine& engine = *sim::running_engine;
     sim::Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
     engine.need_address(hart, ready, address);
     engine.need_scalar(hart, ready, operands);
+    engine.note_trace_site(hart, where);
     engine.before_atomic(hart, kind, p, ready);
 }
 stamp after_atomic(site, atomic kind, const void* p, bool wrote) {
     return sim::running_engine->after_atomic(*sim::running_hart, kind, p, wrote);
 }
-stamp wait_while(site, const std::int32_t* p, std::int32_t value, const stamp& address,
+stamp wait_while(site where, const std::int32_t* p, std::int32_t value, const stamp& address,
                  const stamp& operand) {
     sim::Engine& engine = *sim::running_engine;
     sim::Hart& hart = *sim::running_hart;
     sim::Due ready = engine.begin(hart);
     engine.need_address(hart, ready, address);
     engine.need_scalar(hart, ready, operand);
+    engine.note_trace_site(hart, where);
     return engine.wait_while(hart, p, value, ready);
 }
 

@@ -27,7 +27,9 @@ void Engine::buffer_store(Hart& h, std::uint64_t low, std::uint64_t high, bool w
         from = std::max(from, h.bound.at()); // it may have waited for the answer
         Data data;
         cycle start = std::max(from, b.asked);
-        touch_line(h, line, true, 1, slots != 0 ? slots : slots_in(line, low, high), start, data);
+        const std::uint64_t place = std::max(low, line << line_shift_);
+        touch_line(h, place, bytes_in(place, high), true, 1, slots != 0 ? slots : slots_in(line, low, high),
+                   start, data);
         b.asked = start;
         std::uint64_t first = std::max(low, line << line_shift_);
         std::uint64_t last = std::min(high, ((line + 1) << line_shift_) - 1);
@@ -162,8 +164,10 @@ void Engine::load_around(Hart& h, std::uint64_t low, std::uint64_t high, cycle f
         cycle ended = drained(h, entry);
         from = std::max({from, ended, h.bound.at()});
     }
-    for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line)
-        touch_line(h, line, false, 1, slots_in(line, low, high), from, data);
+    for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line) {
+        const std::uint64_t place = std::max(low, line << line_shift_);
+        touch_line(h, place, bytes_in(place, high), false, 1, slots_in(line, low, high), from, data);
+    }
 }
 
 /// Whether a store that may not have ended at `from` wrote any of the bytes.

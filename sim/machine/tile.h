@@ -44,6 +44,7 @@ struct Tile {
     };
 
     std::uint32_t number;
+    TraceTap* tap = nullptr;       // if a trace is recorded
     cycle earliest = 0;            // no operation from now on acts before
     std::atomic<cycle> claimed{0}; // the end of the window that a thread of the host has begun with, or done
     Attribution attribution;

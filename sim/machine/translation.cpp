@@ -38,7 +38,7 @@ cycle Engine::read_tables(Hart& h, std::uint64_t page, cycle t) {
         t = std::max(turn(h, t), h.bound.at()); // it may have waited
         ++m.counters.walk_reads;
         Data data;
-        touch_line(h, tables_->address(level, page) >> line_shift_, false, 1, 1, t, data);
+        touch_line(h, tables_->address(level, page), 8, false, 1, 1, t, data);
         t = std::max(data.last, data.open != 0 ? await(h, data.tickets[0]).last : 0);
         if (level != 0)
             m.tables.fill(name(level, page), t);

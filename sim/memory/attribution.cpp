@@ -20,6 +20,14 @@ Traffic* Attribution::make_cells(LineKind kind) {
     return by_kind_[kind] = made_.back().get();
 }
 
+void Attribution::note_always(traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
+                              std::size_t column, std::uint32_t stream, std::uint32_t site) {
+    const LineMap::Line* line = map_.line(address);
+    const LineKind what = line == nullptr ? map_.spill() : line->kind(tile_);
+    tap_->note({t, address, stream, bytes, site, static_cast<std::uint16_t>(LineMap::structure_of(what)),
+                static_cast<std::uint16_t>(column), kind});
+}
+
 std::vector<TrafficRow> Attribution::traffic(const std::vector<const Attribution*>& tiles) {
     std::vector<TrafficRow> out;
     const Attribution& first = *tiles.front();

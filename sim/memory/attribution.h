@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/memory/line_map.h"
+#include "sim/trace/tap.h"
 
 #include <cstdlib>
 #include <memory>
@@ -33,6 +34,26 @@ public:
     void note_level_of(std::uint64_t address, std::uint64_t bytes, std::uint64_t other) {
         map_.note_level_of(address, bytes, other, tile_, notes_);
     }
+    /// Memory is asked for so many bytes of a line at cycle `t`, or is given them.
+    void count_memory_read(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
+        ++cell(address, column).memory_reads;
+        note(TraceLevel::memory, traces::Kind::read, address, bytes, t, column, tile_);
+    }
+    void count_memory_write(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
+        ++cell(address, column).memory_writes;
+        note(TraceLevel::memory, traces::Kind::write, address, bytes, t, column, tile_);
+    }
+    /// References of the tile are noted there, if any are.
+    void trace(TraceTap& tap) { tap_ = &tap; }
+    /// What happens at a level is noted for a trace of that level.
+    void note(unsigned level, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
+              std::size_t column, std::uint32_t stream) {
+        if (tap_ != nullptr && tap_->is_at(level)) [[unlikely]]
+            note_always(kind, address, bytes, t, column, stream, level == 1 ? tap_->site : 0);
+    }
+    void note_always(traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
+                     std::size_t column, std::uint32_t stream, std::uint32_t site);
+    std::uint32_t tile() const { return tile_; }
     std::uint64_t spill_begin() const { return map_.spill_begin(); }
     /// Between windows.
     void publish_notes() { LineMap::publish(notes_); }
@@ -57,6 +78,7 @@ private:
     std::vector<std::unique_ptr<Traffic[]>> made_;
     std::vector<LineMap::Line*> notes_;
     Traffic* spill_;
+    TraceTap* tap_ = nullptr;
 };
 
 } // namespace sim

@@ -49,7 +49,7 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
       write_backs_(wide(config.write_back_buffer), tickets, heard(machine, level)),
       prefetcher_(config.prefetcher, static_cast<std::uint32_t>(config.prefetch_degree),
                   wide(config.prefetch_sites)),
-      tickets_(tickets), below_(below), site_(site) {
+      tickets_(tickets), below_(below), site_(site), beyond_(level >= machine.tile_levels()) {
     if (last)
         mshrs_.lift_limit();
     if (machine.sim.miss_causes == "on")
@@ -95,6 +95,7 @@ cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_
     if (dirty) {
         ++counters_.write_backs;
         ++(attribution_->cell(address, column).*traffic_.write_backs);
+        note(traces::Kind::write_back, address, t, column);
     } else {
         ++counters_.clean_victims;
     }
@@ -182,6 +183,7 @@ void Cache::prefetch(std::uint64_t address, cycle t, std::size_t column) {
         return;
     }
     ++counters_.prefetches;
+    note(traces::Kind::prefetch, address, t, column);
     if (causes_)
         causes_->use(line, true);
 }
@@ -216,8 +218,7 @@ Answer Cache::waiting_access(CacheArray::Entry entry, std::uint64_t line, bool w
             return answer;
         entry = array_.find(line);
         counters_.hits += accesses - 1;
-        ++counters_.misses;
-        ++(attribution_->cell(line << line_shift_, column).*traffic_.misses);
+        count_miss({line << line_shift_, 0, t, column}, write);
     }
     if (write)
         array_.set_dirty(entry, true);
@@ -298,6 +299,7 @@ void Cache::send_back(std::uint64_t address, cycle t, std::size_t column) {
     below_.write(written);
     ++counters_.write_backs;
     ++(attribution_->cell(address, column).*traffic_.write_backs);
+    note(traces::Kind::write_back, address, t, column);
 }
 
 /// A read of an exclusive cache.
@@ -321,8 +323,7 @@ Answer Cache::move_up(const Access& a, CacheArray::Entry entry, std::uint64_t li
             return answer;
         ++counters_.fills;
         mshrs_.hold({line, a.at, answer.ready, answer.from});
-        ++counters_.misses;
-        ++(attribution_->cell(a.address, a.column).*traffic_.misses);
+        count_miss(a, false);
         count_cause(line);
     }
     if (causes_)
@@ -370,8 +371,7 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
         answer = write ? accepted : answer;
     }
     if (!hit) {
-        ++counters_.misses;
-        ++(attribution_->cell(a.address, a.column).*traffic_.misses);
+        count_miss(a, write);
         counters_.written_around += brings ? 0 : 1;
         count_cause(line);
     }
@@ -415,9 +415,20 @@ Answer Cache::send_on(const Access& a, cycle down) {
     on.asker = number_;
     Answer accepted = below_.write(on);
     ++counters_.written_through;
+    attribution_->note(level_ + 1, traces::Kind::write_through, a.address, a.bytes, a.at, a.column,
+                       beyond_ ? attribution_->tile() : stream_);
     if (!last_)
         write_backs_.hold({a.address >> line_shift_, a.at, accepted.ready, Cause::mshrs});
     return accepted;
+}
+
+void Cache::count_miss(const Access& a, bool write) {
+    ++counters_.misses;
+    ++(attribution_->cell(a.address, a.column).*traffic_.misses);
+    note(a.modify ? traces::Kind::modify
+         : write  ? traces::Kind::write
+                  : traces::Kind::read,
+         a.address, a.at, a.column);
 }
 
 void Cache::count_cause(std::uint64_t line) {
@@ -455,6 +466,7 @@ void Cache::prefetch_after(const Access& a, std::uint64_t line, bool first, cycl
         }
         array_.set_prefetched(array_.find(wanted), true);
         ++counters_.hardware_prefetches;
+        note(traces::Kind::prefetch, wanted << line_shift_, a.at, a.column);
         if (causes_)
             causes_->use(wanted, true);
     });

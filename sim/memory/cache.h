@@ -53,6 +53,8 @@ public:
     }
     /// Among those above the same cache.
     std::uint32_t number() const { return number_; }
+    /// Its stream in a trace of what it misses.
+    void trace_as(std::uint32_t stream) { stream_ = stream; }
     /// This one acts in order of time, on what comes that way.
     void act_on(Coming& coming) { coming_ = &coming; }
     /// Whose traffic follows: of a cache that several tiles share.
@@ -90,7 +92,7 @@ public:
     bool lose(std::uint64_t address, std::uint64_t bytes);
     /// Somebody else reads them: they are shared and clean from now on, likewise. One that was dirty in a
     /// last cache counts as written back.
-    bool share(std::uint64_t address, std::uint64_t bytes, std::size_t column);
+    bool share(std::uint64_t address, std::uint64_t bytes, cycle t, std::size_t column);
     bool holds(std::uint64_t address) const {
         return array_.find(address >> line_shift_) != CacheArray::none;
     }
@@ -189,6 +191,13 @@ private:
     Answer send_on(const Access& a, cycle down);
     void prefetch_after(const Access& a, std::uint64_t line, bool first, cycle down);
     void count_cause(std::uint64_t line);
+    /// A line that goes to or comes from below, for a trace of this level.
+    void note(traces::Kind kind, std::uint64_t address, cycle t, std::size_t column) {
+        attribution_->note(level_ + 1, kind, address >> line_shift_ << line_shift_,
+                           std::uint32_t{1} << line_shift_, t, column,
+                           beyond_ ? attribution_->tile() : stream_);
+    }
+    void count_miss(const Access& a, bool write);
     void count_useless(CacheArray::Entry leaving) {
         counters_.prefetches_useless += array_.prefetched(leaving) ? 1 : 0;
     }
@@ -218,7 +227,8 @@ private:
     Below& below_;
     const SiteAtHand& site_;
     std::vector<Cache*> above_;
-    std::uint32_t number_ = 0;
+    std::uint32_t number_ = 0, stream_ = 0;
+    bool beyond_; // the tiles
     Coming* coming_ = nullptr;
 };
 

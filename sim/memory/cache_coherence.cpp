@@ -99,7 +99,7 @@ void Cache::drop_others(const Access& a, CacheArray::Entry entry) {
 /// The caches above but the one that asks share what it reads.
 Answer Cache::share_others(const Access& a, CacheArray::Entry entry, Answer answer) {
     for (Cache* c : above_)
-        if (c != a.by && c->share(a.address, std::max(a.bytes, 1U), a.column)) {
+        if (c != a.by && c->share(a.address, std::max(a.bytes, 1U), a.at, a.column)) {
             array_.set_dirty(entry, true);
             if (!is_ticket(answer.ready)) {
                 answer.ready += c->latency_;
@@ -165,14 +165,14 @@ bool Cache::lose(std::uint64_t address, std::uint64_t bytes) {
     return dirty;
 }
 
-bool Cache::share(std::uint64_t address, std::uint64_t bytes, std::size_t column) {
+bool Cache::share(std::uint64_t address, std::uint64_t bytes, cycle t, std::size_t column) {
     bool dirty = false;
     for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
         if (below_.is_asked(at, *this))
             continue;
         bool changed = coming_ != nullptr && coming_->clean(at, std::uint64_t{1} << line_shift_);
         for (Cache* c : above_)
-            changed |= c->share(at, std::min(bytes, std::uint64_t{1} << line_shift_), column);
+            changed |= c->share(at, std::min(bytes, std::uint64_t{1} << line_shift_), t, column);
         const CacheArray::Entry entry = array_.find(at >> line_shift_);
         if (entry == CacheArray::none)
             continue;
@@ -182,6 +182,7 @@ bool Cache::share(std::uint64_t address, std::uint64_t bytes, std::size_t column
         if (changed && last_) {
             ++counters_.write_backs;
             ++(attribution_->cell(at, column).*traffic_.write_backs);
+            note(traces::Kind::write_back, at, t, column);
         }
         counters_.downgrades += changed ? 1 : 0;
         dirty |= changed;

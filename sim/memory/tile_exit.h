@@ -28,7 +28,7 @@ public:
 
     Answer read(const Access& a) override {
         if (to_memory_ && !coherent_)
-            ++attribution_.cell(a.address, a.column).memory_reads;
+            attribution_.count_memory_read(a.address, a.bytes, a.at, a.column);
         Request r = request(a);
         r.write = std::exchange(followed_.write, Request::nothing);
         r.bytes = followed_.bytes;
@@ -50,7 +50,7 @@ public:
     }
     Answer write(const Access& a) override {
         if (to_memory_)
-            ++attribution_.cell(a.address, a.column).memory_writes;
+            attribution_.count_memory_write(a.address, a.bytes, a.at, a.column);
         Request r = request(a);
         r.write = a.address;
         r.bytes = a.bytes;

@@ -10,6 +10,7 @@
 #include "sim/program/provenance.h"
 #include "sim/program/run_command.h"
 #include "sim/program/validate_command.h"
+#include "traces/error.h"
 
 #include <fmt/format.h>
 
@@ -60,6 +61,8 @@ int main(int argc, char** argv) {
                    : app.got_subcommand("dram") ? dram.run()
                                                 : run.run();
         } catch (const sim::ConfigError& e) {
+            throw razor::UserError(e.what());
+        } catch (const traces::Error& e) {
             throw razor::UserError(e.what());
         } catch (const std::bad_alloc&) {
             throw razor::UserError(

@@ -223,6 +223,7 @@ void RunCommand::add_to(CLI::App& app) {
            "--host-threads", host_threads_,
            "threads of the host that tiles run on, which changes no digit of the report; without it, 1")
         ->type_name("N");
+    trace_.add_to(run);
     run.add_flag("--no-native", no_native_,
                  "do not render the frame natively as well, to compare time and picture");
     run.add_flag("--no-calibration", no_calibration_,
@@ -269,9 +270,10 @@ int RunCommand::run() const {
             razor::parse_span("--tiles", tiles_, {0, static_cast<double>(counted.last_tile)});
     }
     const std::string scene = razor::to_toml(description);
+    TraceSettings trace = trace_.settings();
     for (const std::string& output : outputs_)
         razor::check_output(output);
-    for (const std::string& file : {json_, report_, intervals_})
+    for (const std::string& file : {json_, report_, intervals_, trace_.file()})
         if (!file.empty())
             razor::check_writable(file);
 
@@ -302,6 +304,13 @@ int RunCommand::run() const {
             counted.before = frame.statistics().by_kind;
             frame.take_tiles(counted.first_tile, counted.last_tile + 1);
         };
+    }
+    std::optional<Recorder> recorder;
+    if (trace_.wanted()) {
+        trace.program = fmt::format("razor-sim {}", razor::version());
+        trace.configuration = print_machine(machine_description) + "\n# scene\n" + scene;
+        recorder.emplace(std::move(trace), config, traces::open_sink(trace_.file()));
+        run_options.recorder = &*recorder;
     }
     Report report;
     std::optional<NativeRun> native;
@@ -340,6 +349,8 @@ int RunCommand::run() const {
                                             {"razor.isa", razor::simulated::kernels.name}};
     for (const std::string& output : outputs_)
         razor::write_image(output, frame.film(), attributes);
+    if (recorder)
+        recorder->finish();
     if (!intervals_.empty())
         razor::write_text_file(intervals_, print_intervals(report));
     if (!json_.empty()) {
@@ -373,8 +384,8 @@ int RunCommand::run() const {
     const std::string text =
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
         frame_text(description.settings, workers, counted, statistics, frame.budget(), report) +
-        print_text(report) + (native ? native_text(*native, report.host_seconds) : "") +
-        code_text(frame.plan());
+        print_text(report) + (recorder ? trace_.text(*recorder) : "") +
+        (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

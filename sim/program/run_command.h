@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/program/scene_options.h"
+#include "sim/program/trace_options.h"
 
 #include <CLI/CLI.hpp>
 
@@ -28,6 +29,7 @@ public:
 private:
     MachineOptions machine_;
     razor::SceneOptions scene_;
+    TraceOptions trace_;
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,
         tiles_, memory_;

@@ -1,5 +1,6 @@
 // The format: what is written is read, and nothing else is.
 #include "tests/traces/samples.h"
+#include "traces/background_writer.h"
 #include "traces/chunk.h"
 #include "traces/error.h"
 #include "traces/in_time.h"
@@ -353,6 +354,71 @@ TEST(TraceFormat, SamplesAreUniform) {
     for (std::uint64_t line = 0; line < 100000; ++line)
         below += hash_of_line(line * 64) < 0.1 ? 1 : 0;
     EXPECT_NEAR(static_cast<double>(below), 10000, 400); // four standard deviations
+}
+
+/// Takes some bytes, then no more.
+class FullSink final : public Sink {
+public:
+    explicit FullSink(std::size_t room) : room_(room) {}
+    void write(std::string_view bytes) override {
+        if (bytes.size() > room_)
+            throw Error("no room");
+        room_ -= bytes.size();
+    }
+    void commit() override { ADD_FAILURE() << "what is not whole was committed"; }
+
+private:
+    std::size_t room_;
+};
+
+TEST(BackgroundWriter, WritesWhatAWriterWrites) {
+    for (const std::size_t size : {1U, 7U, 1000U, 5000U}) {
+        std::string plain, background;
+        Writer writer(memory_sink(plain), test::small_description());
+        BackgroundWriter other(memory_sink(background), test::small_description(), size);
+        BlockBuilder builder;
+        Block block;
+        const std::vector<Reference> all = mixed_references(3000, 1, 9);
+        writer.add_sites({"a:1", "b:2", "c:3"});
+        other.add_sites({"a:1", "b:2", "c:3"});
+        for (const Reference& r : all) {
+            builder.add(r);
+            other.add(r);
+            if (builder.size() == size) {
+                builder.take(block);
+                writer.write(block);
+            }
+        }
+        builder.take(block);
+        writer.write(block);
+        writer.finish();
+        other.finish();
+        EXPECT_TRUE(plain == background) << size;
+        EXPECT_EQ(other.references(), all.size());
+        EXPECT_EQ(other.bytes(), background.size());
+    }
+}
+
+TEST(BackgroundWriter, TellsWhatFailedAndCommitsNothing) {
+    const std::vector<Reference> all = mixed_references(100000, 1, 9);
+    EXPECT_THROW(
+        {
+            BackgroundWriter writer(std::make_unique<FullSink>(5000), test::small_description(), 1000);
+            for (const Reference& r : all)
+                writer.add(r);
+        },
+        Error);
+    EXPECT_THROW(
+        {
+            BackgroundWriter writer(std::make_unique<FullSink>(5000), test::small_description(), 100000);
+            for (const Reference& r : all)
+                writer.add(r);
+            writer.finish();
+        },
+        Error);
+    BackgroundWriter left(std::make_unique<FullSink>(1 << 30), test::small_description(), 1000);
+    for (const Reference& r : all)
+        left.add(r);
 }
 
 } // namespace

@@ -1,0 +1,199 @@
+#include "sim/trace/recorder.h"
+
+#include "sim/config/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace sim {
+namespace {
+
+/// Streams of many threads take some references each until what is written of them repeats itself.
+constexpr std::size_t block_references = std::size_t{1} << 18;
+
+/// Files by their name and folder, wherever the project lies.
+std::string short_name(const std::string& file) {
+    std::size_t slash = file.rfind('/');
+    if (slash != std::string::npos && slash != 0)
+        slash = file.rfind('/', slash - 1);
+    return slash == std::string::npos ? file : file.substr(slash + 1);
+}
+
+unsigned level_of(const std::string& name, const Config& config) {
+    const unsigned levels = config.cache_levels();
+    if (name == "core")
+        return TraceLevel::core;
+    if (name == "dram")
+        return TraceLevel::memory;
+    for (unsigned level = 1; level <= levels; ++level)
+        if (name == fmt::format("l{}", level))
+            return level;
+    throw ConfigError(
+        fmt::format("--trace-level {}: there is no such level; this machine has core, l1 to l{}, "
+                    "dram",
+                    name, levels));
+}
+
+/// Which of `names` are wanted: all if none is named.
+std::vector<bool> chosen(const char* option, const std::vector<std::string>& wanted,
+                         const std::vector<std::string>& names) {
+    std::vector<bool> out(names.size(), wanted.empty());
+    for (const std::string& name : wanted) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end())
+            throw ConfigError(fmt::format("{} {}: there is no such name; this run has {}", option, name,
+                                          fmt::join(names, ", ")));
+        out[static_cast<std::size_t>(found - names.begin())] = true;
+    }
+    return out;
+}
+
+std::size_t wide(integer x) {
+    return static_cast<std::size_t>(x);
+}
+
+} // namespace
+
+Recorder::Recorder(TraceSettings settings, const Config& config, std::unique_ptr<traces::Sink> sink)
+    : settings_(std::move(settings)), config_(config), sink_(std::move(sink)) {
+    filter_.level = level_of(settings_.level, config_);
+    const auto check = [](const char* option, const TraceSettings::Span& span, integer count) {
+        if (!span.all() && span.last >= wide(count))
+            throw ConfigError(fmt::format("{} {}..{}: the machine has {}, numbered from 0", option,
+                                          span.first, span.last, count));
+    };
+    check("--trace-tiles", settings_.tiles, config_.chip.tiles);
+    check("--trace-cores", settings_.cores, config_.chip.tiles * config_.chip.cores);
+    if (!settings_.cores.all() && filter_.level > 1)
+        throw ConfigError("--trace-cores: only what cores and L1s do is known by core; use --trace-tiles");
+}
+
+/// By number: threads, caches, or the tiles that ask memory.
+std::vector<std::string> Recorder::stream_names() const {
+    const std::size_t tiles = wide(config_.chip.tiles), cores = wide(config_.chip.cores);
+    std::vector<std::string> out;
+    if (filter_.level == TraceLevel::core) {
+        for (std::size_t core = 0; core < tiles * cores; ++core)
+            for (integer thread = 0; thread < config_.chip.threads; ++thread)
+                out.push_back(fmt::format("tile {} core {} thread {}", core / cores, core, thread));
+    } else if (filter_.level == 1) {
+        for (std::size_t core = 0; core < tiles * cores; ++core)
+            out.push_back(fmt::format("tile {} L1 of core {}", core / cores, core));
+    } else if (filter_.level == TraceLevel::memory || filter_.level > config_.tile_levels()) {
+        for (std::size_t tile = 0; tile < tiles; ++tile)
+            out.push_back(fmt::format("for tile {}", tile));
+    } else {
+        const std::size_t in_tile = cores / wide(config_.cores_sharing(filter_.level - 1));
+        for (std::size_t cache = 0; cache < tiles * in_tile; ++cache)
+            out.push_back(fmt::format("tile {} L{} {}", cache / in_tile, filter_.level, cache));
+    }
+    return out;
+}
+
+std::string Recorder::filters_text() const {
+    std::vector<std::string> out;
+    if (!settings_.structures.empty())
+        out.push_back(fmt::format("structures {}", fmt::join(settings_.structures, ", ")));
+    if (!settings_.phases.empty())
+        out.push_back(fmt::format("phases {}", fmt::join(settings_.phases, ", ")));
+    if (!settings_.tiles.all())
+        out.push_back(fmt::format("tiles {}..{}", settings_.tiles.first, settings_.tiles.last));
+    if (!settings_.cores.all())
+        out.push_back(fmt::format("cores {}..{}", settings_.cores.first, settings_.cores.last));
+    if (settings_.begin != 0 || settings_.end != ~std::uint64_t{0})
+        out.push_back(fmt::format("cycles {}:{}", settings_.begin, settings_.end));
+    return fmt::format("{}", fmt::join(out, "; "));
+}
+
+void Recorder::begin(const Labels& labels, const std::vector<std::string>& structures) {
+    traces::Description d;
+    d.program = settings_.program;
+    d.level = settings_.level;
+    d.time = "cycles";
+    const unsigned cache = filter_.level == TraceLevel::core     ? 0
+                           : filter_.level == TraceLevel::memory ? config_.cache_levels() - 1
+                                                                 : filter_.level - 1;
+    d.line_bytes = wide(config_.cache(cache).line_bytes);
+    d.sample = settings_.sample;
+    d.filters = filters_text();
+    d.configuration = settings_.configuration;
+    d.structures = structures;
+    d.phases = labels.phases;
+    d.work = labels.kinds;
+    d.streams = stream_names();
+
+    phases_ = labels.phases.size();
+    filter_.begin = settings_.begin;
+    filter_.end = settings_.end;
+    filter_.sample = settings_.sample;
+    filter_.line_shift = static_cast<unsigned>(std::countr_zero(d.line_bytes));
+    filter_.structures = chosen("--trace-structure", settings_.structures, structures);
+    const std::vector<bool> phases = chosen("--trace-phase", settings_.phases, labels.phases);
+    for (std::size_t column = 0; column < labels.columns(); ++column)
+        filter_.columns.push_back(phases[labels.phase(column)]);
+    const std::size_t streams = d.streams.size(), cores = wide(config_.chip.tiles * config_.chip.cores);
+    for (std::size_t stream = 0; stream < streams; ++stream) {
+        const std::size_t core = filter_.level > 1 ? 0 : stream * cores / streams;
+        filter_.streams.push_back(settings_.cores.all() ||
+                                  (core >= settings_.cores.first && core <= settings_.cores.last));
+    }
+    for (std::size_t tile = 0; tile < wide(config_.chip.tiles); ++tile)
+        taps_.emplace_back(filter_);
+    names_.resize(taps_.size());
+    writer_.emplace(std::move(sink_), d, block_references);
+}
+
+void Recorder::start(std::uint64_t cycle) {
+    for (std::size_t tile = 0; tile < taps_.size(); ++tile)
+        if (tile >= settings_.tiles.first && tile <= settings_.tiles.last)
+            taps_[tile].start(cycle);
+}
+
+/// Numbers what the tile has met since.
+void Recorder::learn_sites(std::size_t tile) {
+    std::vector<std::uint32_t>& number = names_[tile].number;
+    const std::size_t known = number.size() - 1;
+    const auto& all = taps_[tile].sites().all();
+    if (all.size() == known)
+        return;
+    number.resize(all.size() + 1);
+    std::vector<std::string> in_order(all.size() - known), fresh;
+    for (const auto& [where, local] : all)
+        if (local >= known)
+            in_order[local - known] = fmt::format("{}:{}", short_name(where.first), where.second);
+    for (std::size_t i = 0; i < in_order.size(); ++i) {
+        const auto next = static_cast<std::uint32_t>(sites_.size() + 1);
+        const auto [found, made] = sites_.try_emplace(in_order[i], next);
+        if (made)
+            fresh.push_back(in_order[i]);
+        number[known + 1 + i] = found->second;
+    }
+    writer_->add_sites(std::move(fresh));
+}
+
+void Recorder::collect() {
+    for (std::size_t tile = 0; tile < taps_.size(); ++tile) {
+        std::vector<TraceTap::Noted>& noted = taps_[tile].noted();
+        if (noted.empty())
+            continue;
+        learn_sites(tile);
+        const std::vector<std::uint32_t>& site = names_[tile].number;
+        for (const TraceTap::Noted& n : noted)
+            writer_->add({n.time,
+                          n.address,
+                          n.stream,
+                          {site[n.site], n.size, n.structure, static_cast<std::uint16_t>(n.column % phases_),
+                           static_cast<std::uint16_t>(n.column / phases_), n.kind}});
+        noted.clear();
+    }
+}
+
+void Recorder::finish() {
+    collect();
+    writer_->finish();
+}
+
+} // namespace sim
