@@ -18,7 +18,8 @@ bool Conversion::step() {
 }
 
 /// What a target without the kind gets in its place: of a line or word that is written, a write; of a
-/// modification, a read and a write; of what is no access, nothing.
+/// modification, a read and a write; of what is no access, nothing. Where nothing is written, every access is
+/// read.
 void Conversion::convert(Reference r) {
     ++read_;
     streams_ |= r.stream != 0;
@@ -32,15 +33,15 @@ void Conversion::convert(Reference r) {
     };
     const Kind kind = r.what.kind;
     const auto number = static_cast<std::size_t>(kind);
+    const bool written = kind == Kind::write || kind == Kind::write_back || kind == Kind::write_through;
     if (holds_.holds(kind)) {
         put(kind);
-    } else if (kind == Kind::modify) {
+    } else if (written || kind == Kind::modify) {
         ++replaced_[number];
-        put(Kind::read);
-        put(Kind::write);
-    } else if (kind == Kind::write_back || kind == Kind::write_through) {
-        ++replaced_[number];
-        put(Kind::write);
+        if (!written || !holds_.holds(Kind::write))
+            put(Kind::read);
+        if (holds_.holds(Kind::write))
+            put(Kind::write);
     } else {
         ++left_out_[number];
     }
@@ -61,9 +62,10 @@ std::string Conversion::lost() const {
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
     for (std::size_t k = 0; k < kind_names.size(); ++k) {
         if (replaced_[k] != 0)
-            parts.push_back(
-                fmt::format("{} {} references are {}", replaced_[k], kind_names[k],
-                            static_cast<Kind>(k) == Kind::modify ? "a read and a write each" : "writes"));
+            parts.push_back(fmt::format("{} {} references are {}", replaced_[k], kind_names[k],
+                                        !holds_.holds(Kind::write)             ? "reads"
+                                        : static_cast<Kind>(k) == Kind::modify ? "a read and a write each"
+                                                                               : "writes"));
         if (left_out_[k] != 0)
             parts.push_back(fmt::format("{} {} references are left out", left_out_[k], kind_names[k]));
     }

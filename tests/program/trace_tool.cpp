@@ -110,5 +110,86 @@ TEST_F(TraceTool, KeepsWhatWasThereBefore) {
     EXPECT_NE(tool("--help").out.find("ramulator"), std::string::npos);
 }
 
+// Three lines of 16 bytes in turns, the third written: a cache of two misses all, one of four the first
+// touches.
+TEST_F(TraceTool, AnswersQuestionsAboutCaches) {
+    std::string din;
+    for (int i = 0; i < 5; ++i)
+        din += "0 100 4\n0 110 4\n1 128 8\n";
+    folder_.file("a.din", din);
+    const auto rows = [&](const std::string& arguments) {
+        const Outcome result = tool(arguments + " a.din --json -");
+        EXPECT_EQ(result.code, 0) << result.err;
+        const nlohmann::json j = nlohmann::json::parse(result.out);
+        EXPECT_EQ(j.at("complete"), true);
+        return j.at("rows");
+    };
+    const nlohmann::json curve = rows("curve --line 16 --sizes 32,64 --ways 1,2,4 --optimum");
+    ASSERT_EQ(curve.size(), 2U);
+    EXPECT_EQ(curve.at(0).at("misses"), 15);
+    EXPECT_EQ(curve.at(0).at("misses of 1 ways"), 1 + 10);  // the second line has a set of its own
+    EXPECT_EQ(curve.at(0).at("misses of 4 ways"), nullptr); // two lines have no four ways
+    EXPECT_EQ(curve.at(0).at("least misses"), 3 + 12 / 2);
+    EXPECT_EQ(curve.at(1).at("misses"), 3);
+    EXPECT_EQ(curve.at(1).at("misses of 4 ways"), 3);
+    const nlohmann::json by_kind = rows("curve --line 16 --sizes 32 --by kind --kinds write");
+    ASSERT_EQ(by_kind.size(), 1U);
+    EXPECT_EQ(by_kind.at(0).at("kind"), "write");
+    EXPECT_EQ(by_kind.at(0).at("references"), 5);
+    EXPECT_EQ(by_kind.at(0).at("misses"), 1);
+    EXPECT_EQ(rows("curve --line 16 --sizes 32 --rate 0.999999").at(0).at("references"), 15);
+    const nlohmann::json reuse = rows("reuse --line 16"); // others between two touches: two
+    EXPECT_EQ(reuse.at(2).at("others from"), 2);
+    EXPECT_EQ(reuse.at(2).at("to"), 3);
+    EXPECT_EQ(reuse.at(2).at("references"), 12);
+    EXPECT_EQ(reuse.back().at("references"), 3);
+    const nlohmann::json windows = rows("windows --line 16 --window 10 --sizes 32");
+    ASSERT_EQ(windows.size(), 2U);
+    EXPECT_EQ(windows.at(1).at("begins"), 10);
+    EXPECT_EQ(windows.at(1).at("references"), 5);
+    EXPECT_EQ(windows.at(1).at("new lines"), 0);
+    EXPECT_EQ(windows.at(1).at("misses of 32 bytes"), 5);
+    EXPECT_EQ(rows("lines --line 16").at(0).at("bytes used"), 16);
+    EXPECT_EQ(rows("lines --line 16 --hottest 1").at(0).at("address"), "0x100");
+    EXPECT_EQ(rows("objects --sizes 16B").at(0).at("misses"), 3);
+    EXPECT_EQ(tool("curve a.din --line 16 --sizes 32 --csv -").out,
+              "bytes,references,first,misses,ratio\n32,15,3,15,1\n");
+    EXPECT_NE(tool("curve a.din").out.find("15 touches of 1 lines of 64 bytes"), std::string::npos);
+}
+
+TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
+    folder_.file("a.din", "0 10 4\n");
+    const std::size_t before = folder_.count();
+    for (const auto& [arguments, cause] : std::vector<std::pair<std::string, std::string>>{
+             {"curve", "TRACE"},
+             {"curve b.din", "b.din"},
+             {"curve a.din --line 48", "no power of two"},
+             {"curve a.din --sizes 1KB", "no size"},
+             {"curve a.din --sizes 4KiB..1KiB", "ends before it begins"},
+             {"curve a.din --sizes 100", "give multiples"},
+             {"curve a.din --sizes ,", "no size"},
+             {"curve a.din --ways 2000", "at most 1024"},
+             {"curve a.din --by colour", "there is no such thing; give all, structure"},
+             {"curve a.din --kinds read,nothing", "there is no such thing; give read, write"},
+             {"curve a.din --rate 0", "no fraction"},
+             {"curve a.din --rate 0.1 --optimum", "leave out"},
+             {"curve a.din --json no/a.json", "no/a.json: cannot be written"},
+             {"windows a.din", "--window"},
+             {"windows a.din --window 0", "no size"},
+             {"lines a.din --hottest 0", "--hottest"},
+             {"objects a.din", "--sizes"}}) {
+        const Outcome result = tool(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_EQ(result.out, "") << arguments;
+        EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
+        EXPECT_EQ(folder_.count(), before) << arguments;
+    }
+    for (const char* format : {"din", "lackey", "oraclegeneral"}) { // of nothing
+        const Outcome result = tool(std::string("curve - --from ") + format + " </dev/null");
+        EXPECT_EQ(result.code, 0) << result.err;
+    }
+}
+
 } // namespace
 } // namespace razor

@@ -77,10 +77,12 @@ TEST(TraceFormats, WhatAFormatHoldsComesBack) {
             const Holds& holds = f.holds;
             std::vector<Kind> kinds = {r.what.kind};
             if (!holds.holds(r.what.kind)) {
+                const bool writes = holds.holds(Kind::write);
                 if (r.what.kind == Kind::modify)
-                    kinds = {Kind::read, Kind::write};
-                else if (r.what.kind == Kind::write_back || r.what.kind == Kind::write_through)
-                    kinds = {Kind::write};
+                    kinds = writes ? std::vector{Kind::read, Kind::write} : std::vector{Kind::read};
+                else if (r.what.kind == Kind::write_back || r.what.kind == Kind::write_through ||
+                         r.what.kind == Kind::write)
+                    kinds = {writes ? Kind::write : Kind::read};
                 else
                     kinds = {};
             }
@@ -183,6 +185,21 @@ TEST(TraceFormats, ReadsWhatOtherToolsWrite) {
     EXPECT_TRUE(test::equal(got[2], {1, 0x4000, 0, {.site = 0x401000, .kind = Kind::write}}));
 }
 
+TEST(TraceFormats, OracleGeneralKnowsTheNextRequest) {
+    const std::string written =
+        converted("csv", "seconds,address,size\n3,5,512\n4,6,10\n9,5,512\n", "oraclegeneral").bytes;
+    ASSERT_EQ(written.size(), 3 * 24U);
+    const std::string first{"\3\0\0\0"
+                            "\5\0\0\0\0\0\0\0"
+                            "\0\2\0\0"
+                            "\3\0\0\0\0\0\0\0",
+                            24};
+    EXPECT_EQ(written.substr(0, 24), first);
+    for (const std::size_t last : {1U, 2U})
+        EXPECT_EQ(written.substr(last * 24 + 16, 8), std::string(8, '\xFF'));
+    EXPECT_THROW(converted("csv", "seconds,address,size\n4294967296,5,512\n", "oraclegeneral"), Error);
+}
+
 TEST(TraceFormats, RefusesByOneLineThatSaysWhere) {
     const std::string long_line(200000, 'x');
     struct Case {
@@ -210,6 +227,7 @@ TEST(TraceFormats, RefusesByOneLineThatSaysWhere) {
         {"dramsim3", "0x10 REED 3\n", "sample, line 1: ", "neither READ nor WRITE"},
         {"ramulator", "0x10\n", "sample, line 1: ", "neither READ nor WRITE"},
         {"champsim", std::string(100, '\0'), "sample, instruction 1: ", "36 of 64 bytes"},
+        {"oraclegeneral", std::string(70, '\0'), "sample, request 3: ", "22 of 24 bytes"},
         {"champsim", std::string(64, '\7'), "sample, instruction 0: ", "neither that it branches"},
     };
     for (const Case& c : cases) {
@@ -232,6 +250,7 @@ TEST(TraceFormats, RefusesByOneLineThatSaysWhere) {
 TEST(TraceFormats, AreKnownByNameBeginningAndSuffix) {
     EXPECT_EQ(format_by_suffix("a.din.gz")->name, "din");
     EXPECT_EQ(format_by_suffix("x.champsimtrace.xz")->name, "champsim");
+    EXPECT_EQ(format_by_suffix("x.oracleGeneral.bin.zst")->name, "oraclegeneral");
     EXPECT_EQ(format_by_suffix("a.gz"), nullptr);
     EXPECT_THROW(format_by_name("--from", "dine"), Error);
     std::vector<Reference> all;

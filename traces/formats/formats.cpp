@@ -13,7 +13,9 @@ namespace {
 constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, true, true, true, true},
                                               din = {true, true, false, true, false, false, false, false},
                                               lackey = {true, true, true, true, false, false, false, false},
-                                              plain = {true, true, false, false, false, false, false, false};
+                                              plain = {true, true, false, false, false, false, false, false},
+                                              requests = {true,  false, false, false,
+                                                          false, false, false, false};
 
 // time, streams, size, sites, names, kinds
 constexpr Format table[] = {
@@ -59,6 +61,12 @@ constexpr Format table[] = {
      {false, false, false, true, false, plain},
      read_champsim,
      write_champsim},
+    {"oraclegeneral",
+     "libCacheSim's oracleGeneral: 24 bytes a request for an object",
+     ".oracleGeneral .oracleGeneral.bin",
+     {true, false, true, false, false, requests},
+     read_oracle_general,
+     write_oracle_general},
 };
 
 std::string names() {

@@ -52,7 +52,7 @@ private:
 class BufferedOutput : public Output {
 public:
     void describe(const Description&) override {}
-    void finish() final {
+    void finish() override {
         flush();
         sink_->commit();
     }

@@ -1,21 +1,24 @@
-// razor-trace: what is in a trace, and the same in another format.
+// razor-trace: what is in a trace, the same in another format, and what caches would make of it.
 #include "traces/convert.h"
 #include "traces/error.h"
+#include "traces/program/analyses.h"
+#include "traces/program/interrupt.h"
 #include "traces/summary.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <tuple>
 
 namespace {
 
+using traces::interrupted;
+
 constexpr int mistake_exit = 2, failure_exit = 1, interrupted_exit = 130;
-volatile std::sig_atomic_t interrupted = 0;
 
 std::string formats_text() {
     std::string out = "formats:\n";
@@ -34,10 +37,10 @@ struct Info {
         traces::Summary::File about{source->name(), std::string(format.name), "", 0};
         const auto input = format.read(std::move(source));
         traces::Summary summary;
-        for (traces::Block block; interrupted == 0 && input->next(block);)
+        for (traces::Block block; !interrupted() && input->next(block);)
             summary.add(block);
-        if (interrupted != 0)
-            return interrupted_exit;
+        if (interrupted())
+            throw traces::Interrupted();
         about.note = input->note();
         std::error_code none;
         if (std::filesystem::is_regular_file(file, none))
@@ -58,12 +61,10 @@ struct Convert {
         const auto input = source_format.read(std::move(source));
         const auto output = target.write(traces::open_sink(out));
         traces::Conversion conversion(*input, *output, target.holds);
-        while (interrupted == 0 && conversion.step()) {
+        while (!interrupted() && conversion.step()) {
         }
-        if (interrupted != 0) {
-            fmt::print(stderr, "razor-trace: interrupted; nothing written\n");
-            return interrupted_exit;
-        }
+        if (interrupted())
+            throw traces::Interrupted();
         output->finish();
         if (!input->note().empty())
             fmt::print(stderr, "razor-trace: {}\n", input->note());
@@ -84,7 +85,8 @@ int complain(std::string text, int code) {
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Says what is in a trace of memory references, and converts it.", "razor-trace");
+    CLI::App app("Says what is in a trace of memory references, what caches make of it, and converts it.",
+                 "razor-trace");
     app.set_version_flag("--version", "razor-trace " RAZOR_VERSION);
     app.require_subcommand(1);
     app.footer(formats_text());
@@ -102,11 +104,24 @@ int main(int argc, char** argv) {
         ->type_name("FORMAT");
     converting.add_option("--to", convert.to, "the format of OUT; without it, as it is named")
         ->type_name("FORMAT");
-    for (const int signal : {SIGINT, SIGTERM})
-        std::signal(signal, [](int) { interrupted = 1; });
+    traces::CurveCommand curve;
+    traces::ReuseCommand reuse;
+    traces::WindowsCommand windows;
+    traces::LinesCommand lines;
+    traces::ObjectsCommand objects;
+    const auto all = std::tie(curve, reuse, windows, lines, objects);
+    std::apply([&](auto&... command) { (command.add_to(app), ...); }, all);
+    traces::listen_for_interrupts();
     try {
         app.parse(argc, argv);
-        return informing.parsed() ? info.run() : convert.run();
+        if (informing.parsed())
+            return info.run();
+        if (converting.parsed())
+            return convert.run();
+        std::apply([](auto&... command) { ((command.parsed() ? command.run() : void()), ...); }, all);
+        return 0;
+    } catch (const traces::Interrupted&) {
+        return complain("interrupted; nothing written", interrupted_exit);
     } catch (const CLI::Success& help) {
         return app.exit(help, std::cout, std::cerr);
     } catch (const CLI::ParseError& e) {

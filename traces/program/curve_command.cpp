@@ -1,0 +1,208 @@
+#include "analysis/traces/lru_curve.h"
+#include "analysis/traces/optimum.h"
+#include "analysis/traces/set_curve.h"
+#include "analysis/traces/shards.h"
+#include "traces/error.h"
+#include "traces/program/analyses.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace traces {
+
+using analysis::Table;
+using analysis::Touch;
+
+namespace {
+
+double ratio(std::uint64_t misses, std::uint64_t references) {
+    return references == 0 ? 0 : static_cast<double>(misses) / static_cast<double>(references);
+}
+
+/// Lines of each size, which is a multiple of a line's.
+std::vector<std::uint64_t> lines_of(const std::vector<std::uint64_t>& sizes, std::uint64_t line_bytes) {
+    std::vector<std::uint64_t> out;
+    for (const std::uint64_t size : sizes) {
+        if (size % line_bytes != 0)
+            throw Error(
+                fmt::format("--sizes {}: lines have {} bytes; give multiples of that", size, line_bytes));
+        out.push_back(size / line_bytes);
+    }
+    return out;
+}
+
+double parse_rate(const std::string& text) {
+    double rate = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
+    if (error != std::errc() || end != text.data() + text.size() || !(rate > 0) || !(rate <= 1))
+        throw Error(fmt::format("--rate '{}': no fraction; give one above 0, at most 1", text));
+    return rate;
+}
+
+std::vector<std::uint64_t> parse_ways(const std::string& text) {
+    std::vector<std::uint64_t> out =
+        text.empty() ? std::vector<std::uint64_t>() : parse_sizes("--ways", text);
+    for (const std::uint64_t ways : out)
+        if (ways > 1024)
+            throw Error(fmt::format("--ways {}: at most 1024", ways));
+    return out;
+}
+
+} // namespace
+
+void CurveCommand::add_to(CLI::App& app) {
+    app_ = app.add_subcommand("curve", "misses by the size of a cache");
+    options_.add_to(*app_, true);
+    app_->add_option("--sizes", sizes_,
+                     "of caches, as 1KiB..64MiB (doubling) or 32KiB,48KiB; without it, from 1KiB until "
+                     "nothing changes")
+        ->type_name("SIZES");
+    app_->add_option("--ways", ways_, "also set-associative caches of so many ways, with commas between")
+        ->type_name("WAYS");
+    app_->add_flag("--optimum", optimum_,
+                   "also the least misses that any replacement can have (Belady); takes 8 bytes a reference");
+    app_->add_option("--rate", rate_, "estimate from this fraction of all lines (SHARDS), with its error")
+        ->type_name("FRACTION");
+}
+
+void CurveCommand::run() {
+    if (!rate_.empty() && (!ways_.empty() || optimum_))
+        throw Error("--rate: of fully associative LRU caches alone; leave out --ways and --optimum");
+    const double rate = rate_.empty() ? 1 : parse_rate(rate_);
+    options_.prepare();
+    const double sample = options_.description().sample;
+    if (sample < 1 && (!ways_.empty() || optimum_))
+        throw Error(
+            "--ways, --optimum: the trace is of a sample of lines, which tells of fully associative LRU "
+            "caches alone; leave them out");
+    const Table table = rate < 1 || sample < 1 ? sampled(rate) : exact();
+    options_.give("curve", table, heading_);
+}
+
+Table CurveCommand::exact() {
+    const std::uint64_t line_bytes = options_.line_bytes();
+    const std::vector<std::uint64_t> all_ways = parse_ways(ways_);
+    const bool chosen = !sizes_.empty();
+    const std::vector<std::uint64_t> sizes =
+        parse_sizes("--sizes", chosen ? sizes_
+                                      : fmt::format("{}..{}", std::max<std::uint64_t>(1024, line_bytes),
+                                                    all_ways.empty() ? "1TiB" : "16MiB"));
+    const std::vector<std::uint64_t> lines = lines_of(sizes, line_bytes);
+    // Caches of as many sets are one pass.
+    std::map<std::uint64_t, std::vector<std::uint64_t>> ways_by_sets;
+    for (const std::uint64_t n : lines)
+        for (const std::uint64_t ways : all_ways)
+            if (n % ways == 0)
+                ways_by_sets[n / ways].push_back(ways);
+    std::vector<analysis::SetCurve> sets;
+    for (auto& [count, ways] : ways_by_sets) {
+        std::sort(ways.begin(), ways.end());
+        sets.emplace_back(count, ways);
+    }
+    analysis::LruCurve lru(lines);
+    analysis::Optimum optimum;
+    analysis::Touches touches = options_.touches();
+    options_.each_block([&](const Block& block) {
+        touches.each(block, [&](const Touch& t) {
+            lru.touch(t.line, t.group);
+            for (analysis::SetCurve& s : sets)
+                s.touch(t.line, t.group);
+            if (optimum_)
+                optimum.touch(t.line, t.group);
+        });
+    });
+
+    Table table;
+    const std::size_t groups = touches.groups();
+    std::uint64_t references = 0;
+    for (std::size_t g = 0; g < groups; ++g)
+        references += lru.counts().references(g);
+    heading_ = fmt::format("{} touches of {} lines of {} bytes", references, lru.lines(), line_bytes);
+    if (options_.grouped())
+        table.columns.emplace_back(options_.by());
+    for (const char* name : {"bytes", "references", "first", "misses", "ratio"})
+        table.columns.emplace_back(name);
+    for (const std::uint64_t ways : all_ways)
+        table.columns.push_back(fmt::format("misses of {} ways", ways));
+    if (optimum_)
+        table.columns.emplace_back("least misses");
+    std::vector<std::vector<std::uint64_t>> least; // by size and group
+    std::size_t shown = 0;
+    for (bool more = true; shown < lines.size() && more; ++shown) {
+        if (optimum_)
+            least.push_back(optimum.misses(lines[shown], groups));
+        more = chosen || lru.lines() > lines[shown]; // else all larger ones are like this one
+    }
+    for (std::size_t g = 0; g < groups; ++g)
+        for (std::size_t size = 0; size < shown; ++size) {
+            std::vector<Table::Cell> row;
+            if (options_.grouped())
+                row.emplace_back(touches.name(g, options_.description()));
+            const std::uint64_t misses = lru.counts().misses(g, size), all = lru.counts().references(g);
+            row.insert(row.end(), {sizes[size], all, lru.counts().firsts(g), misses, ratio(misses, all)});
+            for (const std::uint64_t ways : all_ways) {
+                Table::Cell cell = std::numeric_limits<double>::quiet_NaN(); // there is no such cache
+                if (lines[size] % ways == 0)
+                    for (const analysis::SetCurve& s : sets)
+                        if (s.sets() == lines[size] / ways) {
+                            const auto& counted = s.counts().sizes();
+                            const auto at = std::find(counted.begin(), counted.end(), ways) - counted.begin();
+                            cell = s.counts().misses(g, static_cast<std::size_t>(at));
+                        }
+                row.push_back(cell);
+            }
+            if (optimum_)
+                row.emplace_back(least[size][g]);
+            table.rows.push_back(std::move(row));
+        }
+    return table;
+}
+
+Table CurveCommand::sampled(double rate) {
+    const std::uint64_t line_bytes = options_.line_bytes();
+    const bool chosen = !sizes_.empty();
+    const std::vector<std::uint64_t> sizes = parse_sizes(
+        "--sizes", chosen ? sizes_ : fmt::format("{}..1TiB", std::max<std::uint64_t>(1024, line_bytes)));
+    const double of = options_.description().sample;
+    analysis::Shards shards(lines_of(sizes, line_bytes), rate * of, of);
+    analysis::Touches touches = options_.touches();
+    options_.each_block([&](const Block& block) {
+        touches.each(block, [&](const Touch& t) { shards.touch(t.line, t.group); });
+    });
+
+    Table table;
+    std::uint64_t references = 0;
+    for (std::size_t g = 0; g < touches.groups(); ++g)
+        references += shards.references(g);
+    heading_ =
+        fmt::format("{} touches of lines of {} bytes, estimated from {} touches of a sample of {:g} of all "
+                    "lines; errors are those of 19 samples of 20",
+                    references, line_bytes, shards.sampled(), rate * of);
+    if (options_.grouped())
+        table.columns.emplace_back(options_.by());
+    for (const char* name : {"bytes", "references", "misses", "ratio", "error"})
+        table.columns.emplace_back(name);
+    std::size_t shown = 0;
+    for (bool more = true; shown < sizes.size() && more; ++shown)
+        more = chosen || static_cast<double>(shards.lines()) / (rate * of) * static_cast<double>(line_bytes) >
+                             static_cast<double>(sizes[shown]);
+    for (std::size_t g = 0; g < touches.groups(); ++g)
+        for (std::size_t size = 0; size < shown; ++size) {
+            std::vector<Table::Cell> row;
+            if (options_.grouped())
+                row.emplace_back(touches.name(g, options_.description()));
+            const auto [r, error] = shards.estimate(g, size);
+            const std::uint64_t all = shards.references(g);
+            row.insert(row.end(),
+                       {sizes[size], all,
+                        static_cast<std::uint64_t>(std::llround(r * static_cast<double>(all))), r, error});
+            table.rows.push_back(std::move(row));
+        }
+    return table;
+}
+
+} // namespace traces
