@@ -26,6 +26,12 @@ double seconds_since(Clock::time_point begin) {
 
 void run_workers(Frame& frame, const KernelTable& kernels, const std::function<void(double)>& progress,
                  const std::atomic<bool>* cancel) {
+    run_workers(
+        frame, [&](int worker) { frame.render(kernels, worker); }, progress, cancel);
+}
+
+void run_workers(Frame& frame, const std::function<void(int worker)>& work,
+                 const std::function<void(double)>& progress, const std::atomic<bool>* cancel) {
     int workers = frame.workers();
     std::mutex mutex;
     std::condition_variable changed;
@@ -36,7 +42,7 @@ void run_workers(Frame& frame, const KernelTable& kernels, const std::function<v
         threads.emplace_back([&, w] {
             std::exception_ptr mine;
             try {
-                frame.render(kernels, w);
+                work(w);
             } catch (...) {
                 mine = std::current_exception();
                 frame.stop();
@@ -79,7 +85,10 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
         frame.build_all(kernels);
         time.eager_seconds = seconds_since(begin);
     }
-    run_workers(frame, kernels, progress, options.cancel);
+    if (options.run)
+        options.run(frame, progress);
+    else
+        run_workers(frame, kernels, progress, options.cancel);
     time.render_seconds = seconds_since(begin);
     time.render_processor_seconds = static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
     time.topology_page_seconds = frame.statistics().page_seconds - pages_before;
@@ -89,7 +98,8 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
 } // namespace
 
 NativeRenderer::NativeRenderer(const Scene& scene, const RenderOptions& options, bool moves)
-    : options_(options), moves_(moves), kernels_(native_target(options.isa)) {
+    : options_(options), moves_(moves),
+      kernels_(options.kernels != nullptr ? *options.kernels : native_target(options.isa)) {
     if (options_.threads <= 0)
         options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (options_.eager && options_.memory_bytes != 0)

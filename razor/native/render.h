@@ -30,6 +30,9 @@ struct RenderOptions {
     std::uint64_t memory_bytes = 0;
     int tiles = 0;              // screen tiles rendered, along the curve; pixels of others stay 0. 0: all
     bool tiles_in_rows = false; // their order
+    /// Instead of those of `isa`; and what runs all workers of a frame with them, instead of run_workers().
+    const KernelTable* kernels = nullptr;
+    std::function<void(Frame& frame, const std::function<void(double)>& progress)> run;
     /// Called now and then with the fraction of tiles begun, from the calling thread.
     std::function<void(double fraction)> progress;
     /// Set to true from anywhere to stop early; render_native then throws Cancelled.
@@ -97,7 +100,11 @@ private:
 
 RenderResult render_native(const Scene& scene, const RenderOptions& options);
 
-/// Runs all workers of a frame to the end; throws what the first failing worker threw.
+/// Runs all workers of a frame to the end, each on a thread of its own; throws what the first failing worker
+/// threw, and Cancelled.
+void run_workers(Frame& frame, const std::function<void(int worker)>& work,
+                 const std::function<void(double)>& progress = {}, const std::atomic<bool>* cancel = nullptr);
+/// ... with these kernels.
 void run_workers(Frame& frame, const KernelTable& kernels, const std::function<void(double)>& progress = {},
                  const std::atomic<bool>* cancel = nullptr);
 

@@ -3,6 +3,7 @@
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
 #include "razor/program/arguments.h"
+#include "razor/program/frame_trace.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/sequence.h"
 #include "razor/scene/error.h"
@@ -16,6 +17,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 namespace razor {
@@ -83,6 +85,11 @@ void RenderCommand::add_to(CLI::App& app) {
         ->type_name("N");
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
+    render
+        .add_option("--trace", trace_,
+                    "record what the frame loads and stores, for razor-trace: of the simulated kernels, with "
+                    "no machine")
+        ->type_name("FILE.rzt");
     render.add_flag("--print-config", print_config_, "print the complete scene file and render nothing");
     render.add_flag("--quiet", quiet_, "show no progress");
 }
@@ -104,8 +111,12 @@ int RenderCommand::run() const {
         throw UserError("--resume without --frames; leave it out");
     }
     const FrameRange frames = sequence ? parse_frames(frames_) : FrameRange{scene_.frame(), scene_.frame()};
-    if (!print_config_ && outputs_.empty() && statistics_.empty()) {
+    if (!print_config_ && outputs_.empty() && statistics_.empty() && trace_.empty()) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
+    }
+    if (!trace_.empty() && (sequence || options.frames > 1 || eager_ || options.isa != "auto")) {
+        throw UserError("--trace is of one frame, rendered once, by kernels of its own; leave out --frames, "
+                        "--repeat, --eager and --isa");
     }
     options.cancel = &watch_interrupts();
     if (print_config_) {
@@ -120,6 +131,10 @@ int RenderCommand::run() const {
     if (!statistics_.empty()) {
         check_numbered("--stats", statistics_, frames);
         check_writable(numbered(statistics_, frames.first));
+    }
+
+    if (!trace_.empty()) {
+        check_writable(trace_);
     }
 
     Progress progress(!quiet_);
@@ -154,13 +169,19 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
     const auto start = std::chrono::steady_clock::now();
     std::string config;
     RenderResult result;
+    std::optional<FrameTrace> trace;
     try {
         moving.go_to_frame(frame);
         config = to_toml(moving.description());
         if (renderer) {
             renderer->pose(moving.scene(), moving.changes());
         } else {
-            renderer = std::make_unique<NativeRenderer>(moving.scene(), options, !frames_.empty());
+            RenderOptions all = options;
+            if (!trace_.empty()) {
+                trace.emplace(trace_, config);
+                trace->record_by(all);
+            }
+            renderer = std::make_unique<NativeRenderer>(moving.scene(), all, !frames_.empty());
         }
         result = renderer->render(options.progress);
     } catch (const Cancelled&) {
@@ -174,6 +195,7 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     const OutputGuard guard;
+    const std::string traced = trace ? trace->finish() : "";
     const ImageAttributes attributes{{"razor.version", std::string(version())},
                                      {"razor.scene", config},
                                      {"razor.isa", result.statistics.isa}};
@@ -210,6 +232,9 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
         fmt::print(
             stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
             result.film.width, result.film.height, seconds, built.first_packet_seconds, built.refit_seconds);
+    }
+    if (!traced.empty() && !quiet_) {
+        fmt::print("{}\n", traced);
     }
     return true;
 }

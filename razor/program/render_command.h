@@ -29,7 +29,8 @@ private:
 
     SceneOptions scene_;
     std::vector<std::string> outputs_;
-    std::string threads_, isa_ = "auto", share_ = "chip", memory_, repeat_ = "1", frames_, statistics_;
+    std::string threads_, isa_ = "auto", share_ = "chip", memory_, repeat_ = "1", frames_, statistics_,
+                          trace_;
     bool print_config_ = false, quiet_ = false, eager_ = false, resume_ = false;
 };
 

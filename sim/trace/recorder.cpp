@@ -1,6 +1,7 @@
 #include "sim/trace/recorder.h"
 
 #include "sim/config/error.h"
+#include "traces/site_name.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,14 +14,6 @@ namespace {
 
 /// Streams of many threads take some references each until what is written of them repeats itself.
 constexpr std::size_t block_references = std::size_t{1} << 18;
-
-/// Files by their name and folder, wherever the project lies.
-std::string short_name(const std::string& file) {
-    std::size_t slash = file.rfind('/');
-    if (slash != std::string::npos && slash != 0)
-        slash = file.rfind('/', slash - 1);
-    return slash == std::string::npos ? file : file.substr(slash + 1);
-}
 
 unsigned level_of(const std::string& name, const Config& config) {
     const unsigned levels = config.cache_levels();
@@ -163,7 +156,7 @@ void Recorder::learn_sites(std::size_t tile) {
     std::vector<std::string> in_order(all.size() - known), fresh;
     for (const auto& [where, local] : all)
         if (local >= known)
-            in_order[local - known] = fmt::format("{}:{}", short_name(where.first), where.second);
+            in_order[local - known] = traces::site_name(where.first, where.second);
     for (std::size_t i = 0; i < in_order.size(); ++i) {
         const auto next = static_cast<std::uint32_t>(sites_.size() + 1);
         const auto [found, made] = sites_.try_emplace(in_order[i], next);
