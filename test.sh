@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 usage='usage: ./test.sh [--all]
   Builds build/release with g++ for every kernel target and runs its tests.
   --all   also: code style; the benchmarks start; simulated reports, pictures and events of clang equal those of g++;
-          a fuzzer for some seconds; all but the longest tests by clang under address and undefined-behaviour
+          two fuzzers for some seconds; all but the longest tests by clang under address and undefined-behaviour
           sanitizers; shared trees under the thread sanitizer; the picture at widths 8, 16 and 64.'
 all=false
 for argument in "$@"; do
@@ -41,7 +41,7 @@ if $all; then
     step "benchmarks start" start_benchmarks
     step "clang: build" build_by_clang
     step "clang: reports and pictures equal those of g++" compare_compilers
-    step "a fuzzer for $fuzz_seconds s" fuzz
+    step "two fuzzers, $fuzz_seconds s each" fuzz
     step "address and undefined-behaviour sanitizers: build" build asan-ubsan -DRAZOR_TESTS=ON -DRAZOR_PRECOMPILE=ON
     step "address and undefined-behaviour sanitizers: tests" run_sanitized_tests
     step "thread sanitizer: build" build_for_threads

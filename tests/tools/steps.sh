@@ -105,7 +105,7 @@ run_tests() {
 # What is compared with g++'s. What clang makes of the tests is seen under its sanitizers.
 build_by_clang() {
     configure clang build/clang -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON -DRAZOR_BENCHMARKS=OFF
-    compile build/clang razor-sim op_stream fuzz_obj
+    compile build/clang razor-sim op_stream fuzz_obj fuzz_traces
 }
 
 # Ten times as slow, and one trial shows an error of memory as well as ten do.
@@ -153,14 +153,18 @@ compare_compilers() {
 }
 
 fuzz() {
-    mkdir -p build/fuzz
-    # Findings are left beside the corpus; the log only matters when there are some.
-    if ! build/clang/tests/scene/fuzz_obj -max_total_time=$fuzz_seconds -artifact_prefix=build/fuzz/ build/fuzz \
-        >build/fuzz.log 2>&1; then
-        tail -n 40 build/fuzz.log >&2
-        return 1
-    fi
-    tail -n 1 build/fuzz.log
+    local program name
+    for program in scene/fuzz_obj traces/fuzz_traces; do
+        name=$(basename $program)
+        mkdir -p "build/fuzz/$name"
+        # Findings are left beside the corpus; the log only matters when there are some.
+        if ! "build/clang/tests/$program" -max_total_time=$fuzz_seconds -artifact_prefix="build/fuzz/$name/" \
+            "build/fuzz/$name" >build/fuzz.log 2>&1; then
+            tail -n 40 build/fuzz.log >&2
+            return 1
+        fi
+        printf '%s: %s\n' "$name" "$(tail -n 1 build/fuzz.log)"
+    done
 }
 
 build_for_threads() {

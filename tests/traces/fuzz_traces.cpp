@@ -1,0 +1,115 @@
+// libFuzzer target for the readers of traces: the first byte chooses the format, the rest gives blocks that
+// keep their promises, or an Error in a line. Checksums of our own format are set right first, else hardly
+// any bytes would pass.
+#include "tests/traces/samples.h"
+#include "traces/chunk.h"
+#include "traces/error.h"
+#include "traces/formats/format.h"
+#include "traces/varint.h"
+#include "traces/writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+namespace {
+
+using namespace traces;
+
+void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+std::string own_seed() {
+    std::string out;
+    Writer writer(memory_sink(out), test::small_description());
+    writer.add_sites({"a:1", "b:2", "c:3"});
+    BlockBuilder builder;
+    for (const Reference& r : test::mixed_references(40, 1, 3))
+        builder.add(r);
+    Block block;
+    builder.take(block);
+    writer.write(block);
+    writer.finish();
+    return out;
+}
+
+const std::array<std::string, 8>& seeds() {
+    static const std::array<std::string, 8> all{
+        std::string(1, '\0') + own_seed(),
+        std::string("\1") + "0 10 4\n1 7fff 8\n2 401000 3\n",
+        std::string("\2") +
+            "cycles,address,kind,size,site,stream\n1,10,read,4,a:1,thread 0\n2,ff,write,8,,\n",
+        std::string("\3") + "I  04000000,3\n L 1ffe80,8\n S 1ffe78,8\n M 1ffe70,4\n",
+        std::string("\4") + "0x10 READ 1\n0x20 WRITE 2\n",
+        std::string("\5") + "0x10 R\n0x20 W\n",
+        std::string("\6") + std::string(128, '\1'),
+        std::string("\7") + std::string(48, '\2'),
+    };
+    return all;
+}
+
+/// Sets right the checksums of all chunks that lie whole in the bytes.
+void sign(std::string& bytes) {
+    for (std::size_t at = prologue_bytes; bytes.size() >= at + chunk_header_bytes;) {
+        const auto length = fixed_at<std::uint64_t>(bytes.data() + at + 8);
+        if (length > bytes.size() - at - chunk_header_bytes)
+            return;
+        const std::string name = bytes.substr(at, 4), content = bytes.substr(at + chunk_header_bytes, length);
+        bytes.replace(at, chunk_header_bytes, chunk_header(name, content));
+        at += chunk_header_bytes + length;
+    }
+}
+
+void check(const Block& block, const Description& d, bool own) {
+    require(block.size() != 0 && block.size() <= most_references);
+    require(block.times.size() == block.size() && block.classes.size() == block.size());
+    std::size_t at = 0;
+    for (const Segment& s : block.segments) {
+        require(s.begin == at && s.end > at);
+        at = s.end;
+    }
+    require(at == block.size());
+    require(std::all_of(block.classes.begin(), block.classes.end(),
+                        [&](std::uint32_t c) { return c < block.table.size(); }));
+    for (const Class& c : block.table) {
+        require(static_cast<std::size_t>(c.kind) < kind_names.size());
+        require(c.structure < d.structures.size() && c.phase < d.phases.size() && c.work < d.work.size());
+        require(!own || d.site_addresses || c.site <= d.sites.size());
+    }
+}
+
+} // namespace
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+    if (size <= 1 || seed % 512 == 0) {
+        const std::string& text = seeds()[seed / 512 % seeds().size()];
+        size = std::min(text.size(), max_size);
+        std::memcpy(data, text.data(), size);
+    }
+    return LLVMFuzzerMutate(data, size, max_size);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0)
+        return 0;
+    const Format& format = formats()[data[0] % formats().size()];
+    std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+    if (format.name == "rzt")
+        sign(bytes);
+    try {
+        const auto input = format.read(memory_source(bytes, "fuzz"));
+        for (Block block; input->next(block);)
+            check(block, input->description(), format.name == "rzt");
+    } catch (const Error& error) {
+        require(std::string_view(error.what()).starts_with("fuzz"));
+        require(std::string_view(error.what()).find_first_of("\n\r") == std::string_view::npos);
+    }
+    return 0;
+}
