@@ -13,8 +13,8 @@ inline constexpr std::size_t prologue_bytes = 12;     // magic and version
 inline constexpr std::size_t chunk_header_bytes = 16; // name, checksum, length
 inline constexpr std::size_t tail_bytes = chunk_header_bytes + 8;
 
-inline constexpr std::string_view head_chunk = "HEAD", names_chunk = "NAME", block_chunk = "BLCK",
-                                  index_chunk = "INDX", tail_chunk = "TAIL";
+inline constexpr std::string_view head_chunk = "HEAD", names_chunk = "NAME", tables_chunk = "TABL",
+                                  block_chunk = "BLCK", index_chunk = "INDX", tail_chunk = "TAIL";
 /// The most bytes of a chunk of ours: a block is far smaller, a description or index as well.
 inline constexpr std::uint64_t most_chunk_bytes = std::uint64_t{64} << 20;
 

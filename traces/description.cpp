@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <bit>
+#include <utility>
 
 namespace traces {
 
@@ -19,6 +20,35 @@ bool bad_table(const std::vector<std::string>& names) {
 }
 
 } // namespace
+
+std::string names_since(const TableSizes& before, const Description& d) {
+    json out;
+    const auto table = [&out](const char* name, std::size_t known, const std::vector<std::string>& names) {
+        if (names.size() > known)
+            out[name] = std::vector(names.begin() + static_cast<std::ptrdiff_t>(known), names.end());
+    };
+    table("structures", before.structures, d.structures);
+    table("phases", before.phases, d.phases);
+    table("work", before.work, d.work);
+    return out.empty() ? "" : out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+void add_names(Description& d, const std::string& text, const std::string& place) {
+    try {
+        const json in = json::parse(text);
+        for (const auto& [name, table] :
+             {std::pair{"structures", &d.structures}, {"phases", &d.phases}, {"work", &d.work}})
+            if (in.contains(name)) {
+                const auto names = in.at(name).get<std::vector<std::string>>();
+                table->insert(table->end(), names.begin(), names.end());
+            }
+    } catch (const json::exception& e) {
+        throw Error(
+            fmt::format("{}: a list of names is damaged ({}); record the trace again", place, e.what()));
+    }
+    if (bad_table(d.structures) || bad_table(d.phases) || bad_table(d.work))
+        throw Error(fmt::format("{}: a table has too many names; record the trace again", place));
+}
 
 std::string to_json(const Description& d) {
     const json out = {{"program", d.program},

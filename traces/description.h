@@ -19,10 +19,20 @@ struct Description {
     double sample = 1;
     std::string filters;       // what else was left out, in words; empty: nothing
     std::string configuration; // of what was traced, whole
+    /// Of some files they grow while these are read.
     std::vector<std::string> structures = {"unknown"}, phases = {"unknown"}, work = {"unknown"};
     std::vector<std::string> streams; // names, as far as there are any
     std::vector<std::string> sites;   // the first has number 1; grows while a trace is read
 };
+
+/// Names that came to the tables of structures, phases and work since they had so many, as a JSON object;
+/// empty: none.
+struct TableSizes {
+    std::size_t structures = 0, phases = 0, work = 0;
+};
+std::string names_since(const TableSizes& before, const Description& description);
+/// Adds names of such an object. Throws Error: "`place`: ...".
+void add_names(Description& description, const std::string& text, const std::string& place);
 
 /// JSON, one object. The sites are no part of it.
 std::string to_json(const Description& description);

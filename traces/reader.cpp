@@ -80,6 +80,8 @@ bool Reader::next(Block& block) {
                 throw Error(fmt::format("{}: a list of sites is damaged ({}); record the trace again",
                                         place(), e.what()));
             }
+        } else if (name_ == tables_chunk) {
+            add_names(description_, bytes_, place());
         } else if (name_ == block_chunk) {
             decoder_.decode(bytes_,
                             {description_.structures.size(), description_.phases.size(),

@@ -15,7 +15,7 @@ public:
     /// Reads the beginning. Throws Error where that is not a trace of this format.
     explicit Reader(std::unique_ptr<Source> source);
 
-    /// Grows by sites that the blocks read so far use.
+    /// Grows by names that the blocks read so far use.
     const Description& description() const { return description_; }
     /// Replaces `block` by the next one; false: there is none. A file that was cut off ends with its last
     /// whole block. Throws Error where bytes differ from what was written.

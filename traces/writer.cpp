@@ -15,6 +15,7 @@ Writer::Writer(std::unique_ptr<Sink> sink, const Description& description) : sin
     sink_->write(prologue);
     at_ = prologue.size();
     chunk(head_chunk, to_json(description));
+    tables_ = {description.structures.size(), description.phases.size(), description.work.size()};
 }
 
 void Writer::chunk(std::string_view name, std::string_view bytes) {
@@ -28,6 +29,13 @@ void Writer::add_sites(const std::vector<std::string>& names) {
         return;
     chunk(names_chunk, nlohmann::json(names).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     index_.sites.insert(index_.sites.end(), names.begin(), names.end());
+}
+
+void Writer::add_names(const Description& description) {
+    const std::string names = names_since(tables_, description);
+    if (!names.empty())
+        chunk(tables_chunk, names);
+    tables_ = {description.structures.size(), description.phases.size(), description.work.size()};
 }
 
 void Writer::write(const Block& block) {

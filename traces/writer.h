@@ -17,6 +17,8 @@ public:
 
     /// Names of sites, which get the next numbers, 1 being the first. Before the blocks that use them.
     void add_sites(const std::vector<std::string>& names);
+    /// Names that the description's tables have got since the last call, or the beginning. Likewise.
+    void add_names(const Description& description);
     /// Writes a block, if it is not empty.
     void write(const Block& block);
     /// Ends the file with its index. Throws Error.
@@ -31,6 +33,7 @@ private:
     std::unique_ptr<Sink> sink_;
     Encoder encoder_;
     Index index_;
+    TableSizes tables_; // written so far
     std::uint64_t at_ = 0;
     std::string bytes_; // of the block at hand
 };

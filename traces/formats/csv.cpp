@@ -1,6 +1,6 @@
 // A table: the first row names the columns (time, stream, kind, address, size, site, structure, phase, work),
-// of which a file to be read needs address alone, in any order. Addresses are hexadecimal, the rest decimal.
-// Structures, phases and work are written as names and not read: those of a trace are known before its rows.
+// of which a file to be read needs address alone, in any order. Addresses are hexadecimal, the rest decimal,
+// or names: of sites, structures, phases and work.
 #include "traces/formats/text.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 8> columns = {"stream", "kind",      "address", "size",
                                                      "site",   "structure", "phase",   "work"};
 constexpr std::array<std::string_view, 4> units = {"cycles", "instructions", "seconds", "order"};
-enum Column : std::size_t { stream, kind, address, size, site, time, unread };
+enum Column : std::size_t { stream, kind, address, size, site, structure, phase, work, time, unread };
 
 std::string quoted(const std::string& text) {
     if (text.find_first_of(",\"") == std::string::npos)
@@ -116,6 +116,15 @@ private:
         case site:
             r.what.site = site_number(field);
             break;
+        case structure:
+            r.what.structure = structures_.number(field, *this);
+            break;
+        case phase:
+            r.what.phase = phases_.number(field, *this);
+            break;
+        case work:
+            r.what.work = works_.number(field, *this);
+            break;
         case kind: {
             const auto* const found = std::find(kind_names.begin(), kind_names.end(), field);
             if (found == kind_names.end())
@@ -137,6 +146,28 @@ private:
         return found->second;
     }
 
+    /// Names of a table of the description, to their numbers.
+    class Names {
+    public:
+        explicit Names(std::vector<std::string>& table) : table_(table) {}
+        std::uint16_t number(const std::string& name, const CsvInput& input) {
+            if (numbers_.empty())
+                table_.clear(); // of what is there without names
+            const auto [found, fresh] = numbers_.try_emplace(name, table_.size());
+            if (fresh) {
+                if (table_.size() > 0xFFFF)
+                    input.refuse("has the 65537th name of its column", "give fewer names");
+                table_.push_back(name);
+            }
+            return static_cast<std::uint16_t>(found->second);
+        }
+
+    private:
+        std::vector<std::string>& table_;
+        std::map<std::string, std::size_t> numbers_;
+    };
+
+    Names structures_{description_.structures}, phases_{description_.phases}, works_{description_.work};
     std::vector<std::size_t> order_; // numbers in `columns`
     std::vector<std::string> fields_;
     std::string unread_;

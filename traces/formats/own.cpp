@@ -26,6 +26,7 @@ public:
     void describe(const Description& d) override {
         if (!writer_)
             writer_.emplace(std::move(sink_), d);
+        writer_->add_names(d);
         if (d.sites.size() == sites_)
             return;
         writer_->add_sites({d.sites.begin() + static_cast<std::ptrdiff_t>(sites_), d.sites.end()});
