@@ -1,6 +1,7 @@
 #include "sim/machine/engine.h"
 
 #include "sim/config/placement.h"
+#include "sim/trace/recorder.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,7 @@
 // A run's frames, one after the other, and the part of it that counts.
 #include "sim/machine/engine.h"
 #include "sim/machine/warm_up.h"
+#include "sim/trace/recorder.h"
 
 #include <algorithm>
 

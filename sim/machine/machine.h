@@ -5,7 +5,6 @@
 #include "sim/config/config.h"
 #include "sim/machine/report.h"
 #include "sim/network/network.h"
-#include "sim/trace/recorder.h"
 
 #include <atomic>
 #include <functional>
@@ -14,6 +13,8 @@
 #include <vector>
 
 namespace sim {
+
+class Recorder;
 
 /// Every worker waits for a word that nobody will write. what() is one line.
 class Deadlock : public std::runtime_error {
