@@ -21,8 +21,6 @@ void BackgroundWriter::add_sites(std::vector<std::string> names) {
 void BackgroundWriter::hand_over() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !full_; });
-    if (error_)
-        std::rethrow_exception(error_);
     std::swap(coming_, leaving_);
     full_ = true;
     lock.unlock();

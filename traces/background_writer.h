@@ -25,7 +25,8 @@ public:
 
     /// Names of sites, as of Writer. Before the references that use them.
     void add_sites(std::vector<std::string> names);
-    /// Throws what writing an earlier block has thrown.
+    /// Throws nothing, as those who are traced may be in the middle of anything: what cannot be written is
+    /// dropped, and finish() says why.
     void add(const Reference& r) {
         coming_.references.push_back(r);
         if (coming_.references.size() >= block_)

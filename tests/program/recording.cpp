@@ -212,6 +212,20 @@ TEST_F(Recording, MistakesLeaveNoFile) {
     }
 }
 
+TEST_F(Recording, AFullDiskIsALineAndLeavesNoTrace) {
+    const std::size_t before = folder_.count();
+    for (const std::string& command :
+         {quoted_argument(RAZOR_SIMULATOR) + ' ' + start("--trace t.rzt", "24x24"),
+          quoted_argument(RAZOR_PROGRAM) + " render s.toml --size 200x200 --quiet --trace t.rzt"}) {
+        const Outcome result =
+            run("bash -c " + quoted_argument("trap '' XFSZ; ulimit -f 30; " + command), folder_.path());
+        EXPECT_EQ(result.code, 2) << result.err;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find("t.rzt: cannot be written"), std::string::npos) << result.err;
+        EXPECT_EQ(folder_.count(), before);
+    }
+}
+
 TEST_F(Recording, AnInterruptedRunLeavesNoTrace) {
     const std::size_t before = folder_.count();
     const Outcome result =

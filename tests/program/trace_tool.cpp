@@ -175,6 +175,7 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"curve a.din --rate 0.1 --optimum", "leave out"},
              {"curve a.din --json no/a.json", "no/a.json: cannot be written"},
              {"windows a.din", "--window"},
+             {"windows a.din --window 5 --sizes 100", "give multiples"},
              {"windows a.din --window 0", "no size"},
              {"lines a.din --hottest 0", "--hottest"},
              {"objects a.din", "--sizes"}}) {

@@ -71,12 +71,20 @@ void WindowsCommand::run() {
     std::vector<std::uint64_t> lines;
     const std::vector<std::uint64_t> sizes =
         sizes_.empty() ? std::vector<std::uint64_t>() : parse_sizes("--sizes", sizes_);
-    for (const std::uint64_t size : sizes)
+    for (const std::uint64_t size : sizes) {
+        if (size % options_.line_bytes() != 0)
+            throw Error(fmt::format("--sizes {}: lines have {} bytes; give multiples of that", size,
+                                    options_.line_bytes()));
         lines.push_back(size / options_.line_bytes());
+    }
     analysis::Windows windows(length, lines);
     analysis::Touches touches = options_.touches();
-    options_.each_block(
-        [&](const Block& block) { touches.each(block, [&](const Touch& t) { windows.touch(t); }); });
+    options_.each_block([&](const Block& block) {
+        touches.each(block, [&](const Touch& t) { windows.touch(t); });
+        if (windows.windows().size() > 1000000)
+            throw Error(
+                fmt::format("--window {}: there are more than a million windows; give longer ones", length));
+    });
     Table table;
     table.columns = {"begins", "references", "writes", "lines", "bytes", "new lines"};
     for (const std::uint64_t size : sizes)
