@@ -216,7 +216,7 @@ TEST_F(Recording, AFullDiskIsALineAndLeavesNoTrace) {
     const std::size_t before = folder_.count();
     for (const std::string& command :
          {quoted_argument(RAZOR_SIMULATOR) + ' ' + start("--trace t.rzt", "24x24"),
-          quoted_argument(RAZOR_PROGRAM) + " render s.toml --size 200x200 --quiet --trace t.rzt"}) {
+          quoted_argument(RAZOR_PROGRAM) + " render s.toml --size 100x100 --spp 1 --quiet --trace t.rzt"}) {
         const Outcome result =
             run("bash -c " + quoted_argument("trap '' XFSZ; ulimit -f 30; " + command), folder_.path());
         EXPECT_EQ(result.code, 2) << result.err;
