@@ -5,6 +5,8 @@
 
 #include "razor/scene/graph/graph.h"
 #include "razor/scene/light.h"
+#include "razor/scene/material.h"
+#include "razor/scene/texture.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -47,11 +49,6 @@ struct Corner {
     bool operator==(const Corner&) const = default;
 };
 
-struct Material {
-    std::string name;
-    glm::vec3 albedo{0.7F, 0.7F, 0.7F}; // linear, in [0, 1]
-};
-
 /// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face
 /// has 3 or more distinct corners; every index in range; points finite; as many in rest, if any.
 struct Mesh {
@@ -74,6 +71,8 @@ struct Mesh {
     CreaseMethod crease_method = CreaseMethod::normal;
     TriangleSubdivision triangles = TriangleSubdivision::catmull_clark;
     int material = 0; // index into Scene::materials
+    /// Of each face, indices likewise; empty: all are of `material`.
+    std::vector<int> face_materials;
     /// Target edge length in world units. 0: from the camera (settings.edge_pixels). Rounded to a power of
     /// two when used.
     double edge_length = 0;
@@ -135,6 +134,7 @@ struct Settings {
     int samples = 4;               // camera samples a pixel
     int light_samples = 4;         // shadow rays a hit to each light; 0: lights are left out
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
+    int bounces = 4;               // reflections and refractions in a row that are followed
     int seed = 0;                  // another takes other samples of the same picture
     double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
 };
@@ -149,6 +149,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     SceneGraph graph; // where they are drawn; without groups: each once, where its points lie
     std::vector<Material> materials;
+    std::vector<Texture> textures;
     std::vector<Light> lights;
     glm::vec3 sky{0}; // constant radiance
     Camera camera;

@@ -181,7 +181,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         names.push_back(scene.materials.back().name);
     }
     if (scene.materials.empty()) {
-        scene.materials.push_back({.name = "default", .albedo = Material{}.albedo});
+        scene.materials.push_back(Material{.name = "default"});
     }
     CageCache cages;
     for (TomlTable& mesh : root.tables("mesh")) {
