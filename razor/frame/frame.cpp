@@ -199,7 +199,7 @@ std::string bytes_text(std::uint64_t bytes) {
 
 void Frame::render(const KernelTable& kernels, int worker) {
     try {
-        kernels.render[impl_->plan](impl_->arguments(worker));
+        kernels.render[impl_->plan.look][impl_->plan.grids](impl_->arguments(worker));
     } catch (const isa::trapped& trap) {
         explain(trap, impl_->options, impl_->trees);
     }
@@ -207,7 +207,7 @@ void Frame::render(const KernelTable& kernels, int worker) {
 
 void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
     try {
-        kernels.trace[impl_->plan](impl_->arguments(0), arguments);
+        kernels.trace[impl_->plan.grids](impl_->arguments(0), arguments);
     } catch (const isa::trapped& trap) {
         explain(trap, impl_->options, impl_->trees);
     }
@@ -273,6 +273,17 @@ std::byte* Frame::memory_bytes(const std::string& structure, std::size_t bytes) 
 double Frame::progress() const {
     return impl_->taken();
 }
+
+namespace {
+
+std::string plan_text(const Plan& plan) {
+    return fmt::format("{}; {}",
+                       plan.grids == grids_flat ? "flat patches only: no hanging vertices"
+                                                : "grids with hanging vertices",
+                       plan.look == look_matte ? "matte surfaces" : "reflecting surfaces");
+}
+
+} // namespace
 
 FrameStatistics Frame::statistics() const {
     FrameStatistics s;
@@ -348,8 +359,7 @@ FrameStatistics Frame::statistics() const {
     }
     s.page_bytes = impl_->pages->made_bytes();
     s.page_seconds = impl_->pages->seconds();
-    s.plan =
-        impl_->plan == plan_flat ? "flat patches only: no hanging vertices" : "grids with hanging vertices";
+    s.plan = plan_text(impl_->plan);
     return s;
 }
 

@@ -2,6 +2,7 @@
 
 #include "razor/frame/blend_table.h"
 #include "razor/frame/light_records.h"
+#include "razor/frame/material_records.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
 #include "razor/frame/view.h"
@@ -77,6 +78,17 @@ void Frame::Impl::place_scene(const Scene& scene) {
     header->instances.set(region<InstanceRecord>("scene graph", -1, geometry.instances.size()));
     header->cluster_instance.set(region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters)));
     fill_instances(scene);
+    place_materials(scene);
+}
+
+void Frame::Impl::place_materials(const Scene& scene) {
+    plan.look = look_of(scene);
+    if (plan.look == look_matte)
+        return;
+    auto* record = region<MaterialRecord>("scene graph", -1, scene.materials.size());
+    header->materials.set(record);
+    for (const Material& m : scene.materials)
+        *record++ = material_record(m);
 }
 
 void Frame::Impl::fill_instances(const Scene& scene) {
@@ -92,7 +104,7 @@ void Frame::Impl::fill_instances(const Scene& scene) {
         first_patch += r.cluster_count << refit_log2;
         for (const PatchRecord& p : t.patches)
             if (p.kind == PatchKind::catmull_clark || p.kind == PatchKind::bilinear)
-                plan = plan_hanging;
+                plan.grids = grids_hanging;
     }
 }
 
@@ -124,6 +136,7 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
         albedo = scene.materials[material].albedo;
     for (int k = 0; k < 3; ++k)
         r.albedo[k] = albedo[k];
+    r.material = i.material;
 }
 
 void Frame::Impl::place_graph() {
@@ -336,6 +349,9 @@ void Frame::Impl::fill_view(const Scene& scene) {
         put(h.lens_y, v.up * scene.camera.aperture_radius);
     }
     h.sky_spacing = sample_spacing(s, std::numbers::pi, s.sky_samples);
+    h.bounces = s.bounces;
+    h.diffuse_bounces = s.diffuse_bounces;
+    h.lobe_spacing = sample_spacing(s, 1, 1);
     h.reach = static_cast<float>(geometry.reach);
 }
 

@@ -63,7 +63,7 @@ struct Frame::Impl {
     std::uint64_t grid_bytes = 0, node_bytes = 0, list_bytes = 0; // the same
     std::vector<int> grains;                                      // with a budget: of each tree's arena
     std::unique_ptr<BudgetLog> log;                               // likewise
-    Plan plan = plan_flat;
+    Plan plan;
     std::int64_t undrawn = 0;
     struct {
         std::size_t clusters = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
@@ -110,6 +110,7 @@ struct Frame::Impl {
     void size_bounded_arenas();
     // Each takes room, and has what a pose changes filled in.
     void place_scene(const Scene& scene);
+    void place_materials(const Scene& scene);
     void place_graph();
     void place_points(const Scene& scene);
     void place_topology();

@@ -42,16 +42,24 @@ struct TraceArguments {
     std::int32_t* triangle = nullptr;
 };
 
-/// Which instantiation of the kernels a frame needs (its plan).
-enum Plan : int { plan_flat = 0, plan_hanging = 1, plan_count = 2 };
+/// What tracing rays is compiled for: whether some patch has sides coarser than its grid.
+enum Grids : int { grids_flat = 0, grids_hanging = 1, grids_count = 2 };
+/// What shading is compiled for: everything matte, or also what reflects, lets through and emits.
+enum Look : int { look_matte = 0, look_glossy = 1, look_count = 2 };
+
+/// Which instantiations of the kernels a frame needs.
+struct Plan {
+    Grids grids = grids_flat;
+    Look look = look_matte;
+};
 
 struct KernelTable {
     const char* name;
     int width; // lanes
     /// One worker's share of a frame. Every worker of the frame must call it.
-    void (*render[plan_count])(const WorkerArguments&);
+    void (*render[look_count][grids_count])(const WorkerArguments&);
     /// Refits, then traces rays in packets of consecutive rays: for tests and benchmarks. One worker only.
-    void (*trace[plan_count])(const WorkerArguments&, const TraceArguments&);
+    void (*trace[grids_count])(const WorkerArguments&, const TraceArguments&);
     /// Refits and splits every node, so that every patch is opened and nothing is lazy: the oracle's tree.
     /// One worker only.
     void (*build_all)(const WorkerArguments&);

@@ -180,9 +180,24 @@ struct InstanceRecord {
     float linear[9]; // rows: of the map from mesh coordinates to the instance's own ...
     float offset[3]; // ... and what rounding the origin left over
     float albedo[3];
-    std::int32_t padding[3];
+    std::int32_t material; // where the frame has materials
+    std::int32_t padding[2];
 };
 static_assert(sizeof(InstanceRecord) == 128);
+
+/// What a surface is made of, if some surface of the scene is more than matte: see razor/scene/material.h.
+struct alignas(line_bytes) MaterialRecord {
+    float albedo[3];
+    float metallic, roughness;
+    float specular;
+    float normal_reflection; // of a dielectric, at normal incidence, without the weight `specular`
+    float ior, transmission;
+    float coat, coat_roughness;
+    float emission[3];
+    std::int32_t padding[2];
+};
+static_assert(sizeof(MaterialRecord) == line_bytes);
+inline constexpr int material_words = sizeof(MaterialRecord) / 4;
 
 /// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root. Nodes that are
 /// none's children have neither instance (-1) nor children.
@@ -201,7 +216,9 @@ enum SampleDimension : std::int32_t {
     dimension_light = 2, // of the scene's first light
     dimension_sky = 3,
     dimension_lens = 4,
-    dimension_count = 5
+    dimension_count = 5,
+    dimension_lobe = -1,  // where a bounce goes within its lobe ...
+    dimension_choice = -2 // ... and which lobe it takes
 };
 /// Of the scene's light of that number, whether or not those before it have radiance.
 constexpr std::int32_t light_dimension(int light) {
@@ -233,7 +250,11 @@ struct alignas(line_bytes) LightRecord {
     float radius;               // of a sphere
     float versine;              // 1 - cos of a directional light's angular radius
     float cone_end, cone_scale; // of a spot: 1 - cos where it ends, 1 / (that - where it is whole)
-    std::int32_t padding[9];
+    float emitted[3];           // radiance; 0 of a point
+    /// Where the density of samples, by solid angle, is the cosine to the normal of what is lit, over this
+    /// and their weight; 0 of what no ray meets by chance.
+    float domain;
+    std::int32_t padding[5];
 };
 static_assert(sizeof(LightRecord) == 2 * line_bytes);
 
@@ -519,6 +540,9 @@ struct FrameHeader {
     std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
     std::int32_t discards;      // not 0: see razor/kernels/dead.h
     std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
+    std::int32_t bounces, diffuse_bounces;           // see Settings
+    float lobe_spacing;                 // of a pixel's samples in directions of density 1, times edge_pixels
+    isa::ref<MaterialRecord> materials; // where the plan needs them
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

@@ -94,6 +94,16 @@ void fill_shape(const Light& light, const dvec3& origin, LightRecord& r, double&
     }
 }
 
+/// What of the light rays can meet by chance; `domain`: as of fill_shape().
+void fill_seen(const Light& light, double domain, LightRecord& r) {
+    if (is_delta(light))
+        return;
+    const double sine = std::sin(glm::radians(light.angular_radius));
+    const bool by_irradiance = light.kind == LightKind::directional;
+    put(r.emitted, dvec3(light.radiance) / (by_irradiance ? pi * sine * sine : 1.0));
+    r.domain = static_cast<float>(light.kind == LightKind::sphere ? 2 * pi : domain);
+}
+
 } // namespace
 
 float sample_spacing(const Settings& s, double domain, int samples) {
@@ -108,6 +118,7 @@ std::optional<LightRecord> light_record(const Light& light, const Settings& s, c
         return std::nullopt;
     r.samples = is_delta(light) ? 1 : s.light_samples;
     put(r.radiance, dvec3(light.radiance) * (factor / (pi * r.samples)));
+    fill_seen(light, domain, r);
     r.spacing = sample_spacing(s, domain, r.samples);
     return r;
 }

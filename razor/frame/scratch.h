@@ -84,7 +84,10 @@ enum BeamLine : int {
     beam_above = 2, // the line above, likewise
     beam_axis = 4   // the next axis
 };
-inline constexpr int packet_floats = packet_beam + 3 * beam_axis;
+/// Light gathered for each lane by lobes (razor/kernels/glossy.h) other than the first.
+inline constexpr int packet_lobes = (packet_beam + 3 * beam_axis + 15) / 16 * 16;
+inline constexpr int most_lobes = 4;
+inline constexpr int packet_floats = packet_lobes + (most_lobes - 1) * ISA_WIDTH;
 
 /// So much further lies the scratch for tiles that are rendered in place of a wait (render_meanwhile() in
 /// razor/kernels/render.h).

@@ -1,7 +1,8 @@
 # cmake -DNM=nm -DOUTPUT=code_size.cpp -DPHASES=phases.h -DOBJECTS=avx2=kernels.cpp.o,... -P code_size.cmake
 #
 # Writes the table of code_size.h from the symbols of the kernels' object files. A function's phase is the namespace
-# PHASE_kernel that it lies in; its plan is the Features that it is instantiated for, or all plans.
+# PHASE_kernel that it lies in; its plan is the Features that it is
+# instantiated for, or all, and the look whose file it is in.
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${PHASES} PHASES REGEX "^ +phase_[a-z]+,")
 list(TRANSFORM PHASES REPLACE "^ +phase_([a-z]+),.*" "\\1")
@@ -30,11 +31,19 @@ foreach(OBJECT IN LISTS OBJECTS)
         message(FATAL_ERROR "${NAME}: there is no phase ${PHASE}")
       endif()
     endif()
-    foreach(PLAN flat hanging)
-      if(PLAN STREQUAL flat AND NAME MATCHES "8FeaturesELb1E" OR PLAN STREQUAL hanging AND NAME MATCHES "8FeaturesE(Lb0E)?E")
-        continue()
-      endif()
-      math(EXPR BYTES_${TARGET}_${PLAN}_${PHASE} "${BYTES_${TARGET}_${PLAN}_${PHASE}} + ${BYTES}")
+    # The linker keeps one of what several files have.
+    if(DEFINED SEEN_${TARGET}_${NAME})
+      continue()
+    endif()
+    set(SEEN_${TARGET}_${NAME} TRUE)
+    foreach(LOOK 0 1)
+      foreach(GRIDS 0 1)
+        if(NAME MATCHES "8FeaturesE(Lb([01])E)?E" AND NOT "0${CMAKE_MATCH_2}" EQUAL GRIDS
+           OR LOOK EQUAL 0 AND OBJECT MATCHES "/glossy" OR LOOK EQUAL 1 AND NAME MATCHES "5Matte|12MatteSampler|4LookE0E")
+          continue()
+        endif()
+        math(EXPR BYTES_${TARGET}_${LOOK}_${GRIDS}_${PHASE} "${BYTES_${TARGET}_${LOOK}_${GRIDS}_${PHASE}} + ${BYTES}")
+      endforeach()
     endforeach()
   endforeach()
 endforeach()
@@ -45,15 +54,21 @@ list(LENGTH TARGETS COUNT)
 foreach(TARGET IN LISTS TARGETS)
   set(TABLE "")
   set(COMMON "")
-  foreach(PLAN flat hanging)
-    set(ROW "")
-    foreach(PHASE IN LISTS PHASES)
-      math(EXPR BYTES "${BYTES_${TARGET}_${PLAN}_${PHASE}} + 0")
-      string(APPEND ROW "${BYTES}, ")
+  foreach(LOOK 0 1)
+    set(TABLES "")
+    set(COMMONS "")
+    foreach(GRIDS 0 1)
+      set(ROW "")
+      foreach(PHASE IN LISTS PHASES)
+        math(EXPR BYTES "${BYTES_${TARGET}_${LOOK}_${GRIDS}_${PHASE}} + 0")
+        string(APPEND ROW "${BYTES}, ")
+      endforeach()
+      string(APPEND TABLES "{${ROW}}, ")
+      math(EXPR BYTES "${BYTES_${TARGET}_${LOOK}_${GRIDS}_common} + 0")
+      string(APPEND COMMONS "${BYTES}, ")
     endforeach()
-    string(APPEND TABLE "{${ROW}}, ")
-    math(EXPR BYTES "${BYTES_${TARGET}_${PLAN}_common} + 0")
-    string(APPEND COMMON "${BYTES}, ")
+    string(APPEND TABLE "{${TABLES}}, ")
+    string(APPEND COMMON "{${COMMONS}}, ")
   endforeach()
   string(APPEND ROWS "    {\"${TARGET}\", {${TABLE}}, {${COMMON}}},\n")
 endforeach()
@@ -64,7 +79,7 @@ file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT "// Written by code_size.cmake.
 
 namespace razor {
 
-static_assert(plan_flat == 0 && plan_hanging == 1);
+static_assert(look_count == 2 && grids_count == 2);
 static constexpr std::array<CodeSize, @COUNT@> table = {{
 @ROWS@}};
 std::span<const CodeSize> code_sizes() {

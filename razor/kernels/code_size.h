@@ -15,8 +15,9 @@ namespace razor {
 /// inlined into another phase.
 struct CodeSize {
     const char* target;
-    std::int64_t phase[plan_count][phase_count]; // what a frame of this plan may run of each phase
-    std::int64_t common[plan_count];             // functions that several phases call, and the workers' entry
+    std::int64_t phase[look_count][grids_count][phase_count]; // what a frame of a plan may run of each phase
+    std::int64_t common[look_count]
+                       [grids_count]; // functions that several phases call, and the workers' entry
 };
 
 /// One for each native target of this build, in the order plain, sse4, avx2, avx512.

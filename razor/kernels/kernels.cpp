@@ -1,28 +1,9 @@
-#include "razor/frame/kernel_table.h"
-#include "razor/kernels/render.h"
+#include "razor/kernels/matte.h"
+#include "razor/kernels/worker.h"
 
 namespace razor::ISA_TARGET {
 
 namespace {
-
-Context begin(const WorkerArguments& a) {
-    Context c = make_context(pointer<FrameHeader>(a.frame), sint(a.worker));
-    c.pages = a.pages;
-    c.counters = c.by_kind = a.counters;
-    c.opened = a.opened;
-    c.watch = a.watch;
-    c.tiles = a.tiles;
-    c.waits = a.waits;
-    c.memory = a.memory;
-    return c;
-}
-
-template <Features F> void render(const WorkerArguments& a) {
-    Context c = begin(a);
-    if (a.memory == nullptr) // else a tile may have to be begun again
-        c.other_work = render_meanwhile<F>;
-    render_worker<F>(c);
-}
 
 template <Features F> void trace_all(const WorkerArguments& w, const TraceArguments& a) {
     Context c = begin(w);
@@ -149,15 +130,17 @@ void dice_all(const WorkerArguments& w) {
     }
 }
 
-constexpr Features flat{.hanging = false};
-constexpr Features hanging{.hanging = true};
 #define RAZOR_NAME(target) #target
 #define RAZOR_TARGET_NAME(target) RAZOR_NAME(target)
 
 } // namespace
 
-constinit const KernelTable kernels = {
-    RAZOR_TARGET_NAME(ISA_TARGET),         isa::width, {render<flat>, render<hanging>},
-    {trace_all<flat>, trace_all<hanging>}, build_all,  dice_all};
+constinit const KernelTable kernels = {RAZOR_TARGET_NAME(ISA_TARGET),
+                                       isa::width,
+                                       {{render<flat, MatteSampler>, render<hanging, MatteSampler>},
+                                        {render_glossy<flat>, render_glossy<hanging>}},
+                                       {trace_all<flat>, trace_all<hanging>},
+                                       build_all,
+                                       dice_all};
 
 } // namespace razor::ISA_TARGET

@@ -1,8 +1,8 @@
-// The light that hits receive, on matte surfaces, by shadow rays. Shadow packets hold width/4 neighbouring
+// The light that hits receive and reflect, by shadow rays. Shadow packets hold width/4 neighbouring
 // hits x 4 samples.
 #pragma once
 
-#include "razor/kernels/light_samples.h"
+#include "razor/kernels/glossy.h"
 
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
@@ -30,6 +30,11 @@ struct TowardsRectangle {
     LightRays sample(const Context& c, const Surface& s, const vint& number) const {
         return sample_rectangle(c, s, light, number);
     }
+    template <class Response>
+    void reflect(const Response& r, const Surface& s, const LightRays& l, sint samples,
+                 vfloat (&part)[Response::lobes]) const {
+        r.reflect(s, l, light, samples, part);
+    }
 };
 struct TowardsShape {
     static constexpr RayKind kind = kind_light;
@@ -37,26 +42,44 @@ struct TowardsShape {
     LightRays sample(const Context& c, const Surface& s, const vint& number) const {
         return sample_shape(c, s, light, number);
     }
+    template <class Response>
+    void reflect(const Response& r, const Surface& s, const LightRays& l, sint samples,
+                 vfloat (&part)[Response::lobes]) const {
+        r.reflect(s, l, light, samples, part);
+    }
 };
 struct TowardsSky {
     static constexpr RayKind kind = kind_sky;
     LightRays sample(const Context& c, const Surface& s, const vint& number) const {
         return sample_sky(c, s, number);
     }
+    template <class Response>
+    void reflect(const Response& r, const Surface& s, const LightRays& l, sint,
+                 vfloat (&part)[Response::lobes]) const {
+        r.reflect_sky(s, l, part);
+    }
 };
 
-/// Sum over `samples` shadow rays a hit of the weights of those that arrive.
-template <Features F, class Towards>
-[[gnu::noinline]] inline vfloat gather_light(const Context& c, const Surface& s, const Towards& towards,
-                                             sint samples) {
+/// Of each lobe.
+template <class Response> struct Gathered { vfloat lobe[Response::lobes]; };
+template <class Response> inline pointer<float> lobe_sums(const Context& c, int lobe) {
+    return lobe == 0 ? c.packets + packet_sum : c.packets + (packet_lobes + (lobe - 1) * isa::width);
+}
+
+/// Sums over `samples` shadow rays a hit of what the surface makes of the weights of those that arrive.
+template <Features F, class Towards, class Response>
+[[gnu::noinline]] inline Gathered<Response> gather_light(const Context& c, const Surface& s,
+                                                         const Towards& towards, const Response& response,
+                                                         sint samples) {
     phase_scope phase(phase_light);
+    constexpr int lobes = Response::lobes;
     // Few samples leave room for more hits.
     sint fewer_log2 = samples - 1;
     sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), fewer_log2);
     sint per_hit = sint(1) << per_hit_log2;
     sint hits_per_packet = sint(isa::width) >> per_hit_log2;
-    pointer<float> sums = c.packets + packet_sum;
-    store_vector(sums, vfloat(0.0F));
+    for (int k = 0; k < lobes; ++k)
+        store_vector(lobe_sums<Response>(c, k), vfloat(0.0F));
     vint order = compress(lane_index(), s.hit);
     sint hits = count(s.hit);
     vint member = lane_index() & vint(per_hit - 1);
@@ -66,6 +89,7 @@ template <Features F, class Towards>
         vmask present = place < vint(hits);
         vint lane = permute(order, place);
         Surface here = permute(s, lane, present);
+        Response responds = response.permuted(lane);
         vint first_sample = here.sample * vint(samples);
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
@@ -75,28 +99,36 @@ template <Features F, class Towards>
             if (branch(any(l.rays.active))) {
                 Hits blocked = trace_packet<F, Towards::kind>(c, l.rays);
                 vmask arrives = l.rays.active & (blocked.patch < vint(0));
-                vfloat part = select(arrives, l.weight, vfloat(0.0F));
-                for (sint step = 1; branch(step < per_hit); step = step + step) {
-                    vint pair = lane_index() ^ vint(step);
-                    part = part + permute(part, pair);
-                }
+                vfloat part[lobes];
+                towards.reflect(responds, here, l, samples, part);
                 vmask leader = present & (member == vint(0));
-                vfloat before = gather(sums, lane, leader);
-                scatter(sums, lane, before + part, leader);
+                for (int lobe = 0; lobe < lobes; ++lobe) {
+                    vfloat sum = select(arrives, part[lobe], vfloat(0.0F));
+                    for (sint step = 1; branch(step < per_hit); step = step + step) {
+                        vint pair = lane_index() ^ vint(step);
+                        sum = sum + permute(sum, pair);
+                    }
+                    pointer<float> sums = lobe_sums<Response>(c, lobe);
+                    vfloat before = gather(sums, lane, leader);
+                    scatter(sums, lane, before + sum, leader);
+                }
             }
         }
     }
-    return load_vector(sums);
+    Gathered<Response> gathered;
+    for (int k = 0; k < lobes; ++k)
+        gathered.lobe[k] = load_vector(lobe_sums<Response>(c, k));
+    return gathered;
 }
 
 /// The same of a light. Rectangles, the usual ones, have a loop of their own.
-template <Features F>
-inline vfloat gather_light(const Context& c, const Surface& s, pointer<LightRecord> light) {
-    sint samples = load(field(light, &LightRecord::samples));
+template <Features F, class Response>
+inline Gathered<Response> gather_light(const Context& c, const Surface& s, pointer<LightRecord> light,
+                                       const Response& response, sint samples) {
     sint shape = load(field(light, &LightRecord::shape));
     if (branch(shape == light_rectangle))
-        return gather_light<F>(c, s, TowardsRectangle{light}, samples);
-    return gather_light<F>(c, s, TowardsShape{light}, samples);
+        return gather_light<F>(c, s, TowardsRectangle{light}, response, samples);
+    return gather_light<F>(c, s, TowardsShape{light}, response, samples);
 }
 
 } // namespace light_kernel

@@ -6,23 +6,31 @@
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
 
-/// A unit vector around which `n` is the z axis: branch-free orthonormal basis (Duff et al., JCGT 2017).
-inline vvec to_world(const vvec& n, const vfloat& x, const vfloat& y, const vfloat& z) {
+/// Two unit vectors that make a right-handed system with a third: x, y, n.
+struct Basis {
+    vvec x, y;
+};
+/// Branch-free (Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017).
+inline Basis basis_about(const vvec& n) {
     vint sign_bit = as_int(n.z) & vint(std::int32_t(0x80000000U));
     vfloat sign = as_float(sign_bit | as_int(vfloat(1.0F)));
     vfloat a = vfloat(-1.0F) / (sign + n.z);
     vfloat b = n.x * n.y * a;
     vfloat sx = sign * n.x;
-    vvec tangent;
-    tangent.x = fma(sx, n.x * a, vfloat(1.0F));
-    tangent.y = sign * b;
-    tangent.z = -sx;
-    vvec bitangent;
-    bitangent.x = b;
+    Basis basis;
+    basis.x.x = fma(sx, n.x * a, vfloat(1.0F));
+    basis.x.y = sign * b;
+    basis.x.z = -sx;
+    basis.y.x = b;
     vfloat ya = n.y * a;
-    bitangent.y = fma(n.y, ya, sign);
-    bitangent.z = -n.y;
-    vvec w = madd(y, bitangent, tangent * x);
+    basis.y.y = fma(n.y, ya, sign);
+    basis.y.z = -n.y;
+    return basis;
+}
+/// (x, y, z) where `n` is the z axis.
+inline vvec to_world(const vvec& n, const vfloat& x, const vfloat& y, const vfloat& z) {
+    Basis basis = basis_about(n);
+    vvec w = madd(y, basis.y, basis.x * x);
     return madd(z, n, w);
 }
 
@@ -190,18 +198,24 @@ inline LightRays sample_shape(const Context& c, const Surface& s, pointer<LightR
     return sample_directional(c, s, light, at);
 }
 
+/// A direction about the normal for each lane whose density is its cosine over pi, and that cosine.
+inline vvec sample_cosine(const vvec& normal, const vpoint& square, vfloat& cosine) {
+    vfloat radius = sqrt(square.u);
+    cosine = sqrt(vfloat(1.0F) - square.u);
+    vfloat angle = square.v * 6.28318530717958647692F;
+    vfloat x = radius * cos(angle);
+    vfloat y = radius * sin(angle);
+    return to_world(normal, x, y, cosine);
+}
+
 /// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance /
 /// samples.
 inline LightRays sample_sky(const Context& c, const Surface& s, const vint& sample) {
     vpoint at = sample_square(s.pixel, sample, dimension_sky);
-    vfloat radius = sqrt(at.u);
-    vfloat height = sqrt(vfloat(1.0F) - at.u);
-    vfloat angle = at.v * 6.28318530717958647692F;
-    vfloat x = radius * cos(angle);
-    vfloat y = radius * sin(angle);
     LightRays l;
     l.rays.origin = s.position;
-    l.rays.direction = to_world(s.shading, x, y, height);
+    vfloat height;
+    l.rays.direction = sample_cosine(s.shading, at, height);
     vfloat zero(0.0F);
     l.rays.t_min = zero;
     l.rays.t_max = vfloat(infinite);

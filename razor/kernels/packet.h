@@ -6,15 +6,15 @@
 namespace razor::ISA_TARGET {
 inline namespace traverse_kernel {
 
-/// Traces a packet as trace() does: camera rays to their closest hits, shadow rays to any. What that takes
-/// and builds counts for the kind.
+/// Traces a packet as trace() does: camera rays and bounces to their closest hits, shadow rays to any. What
+/// that takes and builds counts for the kind.
 template <Features F, RayKind Kind> inline Hits trace_packet(const Context& c, const Rays& r) {
     Context own = c;
     own.counters = c.counters + Kind;
     tally(own.counters->packets, 1);
     tally(own.counters->rays, count(r.active));
     kind_scope kind(Kind);
-    return trace<F, Kind != kind_camera>(own, r);
+    return trace < F, Kind == kind_light || Kind == kind_sky > (own, r);
 }
 
 } // namespace traverse_kernel

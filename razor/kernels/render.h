@@ -3,7 +3,7 @@
 #pragma once
 
 #include "razor/kernels/budget_tiles.h"
-#include "razor/kernels/light.h"
+#include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/refit.h"
 #include "razor/kernels/screen_curve.h"
 #include "razor/kernels/stretches.h"
@@ -72,12 +72,6 @@ inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, c
     return r;
 }
 
-/// Sums over the samples of one packet of pixels, of each lane's or of each pixel's.
-struct PixelSums {
-    vvec beauty, normal, albedo;
-    vfloat depth, hits;
-};
-
 /// Of each lane's samples to those of its pixel.
 inline void add_lanes(const PacketShape& shape, PixelSums& sums) {
     sint lanes = sint(1) << shape.samples_log2;
@@ -88,44 +82,6 @@ inline void add_lanes(const PacketShape& shape, PixelSums& sums) {
         sums.albedo = sums.albedo + permute(sums.albedo, other);
         sums.depth = sums.depth + permute(sums.depth, other);
         sums.hits = sums.hits + permute(sums.hits, other);
-    }
-}
-
-template <Features F>
-inline void add_sample(const Context& c, const Rays& r, const vint& pixel, const vint& sample,
-                       PixelSums& sums) {
-    Hits h = trace_packet<F, kind_camera>(c, r);
-    vfloat zero(0.0F);
-    vmask hit = h.patch >= vint(0);
-    tally(c.counters->camera_hits, count(hit));
-    vvec sky = load_broadcast_vec(field(c.frame, &FrameHeader::background));
-    vmask open = r.active & !hit;
-    sums.beauty = sums.beauty + select(open, sky, {zero, zero, zero});
-    if (branch(none(hit)))
-        return;
-    Surface s = find_surface(c, r, h);
-    s.pixel = pixel;
-    s.sample = sample;
-    sums.normal = sums.normal + select(hit, s.shading, {zero, zero, zero});
-    sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});
-    sums.depth = sums.depth + select(hit, h.t, zero);
-    sums.hits = sums.hits + select(hit, vfloat(1.0F), zero);
-    const auto reflect = [&](const vvec& radiance, const vfloat& light) {
-        vvec arriving = radiance * light;
-        vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
-        sums.beauty = sums.beauty + select(hit, reflected, {zero, zero, zero});
-    };
-    sint lights = load(field(c.frame, &FrameHeader::light_count));
-    pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
-    for (sint n = 0; branch(n < lights); ++n) {
-        vfloat gathered = gather_light<F>(c, s, light);
-        reflect(load_broadcast_vec(field(light, &LightRecord::radiance)), gathered);
-        light = light + 1;
-    }
-    sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
-    if (branch(sky_samples > 0)) {
-        vfloat gathered = gather_light<F>(c, s, TowardsSky{}, sky_samples);
-        reflect(load_broadcast_vec(field(c.frame, &FrameHeader::sky)), gathered);
     }
 }
 
@@ -168,7 +124,8 @@ inline namespace resolve_kernel {
 
 inline namespace shade_kernel {
 
-template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c, sint tile) {
+/// Sampler::add<F>(c, rays, pixel, sample, sums) traces a packet's camera rays and adds what they see.
+template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(const Context& c, sint tile) {
     phase_scope phase(phase_shade);
     sint width = load(field(c.frame, &FrameHeader::width));
     sint height = load(field(c.frame, &FrameHeader::height));
@@ -209,7 +166,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
             for (sint s = 0; branch(s < samples); s += packet_samples) {
                 vint sample = member + vint(s);
                 Rays r = camera_rays(c, camera, column, row, place, sample, inside);
-                add_sample<F>(c, r, place, sample, sums);
+                Sampler::template add<F>(c, r, place, sample, sums);
                 note_time(*c.watch, moment_first_packet);
             }
             add_lanes(shape, sums);
@@ -219,7 +176,7 @@ template <Features F> [[gnu::noinline]] inline void render_tile(const Context& c
 }
 
 /// Renders the run's tiles; false: the workers are to stop.
-template <Features F> inline bool render_run(const Context& c, const Run& run) {
+template <Features F, class Sampler> inline bool render_run(const Context& c, const Run& run) {
     pointer<QueueRecord> queues = load(field(c.frame, &FrameHeader::queues));
     Run tiles = tiles_of(c, run);
     for (sint tile = tiles.first; branch(tile < tiles.end); ++tile) {
@@ -227,7 +184,7 @@ template <Features F> inline bool render_run(const Context& c, const Run& run) {
         if (branch(stopped != 0))
             return false;
         begin_lap(*c.tiles);
-        render_within_budget(c, [&](const Context& within) { render_tile<F>(within, tile); });
+        render_within_budget(c, [&](const Context& within) { render_tile<F, Sampler>(within, tile); });
         end_lap(*c.tiles, tile);
     }
     return true;
@@ -239,7 +196,7 @@ inline constexpr int meanwhile_least = 4;
 
 /// Renders other tiles in place of a wait, in scratch memory of their own; false: there are none. While these
 /// wait, nothing else is begun.
-template <Features F> [[gnu::noinline]] inline bool render_meanwhile(const Context& outer) {
+template <Features F, class Sampler> [[gnu::noinline]] inline bool render_meanwhile(const Context& outer) {
     Run run = take_back(outer, meanwhile_least);
     if (branch(run.first == run.end))
         return false;
@@ -250,18 +207,18 @@ template <Features F> [[gnu::noinline]] inline bool render_meanwhile(const Conte
     c.stack = c.stack + spare_stack;
     c.packets = c.packets + spare_packets;
     tally(c.counters->meanwhile_runs, 1);
-    render_run<F>(c, run);
+    render_run<F, Sampler>(c, run);
     return true;
 }
 
-template <Features F> inline void render_worker(const Context& c) {
+template <Features F, class Sampler> inline void render_worker(const Context& c) {
     refit(c);
     clear_blends(c);
     for (;;) {
         Run run = take_run(c);
         if (branch(run.first == run.end))
             break;
-        if (!render_run<F>(c, run))
+        if (!render_run<F, Sampler>(c, run))
             return;
     }
     if (branch(c.discards))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "isa/math.h"
+#include "razor/frame/kernel_table.h"
 #include "razor/kernels/differentials.h"
 #include "razor/kernels/normals.h"
 #include "razor/kernels/packet.h"
@@ -275,7 +276,35 @@ inline vvec lift_of(const Corners& k, const Hits& h, const vvec& p, const vfloat
     return lift;
 }
 
-[[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h) {
+inline vfloat turn_along(const vvec& from, const vvec& to, const vvec& normal, const vvec& other) {
+    vvec along = to - from;
+    vvec turn = other - normal;
+    vfloat square = max(dot(along, along), 1.0e-30F);
+    return dot(along, turn) / square;
+}
+
+/// How fast the shading normal turns along the triangle, 1 / length, the mean of its sides: positive where
+/// the surface bulges towards the viewer.
+inline vfloat curvature_of(const Corners& k, const vfloat& side) {
+    vfloat sum = turn_along(k.a, k.b, k.at_a, k.at_b);
+    sum = sum + turn_along(k.b, k.c, k.at_b, k.at_c);
+    sum = sum + turn_along(k.c, k.a, k.at_c, k.at_a);
+    return (sum * side) * (1.0F / 3.0F);
+}
+
+/// What bounces need to know of a hit besides.
+struct Beyond {
+    vvec toward;      // unit, to the viewer
+    vmask inside;     // the viewer is behind the surface
+    vvec position;    // moved off the surface to the side that the viewer is not on
+    vfloat curvature; // see curvature_of()
+    vint material;    // its number
+};
+
+/// `beyond` is filled in for looks that need it.
+template <Look L>
+[[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h,
+                                              Beyond& beyond) {
     phase_scope phase(phase_shade);
     Surface s;
     s.hit = h.patch >= vint(0);
@@ -304,13 +333,23 @@ inline vvec lift_of(const Corners& k, const Hits& h, const vvec& p, const vfloat
     vint instance = gather(as<std::int32_t>(c.grids) + instance_word, block, s.hit);
     vint record = instance * vint(instance_words);
     vvec origin = gather_vec(field(c.instances, &InstanceRecord::origin), record, vint(1), s.hit);
-    s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);
+    if constexpr (L == look_matte)
+        s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);
     vvec p = blend(k.a, k.b, k.c, h);
     vfloat error = position_error(k.a, k.b, k.c, origin);
     vmask morphs = vmask(load(field(c.frame, &FrameHeader::morphs)) != 0);
     vfloat apart = fma(k.sway, vfloat(leaving_share), error);
     error = select(morphs, apart, error);
     vfloat side = select(opposed, vfloat(-1.0F), vfloat(1.0F));
+    if constexpr (L != look_matte) {
+        beyond.toward = toward;
+        beyond.inside = away;
+        beyond.position = madd(-error, s.geometric, p);
+        beyond.position = beyond.position + origin;
+        beyond.curvature = curvature_of(k, side);
+        constexpr int material_word = offsetof(InstanceRecord, material) / 4;
+        beyond.material = gather(as<std::int32_t>(c.instances) + material_word, record, s.hit);
+    }
     p = p + lift_of(k, h, p, side);
     p = p + origin;
     s.position = madd(error, s.geometric, p);

@@ -124,19 +124,19 @@ std::string frame_text(const razor::Settings& s, int workers, const Counted& cou
 }
 
 /// Machine code of the kernels that this plan may run, in bytes: by native target, then by phase.
-json code_bytes(razor::Plan plan) {
+json code_bytes(const razor::Plan& plan) {
     json out = json::object();
     for (const razor::CodeSize& size : razor::code_sizes()) {
         json& row = out[size.target];
         for (int phase = 0; phase < razor::phase_count; ++phase)
-            row[razor::phase_names[phase]] = size.phase[plan][phase];
-        row["common"] = size.common[plan];
+            row[razor::phase_names[phase]] = size.phase[plan.look][plan.grids][phase];
+        row["common"] = size.common[plan.look][plan.grids];
     }
     return out;
 }
 
 /// The same as a table, with a sum.
-std::string code_text(razor::Plan plan) {
+std::string code_text(const razor::Plan& plan) {
     const auto sizes = razor::code_sizes();
     std::string out = fmt::format("\n{:<16}", "native code");
     for (const razor::CodeSize& size : sizes)
@@ -149,11 +149,12 @@ std::string code_text(razor::Plan plan) {
         out += '\n';
     };
     for (int phase = 0; phase < razor::phase_count; ++phase)
-        row(razor::phase_names[phase], [&](const razor::CodeSize& size) { return size.phase[plan][phase]; });
-    row("common", [&](const razor::CodeSize& size) { return size.common[plan]; });
+        row(razor::phase_names[phase],
+            [&](const razor::CodeSize& size) { return size.phase[plan.look][plan.grids][phase]; });
+    row("common", [&](const razor::CodeSize& size) { return size.common[plan.look][plan.grids]; });
     row("all", [&](const razor::CodeSize& size) {
-        const auto& phases = size.phase[plan];
-        return std::accumulate(std::begin(phases), std::end(phases), size.common[plan]);
+        const auto& phases = size.phase[plan.look][plan.grids];
+        return std::accumulate(std::begin(phases), std::end(phases), size.common[plan.look][plan.grids]);
     });
     return out;
 }

@@ -1,0 +1,188 @@
+// Where light goes on from a hit, backwards: one direction of one lobe for each ray, by chance as much as the
+// lobe is worth.
+#pragma once
+
+#include "razor/kernels/leave.h"
+#include "razor/kernels/material.h"
+
+namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
+
+struct Bounce {
+    Rays rays;      // active where light goes on
+    vvec carried;   // what of the radiance from there goes to the viewer
+    vfloat density; // of that direction among all of its lobe, times the lobe's share
+    vmask diffuse;  // in all directions: lights and sky are sampled instead
+};
+
+/// What is chosen of the base, by a normal: a direction, its lobe's factor and density.
+struct BaseSample {
+    vvec direction, factor;
+    vfloat density;
+    vmask passes; // through the surface
+};
+
+/// `choice`: in [0, 1), by which it is reflected or passes.
+inline BaseSample sample_base(const Surface& s, const Beyond& b, const Glossy& g, const Colours& colours,
+                              const vvec& h, const vfloat& choice) {
+    vfloat zero(0.0F);
+    vfloat one(1.0F);
+    vfloat cos_view = dot(g.toward, h);
+    vfloat graze = grazing(cos_view, g.inner);
+    vfloat reflected = reflection_share(g, graze);
+    BaseSample out;
+    out.passes = choice >= reflected;
+    // Reflected about the normal, or refracted (Snell): light comes along -direction.
+    vfloat twice = cos_view + cos_view;
+    vvec mirrored = h * twice - g.toward;
+    vfloat eta = select(b.inside, colours.ior, one / colours.ior);
+    vfloat cos_square = cos_view * cos_view;
+    vfloat bend = eta * eta;
+    vfloat sine_square = (one - cos_square) * bend;
+    vfloat cos_through = sqrt(max(one - sine_square, 0.0F));
+    vfloat turn = fms(eta, cos_view, cos_through);
+    vvec bent = g.toward * eta;
+    bent = h * turn - bent;
+    out.direction = select(out.passes, bent, mirrored);
+    vfloat cosine = abs(dot(s.shading, out.direction));
+    cosine = max(cosine, 1.0e-6F);
+    // G2 / G1: normals are as they are seen.
+    vfloat seen = visibility(g.view, g.base_norm, cosine, slope_norm(cosine, g.alpha));
+    vfloat sum = g.view + g.base_norm;
+    sum = sum + sum;
+    vfloat unshadowed = (seen * cosine) * sum;
+    vmask smooth = g.alpha < vfloat(smooth_alpha);
+    unshadowed = select(smooth, one, unshadowed);
+    vvec rise = vvec{colours.grazing, colours.grazing, colours.grazing} - colours.normal;
+    vvec mirror_colour = madd(graze, rise, colours.normal);
+    // Radiance is compressed into the narrower cone on the denser side.
+    vfloat passed = (one - dielectric_reflection(g, graze)) * bend;
+    vvec colour = select(out.passes, colours.through * passed, mirror_colour);
+    vfloat share = select(out.passes, one - reflected, reflected);
+    share = share * g.base_share;
+    out.factor = colour * (unshadowed / max(share, 1.0e-12F));
+    vfloat cos_half = dot(s.shading, h);
+    vvec across = cross(s.shading, h);
+    vfloat distribution = pi_distribution(cos_half, dot(across, across), g.alpha);
+    vfloat density = reflected_density(distribution, g.view, g.base_norm) * share;
+    vfloat sharp(delta_density);
+    out.density = select(smooth, sharp, select(out.passes, sharp, density)); // no light is sampled through it
+    vmask bends = sine_square < one;
+    out.factor = select(out.passes & !bends, {zero, zero, zero}, out.factor);
+    return out;
+}
+
+/// Of the coat: a direction, its factor and density.
+inline void sample_coat(const Surface& s, const Glossy& g, const vvec& h, BaseSample& out) {
+    vfloat one(1.0F);
+    vfloat cos_view = dot(g.toward, h);
+    vfloat twice = cos_view + cos_view;
+    out.direction = h * twice - g.toward;
+    vfloat cosine = max(dot(s.shading, out.direction), 1.0e-6F);
+    vfloat seen = visibility(g.view, g.coat_norm, cosine, slope_norm(cosine, g.coat_alpha));
+    vfloat sum = g.view + g.coat_norm;
+    sum = sum + sum;
+    vfloat unshadowed = (seen * cosine) * sum;
+    vmask smooth = g.coat_alpha < vfloat(smooth_alpha);
+    unshadowed = select(smooth, one, unshadowed);
+    vfloat reflected = coat_fresnel(grazing(cos_view, one)) * g.coat;
+    vfloat share = max(g.coat_share, 1.0e-12F);
+    vfloat factor = (reflected * unshadowed) / share;
+    out.factor = {factor, factor, factor};
+    vfloat cos_half = dot(s.shading, h);
+    vvec across = cross(s.shading, h);
+    vfloat distribution = pi_distribution(cos_half, dot(across, across), g.coat_alpha);
+    vfloat density = reflected_density(distribution, g.view, g.coat_norm) * g.coat_share;
+    out.density = select(smooth, vfloat(delta_density), density);
+    out.passes = vmask(false);
+}
+
+/// A normal of the distribution of that width, as often as the viewer sees it, in world coordinates.
+inline vvec sample_facing(const Surface& s, const Glossy& g, const vfloat& alpha, const vpoint& square) {
+    Basis basis = basis_about(s.shading);
+    vvec view;
+    view.x = dot(basis.x, g.toward);
+    view.y = dot(basis.y, g.toward);
+    view.z = g.view;
+    vvec h = sample_normal(view, alpha, square);
+    vvec w = madd(h.y, basis.y, basis.x * h.x);
+    w = madd(h.z, s.shading, w);
+    return select(alpha < vfloat(smooth_alpha), s.shading, w);
+}
+
+/// What bounces ask of surfaces: rays of a pixel part by what they parted before, by what the surface's
+/// curvature adds to that (twice the turn of the normal, over an edge as long as was asked for), and by how
+/// far samples of the lobe lie apart.
+inline vfloat growth_of_bounce(const Context& c, const Surface& s, const Beyond& b, const vfloat& density) {
+    vfloat spacing = load_broadcast(field(c.frame, &FrameHeader::lobe_spacing));
+    vfloat apart = spacing * reciprocal_sqrt(max(density, 1.0e-6F));
+    vfloat bulge = max(b.curvature, 0.0F) * s.target;
+    vfloat mirrored = fma(bulge, vfloat(2.0F), s.growth);
+    return mirrored + apart;
+}
+
+[[gnu::noinline]] inline Bounce sample_bounce(const Context& c, const Surface& s, const Beyond& b,
+                                              const Glossy& g, const Colours& colours) {
+    phase_scope phase(phase_shade);
+    vfloat zero(0.0F);
+    vpoint square = sample_square(s.pixel, s.sample, dimension_lobe);
+    vpoint which = sample_square(s.pixel, s.sample, dimension_choice);
+    vfloat choice = which.u;
+    vmask of_coat = choice < g.coat_share;
+    choice = choice - g.coat_share;
+    vmask of_base = choice < g.base_share;
+    of_base = of_base & !of_coat;
+    vvec h = sample_facing(s, g, g.alpha, square);
+    BaseSample way = sample_base(s, b, g, colours, h, which.v);
+    if (branch(any(s.hit & of_coat))) {
+        BaseSample on_top;
+        sample_coat(s, g, sample_facing(s, g, g.coat_alpha, square), on_top);
+        way.direction = select(of_coat, on_top.direction, way.direction);
+        way.factor = select(of_coat, on_top.factor, way.factor);
+        way.density = select(of_coat, on_top.density, way.density);
+        way.passes = way.passes & !of_coat;
+    }
+    Bounce out;
+    out.diffuse = !(of_base | of_coat);
+    vfloat rest = vfloat(1.0F) - g.coat_share;
+    rest = rest - g.base_share;
+    out.diffuse = out.diffuse & (rest > vfloat(1.0e-6F));
+    if (branch(any(s.hit & out.diffuse))) {
+        vfloat cosine;
+        vvec direction = sample_cosine(s.shading, square, cosine);
+        vfloat kept = kept_below(g, cosine);
+        way.direction = select(out.diffuse, direction, way.direction);
+        way.factor = select(out.diffuse, colours.diffuse * (kept / rest), way.factor);
+        way.density = select(out.diffuse, cosine * 0.318309886183790672F, way.density);
+        way.passes = way.passes & !out.diffuse;
+    }
+    vmask chosen = of_base | of_coat;
+    chosen = chosen | out.diffuse;
+    // Both normals must agree on which side it goes.
+    vfloat shaded = dot(s.shading, way.direction);
+    vfloat real = dot(s.geometric, way.direction);
+    vmask above = shaded > zero;
+    above = above & (real > zero);
+    vmask below = shaded < zero;
+    below = below & (real < zero);
+    vmask right = (way.passes & below) | above;
+    right = right & !(way.passes & above);
+    out.carried = way.factor;
+    out.density = way.density;
+    vmask bright = largest(way.factor) > zero;
+    Rays& r = out.rays;
+    r.origin = select(way.passes, b.position, s.position);
+    r.direction = way.direction * reciprocal_sqrt(dot(way.direction, way.direction));
+    r.t_min = zero;
+    r.t_max = vfloat(infinite);
+    r.active = s.hit & chosen;
+    r.active = r.active & right;
+    r.active = r.active & bright;
+    Surface leaving = s;
+    leaving.hit = r.active;
+    leave_surface(c, leaving, growth_of_bounce(c, s, b, out.density), r);
+    return out;
+}
+
+} // namespace shade_kernel
+} // namespace razor::ISA_TARGET

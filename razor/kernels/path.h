@@ -1,0 +1,130 @@
+// Camera samples where surfaces reflect, let through and emit: paths of light, followed backwards. At each
+// hit lights are sampled, and one direction of one lobe is followed; both share what either could find by
+// multiple importance sampling (Veach 1997, chapter 9), lobe by lobe.
+#pragma once
+
+#include "razor/kernels/light.h"
+#include "razor/kernels/pixel_sums.h"
+#include "razor/kernels/seen_lights.h"
+
+namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
+
+inline vvec times(const vvec& a, const vvec& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/// What the lobes make of light of that colour.
+inline vvec coloured(const Gathered<Glossy>& light, const Colours& colours) {
+    vfloat grazing = light.lobe[lobe_grazing] * colours.grazing;
+    vfloat white = grazing + light.lobe[lobe_coat];
+    vvec sum = madd(light.lobe[lobe_diffuse], colours.diffuse, {white, white, white});
+    return madd(light.lobe[lobe_normal], colours.normal, sum);
+}
+
+/// All light that reaches the hit and is reflected towards the viewer. `fewer`: one shadow ray to each light.
+template <Features F>
+inline vvec lit(const Context& c, const Surface& s, const Glossy& g, const Colours& colours, sbool fewer) {
+    vfloat zero(0.0F);
+    vvec sum{zero, zero, zero};
+    const auto add = [&](const Gathered<Glossy>& gathered, const vvec& radiance, sint stated, sint taken) {
+        sfloat number = to_float(taken);
+        vvec arriving = radiance * vfloat(to_float(stated) / number);
+        sum = sum + times(coloured(gathered, colours), arriving);
+    };
+    sint lights = load(field(c.frame, &FrameHeader::light_count));
+    pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
+    for (sint n = 0; branch(n < lights); ++n) {
+        sint stated = load(field(light, &LightRecord::samples));
+        sint taken = select(fewer, sint(1), stated);
+        Gathered<Glossy> gathered = gather_light<F>(c, s, light, g, taken);
+        add(gathered, load_broadcast_vec(field(light, &LightRecord::radiance)), stated, taken);
+        light = light + 1;
+    }
+    sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
+    if (branch(sky_samples > 0)) {
+        sint taken = select(fewer, sint(1), sky_samples);
+        Gathered<Glossy> gathered = gather_light<F>(c, s, TowardsSky{}, g, taken);
+        add(gathered, load_broadcast_vec(field(c.frame, &FrameHeader::sky)), sky_samples, taken);
+    }
+    return sum;
+}
+
+/// Added to the numbers of pixels at each bounce, so that its samples have nothing to do with those before.
+inline constexpr std::uint32_t bounce_step = 0x85ebca6bU;
+
+/// The path's first hits as they are seen in other layers than beauty.
+inline void note_first(const Surface& s, const Hits& h, const vvec& albedo, PixelSums& sums) {
+    vfloat zero(0.0F);
+    sums.normal = sums.normal + select(s.hit, s.shading, {zero, zero, zero});
+    sums.albedo = sums.albedo + select(s.hit, albedo, {zero, zero, zero});
+    sums.depth = sums.depth + select(s.hit, h.t, zero);
+    sums.hits = sums.hits + select(s.hit, vfloat(1.0F), zero);
+}
+
+struct PathSampler {
+    template <Features F>
+    static void add(const Context& c, const Rays& r, const vint& pixel, const vint& sample, PixelSums& sums);
+};
+
+template <Features F>
+inline void PathSampler::add(const Context& c, const Rays& camera, const vint& pixel, const vint& sample,
+                             PixelSums& sums) {
+    vfloat zero(0.0F);
+    vfloat one(1.0F);
+    vvec black{zero, zero, zero};
+    vvec background = load_broadcast_vec(field(c.frame, &FrameHeader::background));
+    sint bounces = load(field(c.frame, &FrameHeader::bounces));
+    sint diffuse_bounces = load(field(c.frame, &FrameHeader::diffuse_bounces));
+    vvec carried{one, one, one};
+    Bounce bounce;
+    bounce.rays = camera;
+    for (sint n = 0; branch(n <= bounces); ++n) {
+        const Rays& r = bounce.rays;
+        Hits h;
+        vvec found = background;
+        if (branch(n == 0)) {
+            h = trace_packet<F, kind_camera>(c, r);
+            tally(c.counters->camera_hits, count(h.patch >= vint(0)));
+        } else {
+            h = trace_packet<F, kind_bounce>(c, r);
+            found = select(bounce.diffuse, black, background);
+        }
+        vmask hit = r.active & (h.patch >= vint(0));
+        vmask open = r.active & !hit;
+        found = select(open, found, black);
+        if (branch(n > 0)) {
+            vfloat end = select(hit, h.t, vfloat(infinite));
+            vvec met = meet_lights(c, r, end, bounce.density, n > 1);
+            found = found + select(bounce.diffuse, black, met);
+        }
+        if (branch(any(hit))) {
+            Beyond beyond;
+            Surface s = find_surface<look_glossy>(c, r, h, beyond);
+            s.hit = hit;
+            s.pixel = pixel + vint(n * std::int32_t(bounce_step));
+            s.sample = sample;
+            s.shading = facing(s.shading, beyond.toward);
+            Onward onward{n < bounces, n < diffuse_bounces};
+            Colours colours;
+            Glossy g = find_lobes(c, s, beyond, onward, colours);
+            if (branch(n == 0))
+                note_first(s, h, colours.albedo, sums);
+            vvec reflected = lit<F>(c, s, g, colours, n > 0);
+            found = found + select(hit, colours.emission + reflected, black);
+            sums.beauty = sums.beauty + times(found, carried);
+            if (branch(n == bounces))
+                return;
+            bounce = sample_bounce(c, s, beyond, g, colours);
+            carried = select(bounce.rays.active, times(carried, bounce.carried), black);
+            if (branch(none(bounce.rays.active)))
+                return;
+        } else {
+            sums.beauty = sums.beauty + times(found, carried);
+            return;
+        }
+    }
+}
+
+} // namespace shade_kernel
+} // namespace razor::ISA_TARGET

@@ -1,0 +1,124 @@
+#include "tests/materials/plain_surface.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace razor::test {
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+double distribution(const dvec3& h, double alpha) {
+    const double tan_square = (h.x * h.x + h.y * h.y) / (h.z * h.z);
+    const double t = 1 + tan_square / (alpha * alpha);
+    return 1 / (pi * alpha * alpha * std::pow(h.z, 4) * t * t);
+}
+
+/// Smith's auxiliary function.
+double lambda(const dvec3& w, double alpha) {
+    const double tan_square = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+    return (std::sqrt(1 + alpha * alpha * tan_square) - 1) / 2;
+}
+
+double shadowing(const dvec3& v, const dvec3& l, double alpha) {
+    return 1 / (1 + lambda(v, alpha) + lambda(l, alpha));
+}
+
+/// The mean over normals of density D cos, of `weight(h)`; a mirror's is that of the one normal.
+template <class Weight> dvec3 over_normals(double alpha, int n, Weight weight) {
+    if (alpha < 1e-3)
+        return weight(dvec3(0, 0, 1));
+    dvec3 sum(0);
+    for (int i = 0; i < n; ++i) {
+        const double x = (i + 0.5) / n;
+        const double tan = alpha * std::sqrt(x / (1 - x));
+        const double z = 1 / std::sqrt(1 + tan * tan);
+        for (int j = 0; j < n; ++j) {
+            const double phi = 2 * pi * (j + 0.5) / n;
+            sum += weight(dvec3(tan * z * std::cos(phi), tan * z * std::sin(phi), z));
+        }
+    }
+    return sum / double(n * n);
+}
+
+/// What a lobe reflects of light from everywhere.
+template <class Fresnel> dvec3 lobe(const dvec3& v, double alpha, int n, Fresnel fresnel) {
+    return over_normals(alpha, n, [&](const dvec3& h) {
+        const double along = glm::dot(v, h);
+        const dvec3 l = 2 * along * h - v;
+        if (along <= 0 || l.z <= 0)
+            return dvec3(0);
+        const double weight = alpha < 1e-3 ? 1 : shadowing(v, l, alpha) * along / (v.z * h.z);
+        return dvec3(fresnel(along)) * weight;
+    });
+}
+
+} // namespace
+
+double PlainSurface::schlick(double cosine) {
+    return std::pow(1 - std::min(cosine, 1.0), 5);
+}
+double PlainSurface::dielectric(double cosine) const {
+    const double f0 = std::pow((m_.ior - 1.0) / (m_.ior + 1.0), 2);
+    return m_.specular * (f0 + (1 - f0) * schlick(cosine));
+}
+double PlainSurface::below(double view, double light) const {
+    const double f0 = std::pow((m_.ior - 1.0) / (m_.ior + 1.0), 2);
+    const auto part = [](double c) { return 1 - std::pow(1 - c / 2, 5); };
+    return 1 - m_.specular + m_.specular * 28.0 / 23 * (1 - f0) * part(view) * part(light);
+}
+dvec3 PlainSurface::base_fresnel(double cosine) const {
+    const dvec3 albedo(m_.albedo);
+    const dvec3 metal = albedo + (dvec3(1) - albedo) * schlick(cosine);
+    return double(m_.metallic) * metal + dvec3((1 - double(m_.metallic)) * dielectric(cosine));
+}
+double PlainSurface::coat_fresnel(double cosine) const {
+    return m_.coat * (0.04 + 0.96 * schlick(cosine));
+}
+
+dvec3 PlainSurface::reflectance(const dvec3& v, const dvec3& l) const {
+    const dvec3 h = glm::normalize(v + l);
+    const double along = glm::dot(v, h);
+    const auto rough = [&](double roughness) {
+        const double alpha = roughness * roughness;
+        return alpha < 1e-3 ? 0 : distribution(h, alpha) * shadowing(v, l, alpha) / (4 * v.z * l.z);
+    };
+    const double beneath = 1 - coat_fresnel(v.z);
+    const dvec3 diffuse = dvec3(m_.albedo) * ((1 - double(m_.metallic)) * (1 - double(m_.transmission)) / pi);
+    return beneath * (diffuse * below(v.z, l.z) + base_fresnel(along) * rough(m_.roughness)) +
+           dvec3(coat_fresnel(along) * rough(m_.coat_roughness));
+}
+
+dvec3 PlainSurface::reflected(const dvec3& v, int n) const {
+    const double beneath = 1 - coat_fresnel(v.z);
+    // Diffuse: directions of density cos / pi.
+    dvec3 diffuse(0);
+    for (int i = 0; i < n; ++i)
+        diffuse += dvec3(below(v.z, std::sqrt((i + 0.5) / n)) / n);
+    diffuse *= dvec3(m_.albedo) * ((1 - double(m_.metallic)) * (1 - double(m_.transmission)));
+    const double alpha = double(m_.roughness) * m_.roughness;
+    const double coat_alpha = double(m_.coat_roughness) * m_.coat_roughness;
+    return beneath * (diffuse + lobe(v, alpha, n, [this](double c) { return base_fresnel(c); })) +
+           lobe(v, coat_alpha, n, [this](double c) { return coat_fresnel(c); });
+}
+
+dvec3 PlainSurface::transmitted(const dvec3& v, int n) const {
+    const double alpha = double(m_.roughness) * m_.roughness, eta = 1 / double(m_.ior);
+    const dvec3 colour = dvec3(m_.albedo) * ((1 - double(m_.metallic)) * m_.transmission);
+    return (1 - coat_fresnel(v.z)) * over_normals(alpha, n, [&](const dvec3& h) {
+               const double along = glm::dot(v, h);
+               if (along <= 0)
+                   return dvec3(0);
+               const double through = std::sqrt(1 - eta * eta * (1 - along * along));
+               const dvec3 l = (eta * along - through) * h - eta * v;
+               if (l.z >= 0)
+                   return dvec3(0);
+               const double weight = alpha < 1e-3 ? 1 : shadowing(v, l, alpha) * along / (v.z * h.z);
+               return colour * (weight * (1 - dielectric(along)) * eta * eta);
+           });
+}
+
+} // namespace razor::test

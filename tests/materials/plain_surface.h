@@ -1,0 +1,37 @@
+// The surfaces of razor/scene/material.h again, in double and by their definitions: what they reflect from
+// one direction into another, and what of light from everywhere. Nothing here is shared with the kernels.
+#pragma once
+
+#include "razor/scene/material.h"
+
+#include <glm/vec3.hpp>
+
+namespace razor::test {
+
+/// z is the normal; all directions point away from the surface; the viewer is above.
+class PlainSurface {
+public:
+    explicit PlainSurface(const Material& material) : m_(material) {}
+
+    /// The value of the reflectance, 1 / steradian, of rough lobes and diffuse reflection; `light.z` > 0.
+    glm::dvec3 reflectance(const glm::dvec3& view, const glm::dvec3& light) const;
+
+    /// Of light of radiance 1 from everywhere, what is seen: of reflection, and of what comes through from
+    /// below, each lobe by an integral over normals (n x n points).
+    glm::dvec3 reflected(const glm::dvec3& view, int n) const;
+    glm::dvec3 transmitted(const glm::dvec3& view, int n) const;
+
+    /// Schlick's factor for light from outside.
+    static double schlick(double cosine);
+    glm::dvec3 base_fresnel(double cosine) const;
+    double coat_fresnel(double cosine) const;
+
+private:
+    double dielectric(double cosine) const;
+    /// Of diffuse reflection, below a dielectric.
+    double below(double view, double light) const;
+
+    Material m_;
+};
+
+} // namespace razor::test
