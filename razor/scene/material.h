@@ -32,11 +32,11 @@ struct Material {
     float coat_roughness = 0;    // in [0, 1]
     glm::vec3 emission{0, 0, 0}; // radiance from both sides
     /// Maps multiply what is above: albedo and emission by colour, metallic by blue, roughness by green.
-    TextureMap albedo_map, metallic_map, roughness_map, emission_map;
-    TextureMap normal_map;  // tangent-space normals, 2 rgb - 1
-    float normal_scale = 1; // of their x and y
-    float alpha_cutoff = 0; // what albedo_map's opacity is below is not there; 0: all is
-    bool two_sided = true;  // else seen from the front only
+    TextureMap albedo_map{}, metallic_map{}, roughness_map{}, emission_map{};
+    TextureMap normal_map{}; // tangent-space normals, 2 rgb - 1
+    float normal_scale = 1;  // of their x and y
+    float alpha_cutoff = 0;  // what albedo_map's opacity is below is not there; 0: all is
+    bool two_sided = true;   // else seen from the front only
 
     bool operator==(const Material&) const = default;
 };
