@@ -69,8 +69,14 @@ std::vector<const char*> names_of_channels(const Imf::ChannelList& channels, std
 TexturePyramid read(std::string_view bytes, const std::string& name) {
     InputStream header_stream(bytes, name), stream(bytes, name);
     { // what is said of the size, before OpenEXR allocates anything of it
+        char start[8]{};
+        header_stream.read(start, sizeof start); // magic number and version, of the same byte order as all
         int version = 0;
-        header_stream.seekg(4);
+        for (int i = 3; i >= 0; --i)
+            version = version << 8 | static_cast<unsigned char>(start[4 + i]);
+        if (Imf::isMultiPart(version) || Imf::isNonImage(version))
+            throw UserError(fmt::format("{}: has several parts or deep pixels; give a flat OpenEXR picture",
+                                        printable(name, 1000)));
         Imf::Header header;
         header.readFrom(header_stream, version);
         const auto window = header.dataWindow();
