@@ -195,6 +195,7 @@ Scene build_scene(const SceneDescription& description) {
     scene.dicing_camera = description.dicing_camera;
     scene.sky = description.sky;
     scene.lights = description.lights;
+    scene.textures = description.textures;
     scene.materials = description.materials;
     for (std::size_t m = 0; m < description.meshes.size(); ++m) {
         scene.meshes.push_back(build_mesh(description, m));

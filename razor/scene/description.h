@@ -27,7 +27,7 @@ struct MeshDescription {
     std::string shape;                                      // see razor/scene/shapes/shapes.h
     std::vector<std::pair<std::string, double>> parameters; // of the shape, all of them
     Scheme scheme = Scheme::catmull_clark;
-    std::string material;
+    std::string material;            // of all faces; empty: those that the file itself states
     glm::dvec3 scale{1, 1, 1};       // positive
     glm::dvec3 rotate{0, 0, 0};      // degrees, about x, then y, then z; quarter turns are exact
     glm::dvec3 translate{0, 0, 0};   // world units
@@ -77,7 +77,8 @@ struct SceneDescription {
     double frame_rate = 24; // frames a second
     CameraKeys camera_keys;
     std::vector<LightKeys> light_keys; // of each light, or none
-    std::vector<Material> materials;
+    std::vector<Texture> textures;
+    std::vector<Material> materials; // their maps name these textures
     std::vector<MeshDescription> meshes;
     std::vector<GroupDescription> groups;
     std::vector<ObjectDescription> objects;

@@ -3,6 +3,7 @@
 #include "razor/scene/animation/read_playback.h"
 #include "razor/scene/description.h"
 #include "razor/scene/light_fields.h"
+#include "razor/scene/print_materials.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/words.h"
@@ -89,9 +90,9 @@ std::string to_toml(const SceneDescription& description) {
     const Settings& settings = description.settings;
     fmt::format_to(out,
                    "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples "
-                   "= {}\nseed = {}\n",
+                   "= {}\nbounces = {}\nseed = {}\n",
                    toml_text(description.name), settings.width, settings.height, settings.samples,
-                   settings.light_samples, settings.sky_samples, settings.seed);
+                   settings.light_samples, settings.sky_samples, settings.bounces, settings.seed);
     if (const Crop& crop = settings.crop; crop != Crop{}) {
         fmt::format_to(out, "crop = [{}, {}, {}, {}]\n", crop.x, crop.y, crop.width, crop.height);
     }
@@ -118,9 +119,11 @@ std::string to_toml(const SceneDescription& description) {
             text += to_toml(description.light_keys[l], "light");
         }
     }
+    for (const Texture& texture : description.textures) {
+        text += to_toml(texture);
+    }
     for (const Material& material : description.materials) {
-        fmt::format_to(out, "\n[[material]]\nname = {}\nalbedo = {}\n", toml_text(material.name),
-                       toml_value(material.albedo));
+        text += to_toml(material, description.textures);
     }
     for (const MeshDescription& mesh : description.meshes) {
         fmt::format_to(out, "\n[[mesh]]\nname = {}\n", toml_text(mesh.name));
@@ -129,8 +132,10 @@ std::string to_toml(const SceneDescription& description) {
         } else {
             fmt::format_to(out, "file = {}\n", toml_text(mesh.file));
         }
-        fmt::format_to(out, "scheme = {}\nmaterial = {}\n", toml_text(word_of(scheme_words, mesh.scheme)),
-                       toml_text(mesh.material));
+        fmt::format_to(out, "scheme = {}\n", toml_text(word_of(scheme_words, mesh.scheme)));
+        if (!mesh.material.empty()) {
+            fmt::format_to(out, "material = {}\n", toml_text(mesh.material));
+        }
         fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
                        toml_value(mesh.scale), toml_value(mesh.rotate), toml_value(mesh.translate),
                        toml_number(mesh.edge_length));

@@ -10,6 +10,7 @@
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/read_materials.h"
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
@@ -45,6 +46,7 @@ Settings read_settings(TomlTable table) {
     settings.samples = table.whole("samples", settings.samples, samples_range);
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
+    settings.bounces = table.whole("bounces", settings.bounces, bounces_range);
     settings.seed = table.whole("seed", settings.seed, seed_range);
     settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
     settings.lod = choose(table, "lod", settings.lod, lod_words);
@@ -84,17 +86,6 @@ Light read_light(TomlTable& table) {
     };
     visit_light_fields(light.kind, read, light);
     return light;
-}
-
-Material read_material(TomlTable table) {
-    Material material;
-    material.name = table.text("name", "");
-    material.albedo = glm::vec3(table.vector_or_number("albedo", glm::dvec3(material.albedo), {0, 1}));
-    table.finish();
-    if (material.name.empty()) {
-        table.fail("name", "a material without a name; write name = \"...\"");
-    }
-    return material;
 }
 
 void read_shape(TomlTable& table, MeshDescription& mesh) {
@@ -174,16 +165,21 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         light.finish();
         check(light, mistake_of(scene.lights.back()));
     }
-    std::vector<std::string> names;
+    CageCache cages;
+    std::vector<std::string> texture_names, names;
+    for (TomlTable& table : root.tables("texture")) {
+        scene.textures.push_back(read_texture(table, folder, cages.textures));
+        check_names(texture_names, scene.textures.back().name, table);
+        texture_names.push_back(scene.textures.back().name);
+    }
     for (TomlTable& table : root.tables("material")) {
-        scene.materials.push_back(read_material(table));
+        scene.materials.push_back(read_material(table, texture_names));
         check_names(names, scene.materials.back().name, table);
         names.push_back(scene.materials.back().name);
     }
     if (scene.materials.empty()) {
         scene.materials.push_back(Material{.name = "default"});
     }
-    CageCache cages;
     for (TomlTable& mesh : root.tables("mesh")) {
         scene.meshes.push_back(read_mesh(std::move(mesh), scene.materials, folder, scene.frame_rate, cages));
     }

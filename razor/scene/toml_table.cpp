@@ -136,6 +136,32 @@ std::string TomlTable::text(std::string_view key, std::string_view preset) {
     return node->as_string()->get();
 }
 
+bool TomlTable::flag(std::string_view key, bool preset) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return preset;
+    }
+    if (!node->is_boolean()) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write true or false", full(key), type_name(*node)));
+    }
+    return node->as_boolean()->get();
+}
+
+std::pair<double, double> TomlTable::pair(std::string_view key, std::pair<double, double> preset,
+                                          Range range) {
+    const toml::node* const node = find(key);
+    if (node == nullptr) {
+        return preset;
+    }
+    const toml::array* const array = node->as_array();
+    if (array == nullptr || array->size() != 2) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write two numbers [a, b]", full(key), described(*node)));
+    }
+    return {checked((*array)[0], full(key), range), checked((*array)[1], full(key), range)};
+}
+
 /// The array of three of `what` that the key holds; null if the key is missing.
 const toml::array* TomlTable::three(std::string_view key, std::string_view what) {
     const toml::node* const node = find(key);
@@ -225,6 +251,10 @@ std::size_t TomlTable::choice(std::string_view key, std::size_t preset,
                             nearest(word, words), list));
     }
     return static_cast<std::size_t>(found - words.begin());
+}
+
+bool TomlTable::is_table(std::string_view key) const {
+    return has(key) && table_->get(key)->is_table();
 }
 
 TomlTable TomlTable::table(std::string_view key) {

@@ -38,6 +38,9 @@ public:
     /// Four whole numbers, where `key` is stated.
     std::optional<std::array<int, 4>> four_whole(std::string_view key, Range range);
     std::string text(std::string_view key, std::string_view preset);
+    bool flag(std::string_view key, bool preset);
+    /// Two numbers.
+    std::pair<double, double> pair(std::string_view key, std::pair<double, double> preset, Range range);
     /// Three numbers.
     glm::dvec3 vector(std::string_view key, const glm::dvec3& preset, Range range);
     /// Three numbers, or one that stands for all three.
@@ -48,6 +51,7 @@ public:
     std::optional<std::array<std::array<double, 4>, 3>> rows_of_four(std::string_view key, Range range);
     /// The index of the value in `words`.
     std::size_t choice(std::string_view key, std::size_t preset, std::span<const std::string_view> words);
+    bool is_table(std::string_view key) const;
     /// A table inside this one.
     TomlTable table(std::string_view key);
     /// An array of tables.

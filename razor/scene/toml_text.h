@@ -23,6 +23,9 @@ template <typename Real> std::string toml_number(Real value) {
 inline std::string toml_value(double value) {
     return toml_number(value);
 }
+inline std::string toml_value(float value) {
+    return toml_number(value);
+}
 template <typename Real, glm::qualifier q> std::string toml_value(const glm::vec<3, Real, q>& v) {
     return fmt::format("[{}, {}, {}]", toml_number(v.x), toml_number(v.y), toml_number(v.z));
 }

@@ -3,6 +3,7 @@
 
 #include "razor/scene/animation/deformer.h"
 #include "razor/scene/animation/track.h"
+#include "razor/scene/material_fields.h"
 #include "razor/scene/scene.h"
 
 #include <array>
@@ -37,6 +38,25 @@ inline constexpr std::array<Word<LightKind>, 6> light_words{{
     {"point", LightKind::point},
     {"spot", LightKind::spot},
     {"directional", LightKind::directional},
+}};
+
+inline constexpr std::array<Word<Wrap>, 3> wrap_words{{
+    {"repeat", Wrap::repeat},
+    {"clamp", Wrap::clamp},
+    {"mirror", Wrap::mirror},
+}};
+
+inline constexpr std::array<Word<MaterialKind>, 4> material_words{{
+    {"matte", MaterialKind::matte},
+    {"principled", MaterialKind::principled},
+    {"mirror", MaterialKind::mirror},
+    {"glass", MaterialKind::glass},
+}};
+
+/// What the values of a texture's file are: `linear` of Texture.
+inline constexpr std::array<Word<bool>, 2> color_space_words{{
+    {"srgb", false},
+    {"linear", true},
 }};
 
 inline constexpr std::array<Word<Interpolation>, 3> interpolation_words{{

@@ -23,6 +23,7 @@ inline void expect_same(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.crease_method, b.crease_method);
     EXPECT_EQ(a.triangles, b.triangles);
     EXPECT_EQ(a.material, b.material);
+    EXPECT_EQ(a.face_materials, b.face_materials);
     EXPECT_EQ(a.edge_length, b.edge_length);
     ASSERT_EQ(a.creases.size(), b.creases.size());
     for (std::size_t i = 0; i < a.creases.size(); ++i) {
@@ -54,6 +55,7 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.samples, b.settings.samples);
     EXPECT_EQ(a.settings.light_samples, b.settings.light_samples);
     EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
+    EXPECT_EQ(a.settings.bounces, b.settings.bounces);
     EXPECT_EQ(a.settings.seed, b.settings.seed);
     EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);
     EXPECT_EQ(a.settings.lod, b.settings.lod);
@@ -70,10 +72,19 @@ inline void expect_same(const Scene& a, const Scene& b) {
             [](std::string_view name, Range, bool, const auto& x, const auto& y) { EXPECT_EQ(x, y) << name; },
             a.lights[i], b.lights[i]);
     }
+    ASSERT_EQ(a.textures.size(), b.textures.size());
+    for (std::size_t i = 0; i < a.textures.size(); ++i) {
+        EXPECT_EQ(a.textures[i].name, b.textures[i].name);
+        EXPECT_EQ(a.textures[i].file, b.textures[i].file);
+        EXPECT_EQ(a.textures[i].linear, b.textures[i].linear);
+        EXPECT_EQ(a.textures[i].wrap_u, b.textures[i].wrap_u);
+        EXPECT_EQ(a.textures[i].wrap_v, b.textures[i].wrap_v);
+    }
     ASSERT_EQ(a.materials.size(), b.materials.size());
     for (std::size_t i = 0; i < a.materials.size(); ++i) {
         EXPECT_EQ(a.materials[i].name, b.materials[i].name);
         EXPECT_EQ(a.materials[i].albedo, b.materials[i].albedo);
+        EXPECT_EQ(a.materials[i], b.materials[i]) << a.materials[i].name;
     }
     ASSERT_EQ(a.meshes.size(), b.meshes.size());
     for (std::size_t i = 0; i < a.meshes.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/scene/description.h"
+#include "razor/scene/textures/texture_cache.h"
 
 #include <filesystem>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 namespace razor {
 
-/// What was read, by the file and how it is played: no file is read twice.
+/// What was read, by the file and how it is played, with its pictures: no file is read twice.
 struct CageCache {
     struct Entry {
         Playback playback{}; // as asked for, and what was left open
@@ -17,6 +18,7 @@ struct CageCache {
         std::shared_ptr<const MovingCage> motion{};
     };
     std::unordered_map<std::string, Entry> entries;
+    TextureCache textures;
 };
 
 /// What files hold by their names' extensions, in any case.

@@ -1,0 +1,71 @@
+#include "razor/scene/print_materials.h"
+
+#include "razor/scene/toml_text.h"
+#include "razor/scene/words.h"
+
+#include <fmt/format.h>
+#include <glm/trigonometric.hpp>
+
+#include <iterator>
+
+namespace razor {
+namespace {
+
+std::string toml_pair(const glm::vec2& v) {
+    return fmt::format("[{}, {}]", toml_number(v.x), toml_number(v.y));
+}
+
+/// The fewest digits of degrees that are read as just these radians.
+std::string toml_degrees(float radians) {
+    const double degrees = glm::degrees(double{radians});
+    for (int digits = 6; digits < 17; ++digits) {
+        const double rounded = std::stod(fmt::format("{:.{}g}", degrees, digits));
+        if (static_cast<float>(glm::radians(rounded)) == radians) {
+            return toml_number(rounded);
+        }
+    }
+    return toml_number(degrees);
+}
+
+std::string to_toml(const TextureMap& map, const std::string& texture) {
+    if (map == TextureMap{.texture = map.texture}) {
+        return toml_text(texture);
+    }
+    return fmt::format("{{ texture = {}, scale = {}, offset = {}, rotation = {} }}", toml_text(texture),
+                       toml_pair(map.scale), toml_pair(map.offset), toml_degrees(map.rotation));
+}
+
+} // namespace
+
+std::string to_toml(const Texture& texture) {
+    return fmt::format("\n[[texture]]\nname = {}\nfile = {}\ncolor_space = {}\nwrap = {}\n",
+                       toml_text(texture.name), toml_text(texture.file),
+                       toml_text(word_of(color_space_words, texture.linear)),
+                       toml_text(word_of(wrap_words, texture.wrap_u)));
+}
+
+std::string to_toml(const Material& material, const std::vector<Texture>& textures) {
+    std::string text = fmt::format("\n[[material]]\nname = {}\n", toml_text(material.name));
+    if (material == Material{.name = material.name, .albedo = material.albedo}) {
+        return text + fmt::format("albedo = {}\n", toml_value(material.albedo));
+    }
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "kind = \"principled\"\n"); // whatever it was read as: all is stated
+    visit_material_fields(
+        [&](std::string_view name, Range, const auto& value) {
+            fmt::format_to(out, "{} = {}\n", name, toml_value(value));
+        },
+        material);
+    fmt::format_to(out, "two_sided = {}\n", material.two_sided);
+    visit_material_maps(
+        [&](std::string_view name, const TextureMap& map) {
+            if (map.texture >= 0) {
+                fmt::format_to(out, "{} = {}\n", name,
+                               to_toml(map, textures[static_cast<std::size_t>(map.texture)].name));
+            }
+        },
+        material);
+    return text;
+}
+
+} // namespace razor

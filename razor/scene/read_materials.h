@@ -1,0 +1,24 @@
+// Textures and materials of scene files.
+//
+// A material's kind states what it has where nothing else is stated: matte (what only reflects in all
+// directions alike), principled (a dielectric's reflection besides), mirror or glass. Where a map is stated
+// and the number or colour that it multiplies is not, that is 1.
+#pragma once
+
+#include "razor/scene/textures/texture_cache.h"
+#include "razor/scene/toml_table.h"
+
+#include "razor/scene/material.h"
+
+#include <span>
+#include <string>
+
+namespace razor {
+
+/// [[texture]], with its picture; the file's name is relative to `folder`. Throws UserError.
+Texture read_texture(TomlTable& table, const std::filesystem::path& folder, TextureCache& cache);
+
+/// [[material]], whose maps may name these textures. Throws UserError.
+Material read_material(TomlTable& table, std::span<const std::string> textures);
+
+} // namespace razor

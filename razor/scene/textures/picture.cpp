@@ -1,0 +1,74 @@
+#include "razor/scene/textures/picture.h"
+
+#include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <utility>
+
+namespace razor {
+namespace {
+
+constexpr std::string_view png_magic = "\x89PNG\r\n\x1a\n", jpeg_magic = "\xff\xd8\xff",
+                           exr_magic = "\x76\x2f\x31\x01";
+/// A bit a texel, and the 1032 bytes for one of which deflate is capable.
+constexpr std::int64_t most_texels_a_byte = 8 * 1032;
+
+/// Formats that textures are often in, by how they begin.
+constexpr std::pair<std::string_view, std::string_view> not_read[] = {
+    {"GIF8", "a GIF picture"},
+    {"BM", "a BMP picture"},
+    {"DDS ", "a DDS texture"},
+    {"RIFF", "a WebP picture"},
+    {"\xabKTX", "a KTX texture"},
+    {"II*", "a TIFF picture"},
+    {"MM", "a TIFF picture"},
+    {"#?RADIANCE", "a Radiance picture"},
+    {"#?RGBE", "a Radiance picture"},
+    {"8BPS", "a Photoshop picture"},
+    {"version https://git-lfs", "a pointer to a file in Git LFS, not the file"},
+};
+
+} // namespace
+
+void check_picture_size(std::string_view name, std::int64_t width, std::int64_t height, std::size_t bytes) {
+    const auto fail = [&](std::string_view cause) {
+        throw UserError(fmt::format("{}: {} x {} texels {}", printable(name, 1000), width, height, cause));
+    };
+    if (width < 1 || height < 1)
+        fail("are none; give another picture");
+    if (width > most_picture_side || height > most_picture_side)
+        fail(fmt::format("are too many; give at most {0} x {0}", most_picture_side));
+    if (width * height > most_texels)
+        fail(fmt::format("are too many; give at most {} in all", most_texels));
+    if (width * height / most_texels_a_byte > static_cast<std::int64_t>(bytes))
+        fail(fmt::format("cannot be in {} bytes: it is damaged or cut short; give another picture", bytes));
+}
+
+TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear) {
+    try {
+        if (bytes.starts_with(png_magic))
+            return decode_png(bytes, name, linear);
+        if (bytes.starts_with(jpeg_magic))
+            return decode_jpeg(bytes, name, linear);
+        if (bytes.starts_with(exr_magic))
+            return decode_exr(bytes, name);
+    } catch (const std::bad_alloc&) {
+        throw UserError(
+            fmt::format("{}: the picture does not fit in memory; give a smaller one", printable(name, 1000)));
+    }
+    for (const auto& [magic, kind] : not_read)
+        if (bytes.starts_with(magic))
+            throw UserError(
+                fmt::format("{}: is {}; convert it to PNG, JPEG or OpenEXR", printable(name, 1000), kind));
+    throw UserError(fmt::format("{}: is {}; give PNG, JPEG or OpenEXR", printable(name, 1000),
+                                bytes.empty() ? "empty" : "no picture that is read"));
+}
+
+TexturePyramid read_picture(const std::filesystem::path& path, bool linear) {
+    return decode_picture(read_text_file(path, "a picture"), path.string(), linear);
+}
+
+} // namespace razor

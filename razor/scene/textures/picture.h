@@ -1,0 +1,33 @@
+// Pictures as textures: PNG (every kind), JPEG (grey and YCbCr or RGB), OpenEXR (red, green, blue or
+// luminance, and opacity). By their first bytes, whatever their names.
+#pragma once
+
+#include "razor/scene/texture.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace razor {
+
+/// A side of a picture, and texels of it, at most.
+inline constexpr int most_picture_side = 32768;
+inline constexpr std::int64_t most_texels = std::int64_t{1} << 29;
+
+/// Throws UserError "name: cause; mend" where a picture of `bytes` bytes says that it is larger than the
+/// limits, or than any so short can be. Before anything of that size is allocated.
+void check_picture_size(std::string_view name, std::int64_t width, std::int64_t height, std::size_t bytes);
+
+/// What they hold as linear colours. `linear`: it is no sRGB colour; OpenEXR never is. Colours above 65408
+/// count as that. Throws UserError "name: cause; mend": damaged, cut short, too large, or of a kind that is
+/// not read.
+TexturePyramid decode_png(std::string_view bytes, std::string_view name, bool linear);
+TexturePyramid decode_jpeg(std::string_view bytes, std::string_view name, bool linear);
+TexturePyramid decode_exr(std::string_view bytes, std::string_view name);
+
+/// Whichever of these it is. `name`: of the file or the part of one, for messages.
+TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear);
+
+/// A file.
+TexturePyramid read_picture(const std::filesystem::path& path, bool linear);
+
+} // namespace razor

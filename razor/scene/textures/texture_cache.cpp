@@ -1,0 +1,14 @@
+#include "razor/scene/textures/texture_cache.h"
+
+#include "razor/scene/textures/picture.h"
+
+namespace razor {
+
+std::shared_ptr<const TexturePyramid> TextureCache::read(const std::filesystem::path& path, bool linear) {
+    auto& pyramid = pyramids_[{std::filesystem::absolute(path).lexically_normal().string(), linear}];
+    if (!pyramid)
+        pyramid = std::make_shared<const TexturePyramid>(read_picture(path, linear));
+    return pyramid;
+}
+
+} // namespace razor

@@ -1,0 +1,23 @@
+// Pictures that have been read: no file twice.
+#pragma once
+
+#include "razor/scene/texture.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace razor {
+
+class TextureCache {
+public:
+    /// See read_picture(). Throws UserError.
+    std::shared_ptr<const TexturePyramid> read(const std::filesystem::path& path, bool linear);
+
+private:
+    std::map<std::pair<std::string, bool>, std::shared_ptr<const TexturePyramid>> pyramids_;
+};
+
+} // namespace razor

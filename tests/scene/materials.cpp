@@ -1,0 +1,219 @@
+// Materials and textures of scene files, and the printed scene that has them again.
+#include "razor/scene/error.h"
+#include "razor/scene/material_fields.h"
+#include "razor/scene/print_materials.h"
+#include "razor/scene/scene_file.h"
+#include "tests/scene/picture_writer.h"
+#include "tests/scene/same_scene.h"
+#include "tests/scene/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+namespace razor {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+const std::string box = "[[mesh]]\nshape = \"box\"\n";
+
+SceneDescription parsed(const std::string& text, const std::filesystem::path& folder = {}) {
+    return parse_scene_file(text, "s.toml", folder);
+}
+
+Material material(const std::string& fields) {
+    return parsed("[[material]]\nname = \"m\"\n" + fields + "\n" + box).materials.at(0);
+}
+
+std::string message_of(const std::string& text, const std::filesystem::path& folder = {}) {
+    try {
+        parsed(text, folder);
+    } catch (const UserError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+void add_pictures(const TemporaryFolder& folder) {
+    folder.file("a.png", png_of(2, 2, {}, std::vector<std::uint8_t>(12, 128)));
+    folder.file("b.jpg", jpeg_of(8, 8, 1, std::vector<std::uint8_t>(64, 128)));
+}
+
+constexpr std::string_view textures = "[[texture]]\nname = \"bricks\"\nfile = \"a.png\"\n"
+                                      "[[texture]]\nname = \"rough\"\nfile = \"b.jpg\"\n"
+                                      "color_space = \"linear\"\nwrap = \"mirror\"\n";
+
+TEST(Materials, KindsAreWhatElseIsNotStated) {
+    const Material plain{.name = "m"};
+    EXPECT_EQ(material(""), plain);
+    EXPECT_EQ(material("kind = \"matte\""), plain);
+    EXPECT_TRUE(is_matte(material("albedo = 0.25")));
+    Material want = plain;
+    want.specular = 1;
+    EXPECT_EQ(material("kind = \"principled\""), want);
+    want = plain;
+    want.albedo = glm::vec3(1);
+    want.metallic = 1;
+    want.roughness = 0;
+    EXPECT_EQ(material("kind = \"mirror\""), want);
+    want = plain;
+    want.albedo = glm::vec3(1);
+    want.specular = want.transmission = 1;
+    want.roughness = 0;
+    EXPECT_EQ(material("kind = \"glass\""), want);
+    want.ior = 1.25F;
+    want.albedo = {0.5F, 0.25F, 1};
+    EXPECT_EQ(material("ior = 1.25\nkind = \"glass\"\nalbedo = [0.5, 0.25, 1]"), want);
+}
+
+TEST(Materials, EveryFieldIsRead) {
+    const Material m = material(R"(albedo = [0.1, 0.2, 0.3]
+        metallic = 0.125
+        roughness = 0.25
+        specular = 0.375
+        ior = 2.5
+        transmission = 0.625
+        coat = 0.75
+        coat_roughness = 0.875
+        emission = 3
+        normal_scale = -0.5
+        alpha_cutoff = 0.0625
+        two_sided = false)");
+    EXPECT_EQ(m.albedo, glm::vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(m.metallic, 0.125F);
+    EXPECT_EQ(m.roughness, 0.25F);
+    EXPECT_EQ(m.specular, 0.375F);
+    EXPECT_EQ(m.ior, 2.5F);
+    EXPECT_EQ(m.transmission, 0.625F);
+    EXPECT_EQ(m.coat, 0.75F);
+    EXPECT_EQ(m.coat_roughness, 0.875F);
+    EXPECT_EQ(m.emission, glm::vec3(3));
+    EXPECT_EQ(m.normal_scale, -0.5F);
+    EXPECT_EQ(m.alpha_cutoff, 0.0625F);
+    EXPECT_FALSE(m.two_sided);
+}
+
+TEST(Materials, MapsNameTextures) {
+    const TemporaryFolder folder;
+    add_pictures(folder);
+    const std::string text = std::string(textures) + R"([[material]]
+        name = "wall"
+        albedo_map = "bricks"
+        roughness_map = { texture = "rough", scale = [2, -3], offset = [0.5, 1], rotation = 90 }
+        metallic_map = "rough"
+        emission_map = "bricks"
+        normal_map = { texture = "rough" }
+        emission = [0, 2, 0]
+        )" + box;
+    const Scene scene = build_scene(parsed(text, folder.path()));
+    ASSERT_EQ(scene.textures.size(), 2U);
+    EXPECT_EQ(scene.textures[0].name, "bricks");
+    EXPECT_EQ(scene.textures[0].file, (folder / "a.png").string());
+    EXPECT_FALSE(scene.textures[0].linear);
+    EXPECT_EQ(scene.textures[0].wrap_v, Wrap::repeat);
+    EXPECT_TRUE(scene.textures[1].linear);
+    EXPECT_EQ(scene.textures[1].wrap_u, Wrap::mirror);
+    EXPECT_EQ(scene.textures[1].wrap_v, Wrap::mirror);
+    ASSERT_NE(scene.textures[1].pyramid, nullptr);
+    EXPECT_EQ(scene.textures[1].pyramid->levels.size(), 4U);
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.albedo_map, (TextureMap{.texture = 0}));
+    EXPECT_EQ(m.roughness_map.texture, 1);
+    EXPECT_EQ(m.roughness_map.scale, glm::vec2(2, -3));
+    EXPECT_EQ(m.roughness_map.offset, glm::vec2(0.5F, 1));
+    EXPECT_FLOAT_EQ(m.roughness_map.rotation, pi / 2);
+    EXPECT_EQ(m.normal_map, (TextureMap{.texture = 1}));
+    // What a map multiplies is 1 unless stated.
+    EXPECT_EQ(m.albedo, glm::vec3(1));
+    EXPECT_EQ(m.metallic, 1);
+    EXPECT_EQ(m.roughness, 1);
+    EXPECT_EQ(m.emission, glm::vec3(0, 2, 0));
+}
+
+TEST(Materials, PrintedSceneIsTheSame) {
+    const TemporaryFolder folder;
+    add_pictures(folder);
+    std::string text = "[settings]\nbounces = 9\n" + std::string(textures);
+    for (const char* const kind : {"matte", "principled", "mirror", "glass"})
+        text += std::string("[[material]]\nname = \"") + kind + "\"\nkind = \"" + kind + "\"\n";
+    text += "[[material]]\nname = \"all \\\"x\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nmetallic = 0.1\nroughness = "
+            "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nemission = [1e9, 0, 1]\n"
+            "normal_scale = 0.77\nalpha_cutoff = 0.5\ntwo_sided = false\nalbedo_map = \"rough\"\n";
+    for (int i = 0; i < 40; ++i)
+        text += "[[material]]\nname = \"m" + std::to_string(i) +
+                "\"\nnormal_map = { texture = \"bricks\", scale = [0.1, 1], offset = [-0.3, 7], rotation = " +
+                std::to_string(i * 37.7 - 500) + " }\n";
+    text += box + "material = \"glass\"\n";
+    const SceneDescription description = parsed(text, folder.path());
+    const std::string printed = to_toml(description);
+    const SceneDescription again = parsed(printed, "/nowhere");
+    expect_same(build_scene(description), build_scene(again));
+    EXPECT_EQ(to_toml(again), printed);
+    EXPECT_EQ(again.settings.bounces, 9);
+}
+
+TEST(Materials, MattePrintsAsItAlwaysHas) {
+    EXPECT_EQ(to_toml(Material{.name = "a", .albedo = {0.5F, 0.1F, 1}}, {}),
+              "\n[[material]]\nname = \"a\"\nalbedo = [0.5, 0.1, 1.0]\n");
+    Material shining{.name = "a"};
+    shining.emission = glm::vec3(0, 0, 1);
+    EXPECT_NE(to_toml(shining, {}).find("emission = [0.0, 0.0, 1.0]\n"), std::string::npos);
+    Material turned{.name = "a"};
+    turned.normal_map = {.texture = 0, .rotation = pi / 2};
+    Texture texture;
+    texture.name = "t";
+    EXPECT_NE(to_toml(turned, {texture}).find("rotation = 90.0 }"), std::string::npos);
+}
+
+TEST(Materials, MistakesNamePlaceCauseAndMend) {
+    const TemporaryFolder folder;
+    add_pictures(folder);
+    folder.file("no.png", "nothing");
+    const std::string head = "[[material]]\nname = \"m\"\n", known = std::string(textures);
+    const std::pair<std::string, std::string> cases[] = {
+        {head + "metallic = 1.5\n" + box,
+         "s.toml:3:12: material.metallic = 1.5 is out of range; write a number from 0 to 1"},
+        {head + "ior = 0.5\n" + box, "material.ior = 0.5 is out of range; write a number from 1 to 3"},
+        {head + "emission = -1\n" + box, "material.emission = -1 is out of range"},
+        {head + "kind = \"metal\"\n" + box, "s.toml:3:8: material.kind 'metal' is unknown; did you mean "
+                                            "'matte'? Known: matte, principled, mirror, "
+                                            "glass"},
+        {head + "two_sided = 1\n" + box,
+         "s.toml:3:13: material.two_sided is a whole number; write true or false"},
+        {head + "albedo_mop = \"x\"\n" + box,
+         "unknown key 'material.albedo_mop'; did you mean 'albedo_map'?"},
+        {head + "albedo_map = \"x\"\n" + box, "s.toml:3:14: there is no texture 'x'; write a [[texture]]"},
+        {known + head + "albedo_map = \"brick\"\n" + box,
+         "material.albedo_map 'brick' is unknown; did you mean 'bricks'? Known: bricks, rough"},
+        {known + head + "albedo_map = 3\n" + box, "material.albedo_map is a whole number; write one of"},
+        {known + head + "albedo_map = { scale = [1, 2] }\n" + box,
+         "material.albedo_map names no texture; write texture"},
+        {known + head + "albedo_map = { texture = \"bricks\", scale = 2 }\n" + box,
+         "material.albedo_map.scale is a whole number; write two numbers [a, b]"},
+        {known + head + "albedo_map = { texture = \"bricks\", rotate = 2 }\n" + box,
+         "unknown key 'material.albedo_map.rotate'; did you mean 'rotation'?"},
+        {"[[texture]]\nfile = \"a.png\"\n" + box, "a texture without a name"},
+        {"[[texture]]\nname = \"t\"\n" + box, "s.toml:1:1: a texture without a file; write file"},
+        {"[[texture]]\nname = \"t\"\nfile = \"c.png\"\n" + box, "c.png: no such file"},
+        {"[[texture]]\nname = \"t\"\nfile = \"no.png\"\n" + box, "no.png: is no picture that is read"},
+        {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\nwrap = \"tile\"\n" + box,
+         "texture.wrap 'tile' is unknown"},
+        {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\ncolour_space = \"linear\"\n" + box,
+         "unknown key 'texture.colour_space'; did you mean 'color_space'?"},
+        {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\n[[texture]]\nname = \"t\"\nfile = \"a.png\"\n" + box,
+         "s.toml:5:8: the name 't' is used twice"},
+        {"[settings]\nbounces = 65\n" + box,
+         "settings.bounces = 65 is out of range; write a number from 0 to 64"},
+    };
+    for (const auto& [text, expected] : cases) {
+        const std::string message = message_of(text, folder.path());
+        EXPECT_NE(message.find(expected), std::string::npos)
+            << text << "\n says: '" << message << "'\n not: " << expected;
+        EXPECT_TRUE(message.starts_with("s.toml:")) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+}
+
+} // namespace
+} // namespace razor
