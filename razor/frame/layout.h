@@ -197,7 +197,7 @@ struct alignas(line_bytes) MaterialRecord {
     std::int32_t padding[2];
 };
 static_assert(sizeof(MaterialRecord) == line_bytes);
-inline constexpr int material_words = sizeof(MaterialRecord) / 4;
+inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
 
 /// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root. Nodes that are
 /// none's children have neither instance (-1) nor children.

@@ -47,7 +47,7 @@ struct Onward {
 /// Of the surface hit, whose shading normal faces the viewer.
 inline Glossy find_lobes(const Context& c, const Surface& s, const Beyond& b, const Onward& onward,
                          Colours& colours) {
-    Materials of{load(field(c.frame, &FrameHeader::materials)), b.material * vint(material_words), s.hit};
+    Materials of{load(field(c.frame, &FrameHeader::materials)), b.material * vint(material_stride), s.hit};
     colours.albedo = of.colour(&MaterialRecord::albedo);
     colours.emission = of.colour(&MaterialRecord::emission);
     vfloat metallic = of.number(&MaterialRecord::metallic);

@@ -90,9 +90,10 @@ std::string to_toml(const SceneDescription& description) {
     const Settings& settings = description.settings;
     fmt::format_to(out,
                    "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nlight_samples = {}\nsky_samples "
-                   "= {}\nbounces = {}\nseed = {}\n",
+                   "= {}\nbounces = {}\ndiffuse_bounces = {}\nseed = {}\n",
                    toml_text(description.name), settings.width, settings.height, settings.samples,
-                   settings.light_samples, settings.sky_samples, settings.bounces, settings.seed);
+                   settings.light_samples, settings.sky_samples, settings.bounces, settings.diffuse_bounces,
+                   settings.seed);
     if (const Crop& crop = settings.crop; crop != Crop{}) {
         fmt::format_to(out, "crop = [{}, {}, {}, {}]\n", crop.x, crop.y, crop.width, crop.height);
     }

@@ -47,6 +47,7 @@ Settings read_settings(TomlTable table) {
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
     settings.bounces = table.whole("bounces", settings.bounces, bounces_range);
+    settings.diffuse_bounces = table.whole("diffuse_bounces", settings.diffuse_bounces, bounces_range);
     settings.seed = table.whole("seed", settings.seed, seed_range);
     settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
     settings.lod = choose(table, "lod", settings.lod, lod_words);

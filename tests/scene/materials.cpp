@@ -134,7 +134,7 @@ TEST(Materials, MapsNameTextures) {
 TEST(Materials, PrintedSceneIsTheSame) {
     const TemporaryFolder folder;
     add_pictures(folder);
-    std::string text = "[settings]\nbounces = 9\n" + std::string(textures);
+    std::string text = "[settings]\nbounces = 9\ndiffuse_bounces = 3\n" + std::string(textures);
     for (const char* const kind : {"matte", "principled", "mirror", "glass"})
         text += std::string("[[material]]\nname = \"") + kind + "\"\nkind = \"" + kind + "\"\n";
     text += "[[material]]\nname = \"all \\\"x\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nmetallic = 0.1\nroughness = "
@@ -151,6 +151,7 @@ TEST(Materials, PrintedSceneIsTheSame) {
     expect_same(build_scene(description), build_scene(again));
     EXPECT_EQ(to_toml(again), printed);
     EXPECT_EQ(again.settings.bounces, 9);
+    EXPECT_EQ(again.settings.diffuse_bounces, 3);
 }
 
 TEST(Materials, MattePrintsAsItAlwaysHas) {
