@@ -121,6 +121,29 @@ inline vfloat growth_of_bounce(const Context& c, const Surface& s, const Beyond&
     return mirrored + apart;
 }
 
+/// As leave_surface(), but each ray's targets grow about as fast as it asks for, one of a few rates: lobes of
+/// one packet may be as wide as all directions, or mirrors.
+inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth, Rays& r) {
+    Surface leaving = s;
+    vfloat step(gradation_cap / growth_steps);
+    for (vmask left = r.active; branch(any(left));) {
+        Rays some = r;
+        vfloat slowest = vfloat(reduce_min(select(left, growth, vfloat(infinite))));
+        some.active = left & (growth < slowest + step);
+        some.active = some.active | (left & (slowest >= vfloat(gradation_cap)));
+        some.active = some.active | (left & !(growth >= slowest)); // no number at all
+        leaving.hit = some.active;
+        left = left & !some.active;
+        leave_surface(c, leaving, growth, some);
+        r.field_origin = select(some.active, some.field_origin, r.field_origin);
+        r.radius = select(some.active, some.radius, r.radius);
+        r.base = select(some.active, some.base, r.base);
+        r.growth = select(some.active, some.growth, r.growth);
+        r.slope = select(some.active, some.slope, r.slope);
+        r.number = select(some.active, some.number, r.number);
+    }
+}
+
 [[gnu::noinline]] inline Bounce sample_bounce(const Context& c, const Surface& s, const Beyond& b,
                                               const Glossy& g, const Colours& colours) {
     phase_scope phase(phase_shade);
@@ -178,9 +201,7 @@ inline vfloat growth_of_bounce(const Context& c, const Surface& s, const Beyond&
     r.active = s.hit & chosen;
     r.active = r.active & right;
     r.active = r.active & bright;
-    Surface leaving = s;
-    leaving.hit = r.active;
-    leave_surface(c, leaving, growth_of_bounce(c, s, b, out.density), r);
+    leave_apart(c, s, growth_of_bounce(c, s, b, out.density), r);
     return out;
 }
 
