@@ -45,6 +45,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     for (const Topology& t : topologies)
         drawn.push_back(!t.patches.empty());
     geometry = locate_scene(scene, drawn);
+    scene_meshes = meshes.size();
+    take_materials(scene);
     count_records(scene);
     pages = std::make_unique<PageStore>(meshes, topologies, options.page_bytes);
     counters.resize(static_cast<std::size_t>(options.workers));
@@ -56,7 +58,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         total.curves * 4 * static_cast<std::size_t>(trees) +
         total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
         (total.faces + total.points + total.curves + total.face_curves) * 64 +
-        geometry.instances.size() * sizeof(InstanceRecord) +
+        geometry.instances.size() * sizeof(InstanceRecord) + materials.texels * 4 +
+        materials.materials.size() * 1024 +
         Hierarchy::node_limit(geometry.instances.size()) * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
@@ -141,7 +144,8 @@ bool Frame::pose(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes)
         validate_mesh(mesh);
     const double unit = frame_unit(scene);
-    if (!std::equal(f.meshes.begin(), f.meshes.end(), scene.meshes.begin(), scene.meshes.end(),
+    const auto own_end = f.meshes.begin() + static_cast<std::ptrdiff_t>(f.scene_meshes);
+    if (!std::equal(f.meshes.begin(), own_end, scene.meshes.begin(), scene.meshes.end(),
                     [&f](const Mesh& mine, const Mesh& posed) {
                         return same_topology(posed, mine, 1 / f.topology_unit);
                     }))
@@ -276,11 +280,15 @@ double Frame::progress() const {
 
 namespace {
 
+constexpr const char* look_names[look_count] = {
+    "matte surfaces", "matte surfaces with textures or materials of faces", "reflecting surfaces",
+    "reflecting surfaces with textures or materials of faces"};
+
 std::string plan_text(const Plan& plan) {
     return fmt::format("{}; {}",
                        plan.grids == grids_flat ? "flat patches only: no hanging vertices"
                                                 : "grids with hanging vertices",
-                       plan.look == look_matte ? "matte surfaces" : "reflecting surfaces");
+                       look_names[plan.look]);
 }
 
 } // namespace

@@ -2,17 +2,19 @@
 
 #include "razor/frame/blend_table.h"
 #include "razor/frame/light_records.h"
-#include "razor/frame/material_records.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
 #include "razor/scene/graph/records.h"
+#include "razor/surface/texture_cage.h"
 
 #include <fmt/core.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -39,10 +41,52 @@ int packet_samples_log2(int samples) {
 
 } // namespace
 
+void Frame::Impl::take_materials(const Scene& scene) {
+    std::vector<bool> used(scene.materials.size(), false);
+    bool by_face = false;
+    const auto each_material = [&](const Instance& i, const auto& visit) {
+        if (i.material >= 0)
+            return visit(static_cast<std::size_t>(i.material));
+        for (const int material : scene.meshes[static_cast<std::size_t>(i.mesh)].face_materials)
+            visit(static_cast<std::size_t>(material));
+    };
+    for (const Instance& i : geometry.instances) {
+        by_face = by_face || i.material < 0;
+        each_material(i, [&](std::size_t m) {
+            if (m < used.size())
+                used[m] = true;
+        });
+    }
+    materials = tabulate_materials(scene, used, by_face);
+    texture_cage_of.assign(scene_meshes, -1);
+    for (const Instance& i : geometry.instances) {
+        const auto mesh = static_cast<std::size_t>(i.mesh);
+        const Mesh& own = scene.meshes[mesh];
+        std::size_t textured = used.size();
+        each_material(i, [&](std::size_t m) {
+            if (m < used.size() && materials.mapped[m])
+                textured = m;
+        });
+        if (textured == used.size() || texture_cage_of[mesh] >= 0)
+            continue;
+        if (own.face_texcoords.empty())
+            throw UserError(
+                fmt::format("{}: mesh '{}' has no texture coordinates, but its material '{}' has a "
+                            "texture; give it another material or a mesh with coordinates",
+                            scene.name, own.name, scene.materials[textured].name));
+        texture_cage_of[mesh] = static_cast<int>(meshes.size());
+        meshes.push_back(texture_cage(own));
+        topologies.push_back(analyse_texture_cage(own, meshes.back()));
+        topologies[mesh].max_exponent =
+            std::min(topologies[mesh].max_exponent, topologies.back().max_exponent);
+    }
+}
+
 void Frame::Impl::count_records(const Scene& scene) {
     for (std::size_t m = 0; m < topologies.size(); ++m) {
         const Topology& t = topologies[m];
         first_cluster.push_back(total.clusters);
+        first_face.push_back(total.faces);
         total.clusters += clusters_of(m);
         total.faces += t.faces.size();
         total.controls += t.controls.size();
@@ -82,13 +126,37 @@ void Frame::Impl::place_scene(const Scene& scene) {
 }
 
 void Frame::Impl::place_materials(const Scene& scene) {
-    plan.look = look_of(scene);
+    plan.look = materials.look;
+    header->slot_floats = slot_floats(meshes.size() > scene_meshes);
     if (plan.look == look_matte)
         return;
-    auto* record = region<MaterialRecord>("scene graph", -1, scene.materials.size());
-    header->materials.set(record);
-    for (const Material& m : scene.materials)
-        *record++ = material_record(m);
+    const auto copy = [&](const auto& table, auto& to, const char* structure) {
+        using Record = typename std::remove_reference_t<decltype(table)>::value_type;
+        if (table.empty())
+            return;
+        auto* records = region<Record>(structure, -1, table.size());
+        std::copy(table.begin(), table.end(), records);
+        to.set(records);
+    };
+    copy(materials.materials, header->materials, "materials");
+    copy(materials.maps, header->maps, "materials");
+    copy(materials.textures, header->textures, "materials");
+    if (materials.texels > 0) {
+        auto* texel = region<std::int32_t>("textures", -1, materials.texels);
+        header->texels.set(texel);
+        for (const TextureLevel* level : materials.levels) {
+            std::memcpy(texel, level->texels.data(), level->texels.size() * sizeof(std::int32_t));
+            texel += level->texels.size();
+        }
+    }
+    const auto by_face = [](const Instance& i) { return i.material < 0; };
+    if (std::any_of(geometry.instances.begin(), geometry.instances.end(), by_face)) {
+        auto* of_faces = region<std::int32_t>("materials", -1, total.faces);
+        header->face_materials.set(of_faces);
+        for (std::size_t m = 0; m < scene_meshes; ++m)
+            std::copy(scene.meshes[m].face_materials.begin(), scene.meshes[m].face_materials.end(),
+                      of_faces + first_face[m]);
+    }
 }
 
 void Frame::Impl::fill_instances(const Scene& scene) {
@@ -137,6 +205,11 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
     for (int k = 0; k < 3; ++k)
         r.albedo[k] = albedo[k];
     r.material = i.material;
+    const int cage = texture_cage_of[mesh];
+    r.shading_planes = cage >= 0 ? 2 : 0;
+    if (cage >= 0)
+        r.texture_faces = static_cast<std::int32_t>(first_face[static_cast<std::size_t>(cage)]) -
+                          static_cast<std::int32_t>(first_face[mesh]);
 }
 
 void Frame::Impl::place_graph() {
@@ -183,6 +256,12 @@ void Frame::Impl::place_points(const Scene& scene) {
     }
     header->points.set(region<float>("control points", -1, total.points * 3));
     fill_meshes(scene);
+    for (std::size_t cage = scene_meshes; cage < meshes.size(); ++cage) {
+        float* xyz = header->points.get() + 3 * first_point[cage];
+        for (const glm::dvec3& point : meshes[cage].points)
+            for (int k = 0; k < 3; ++k)
+                *xyz++ = static_cast<float>(point[k]);
+    }
 }
 
 void Frame::Impl::fill_points(const Scene& scene, std::size_t mesh) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/frame/frame.h"
+#include "razor/frame/material_records.h"
 #include "razor/frame/page_store.h"
 #include "razor/frame/phases.h"
 #include "razor/frame/scene_geometry.h"
@@ -46,8 +47,12 @@ struct Frame::Impl {
     Crop part;                // of the picture: what is rendered
     double unit = 1;          // see frame_unit()
     double topology_unit = 1; // that of `meshes`
+    /// Those of the scene, then the texture cages (razor/surface/texture_cage.h) of those that need them.
     std::vector<Mesh> meshes;
     std::vector<Topology> topologies;
+    std::size_t scene_meshes = 0;
+    std::vector<int> texture_cage_of; // of each mesh of the scene, -1: none
+    MaterialTables materials;
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
     FrameOptions options;
     SceneGeometry geometry;
@@ -67,10 +72,10 @@ struct Frame::Impl {
     std::int64_t undrawn = 0;
     struct {
         std::size_t clusters = 0, faces = 0, controls = 0, face_curves = 0, points = 0, curves = 0;
-    } total;                                             // over the meshes
-    std::vector<std::size_t> first_cluster, first_point; // of each mesh
-    std::int64_t patches = 0, clusters = 0;              // over the instances
-    std::vector<std::unique_ptr<isa::mark_set>> opened;  // one a tree: graph nodes, then instances' clusters
+    } total;                                                         // over the meshes
+    std::vector<std::size_t> first_cluster, first_point, first_face; // of each mesh
+    std::int64_t patches = 0, clusters = 0;                          // over the instances
+    std::vector<std::unique_ptr<isa::mark_set>> opened; // one a tree: graph nodes, then instances' clusters
     isa::stopwatch watch{moment_count};
     std::vector<isa::lap_timer> tiles;   // one a worker
     std::vector<isa::lap_timer> waits;   // likewise
@@ -105,6 +110,8 @@ struct Frame::Impl {
     int first_node(int w) const {
         return w * (nodes_each + coloured_lines * nodes_a_line) + colour(w, colour_nodes) * nodes_a_line;
     }
+    /// Which materials are used, and what for that.
+    void take_materials(const Scene& scene);
     void count_records(const Scene& scene);
     void size_arenas();
     void size_bounded_arenas();

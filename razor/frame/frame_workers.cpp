@@ -72,7 +72,10 @@ void Frame::Impl::place_workers() {
         WorkerRecord& r = header->workers.get()[w];
         r.stack.set(coloured<float>("stack", w, 2 * spare_stack, colour_stack));
         r.packets.set(coloured<float>("packets", w, 2 * spare_packets, colour_packets));
-        r.blends.set(coloured<float>("blended blocks", w, blends_floats, colour_blends));
+        r.blends.set(coloured<float>("blended blocks", w,
+                                     static_cast<std::size_t>(blend_slots) *
+                                         static_cast<std::size_t>(header->slot_floats),
+                                     colour_blends));
         r.tree = options.tree_of_worker[static_cast<std::size_t>(w)];
         ++header->trees.get()[r.tree].sharers;
     }

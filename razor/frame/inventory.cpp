@@ -106,7 +106,8 @@ private:
         if (block.normals_at != 0 && block.normals.word == ready)
             in.normals.push_back(key);
         if (block.seen.word == ready)
-            in.grid_bytes += std::int64_t{slot_lines} * line_bytes;
+            in.grid_bytes +=
+                (std::int64_t{header_.slot_floats} * 4 + line_bytes - 1) / line_bytes * line_bytes;
     }
 
     const FrameHeader& header_;

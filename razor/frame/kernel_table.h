@@ -44,8 +44,9 @@ struct TraceArguments {
 
 /// What tracing rays is compiled for: whether some patch has sides coarser than its grid.
 enum Grids : int { grids_flat = 0, grids_hanging = 1, grids_count = 2 };
-/// What shading is compiled for: everything matte, or also what reflects, lets through and emits.
-enum Look : int { look_matte = 0, look_glossy = 1, look_count = 2 };
+/// What shading is compiled for: everything matte, or also what reflects, lets through and emits; one
+/// material a mesh, or also textures and materials of faces.
+enum Look : int { look_matte = 0, look_mapped = 1, look_glossy = 2, look_glossy_mapped = 3, look_count = 4 };
 
 /// Which instantiations of the kernels a frame needs.
 struct Plan {

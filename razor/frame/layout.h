@@ -180,8 +180,10 @@ struct InstanceRecord {
     float linear[9]; // rows: of the map from mesh coordinates to the instance's own ...
     float offset[3]; // ... and what rounding the origin left over
     float albedo[3];
-    std::int32_t material; // where the frame has materials
-    std::int32_t padding[2];
+    std::int32_t material; // where the frame has materials; -1: see FrameHeader::face_materials
+    std::int32_t
+        shading_planes; // arrays that follow the normals of a block: texture coordinates u, v, or none
+    std::int32_t texture_faces; // from the mesh's faces to those of its texture cage
 };
 static_assert(sizeof(InstanceRecord) == 128);
 
@@ -194,10 +196,39 @@ struct alignas(line_bytes) MaterialRecord {
     float ior, transmission;
     float coat, coat_roughness;
     float emission[3];
-    std::int32_t padding[2];
+    float normal_scale;
+    std::int32_t map[5]; // of each MaterialMap: a MapRecord, or -1
+    std::int32_t padding[12];
 };
-static_assert(sizeof(MaterialRecord) == line_bytes);
+static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
+enum MaterialMap : std::int32_t {
+    map_albedo,
+    map_metallic,
+    map_roughness,
+    map_emission,
+    map_normal,
+    map_count
+};
+
+/// A texture where a material uses it: at (row_u . (u, v, 1), row_v . (u, v, 1)).
+struct MapRecord {
+    float row_u[3], row_v[3];
+    std::int32_t texture;
+    std::int32_t padding;
+};
+static_assert(sizeof(MapRecord) == line_bytes / 2);
+
+enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
+
+/// Where the texels of each level lie, as razor/scene/texture.h says, counted from FrameHeader::texels.
+struct alignas(line_bytes) TextureRecord {
+    std::int32_t levels, wrap_u, wrap_v;
+    float size; // sqrt(width * height) of the finest level
+    std::int32_t padding[12];
+    std::int32_t first[16], width[16], height[16];
+};
+static_assert(sizeof(TextureRecord) == 4 * line_bytes);
 
 /// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root. Nodes that are
 /// none's children have neither instance (-1) nor children.
@@ -542,7 +573,12 @@ struct FrameHeader {
     std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
     std::int32_t bounces, diffuse_bounces;           // see Settings
     float lobe_spacing;                 // of a pixel's samples in directions of density 1, times edge_pixels
-    isa::ref<MaterialRecord> materials; // where the plan needs them
+    isa::ref<MaterialRecord> materials; // where the plan needs them; likewise:
+    isa::ref<MapRecord> maps;
+    isa::ref<TextureRecord> textures;
+    isa::ref<std::int32_t> texels;         // of all textures
+    isa::ref<std::int32_t> face_materials; // of every face
+    std::int32_t slot_floats;              // of a blended block: see razor/frame/scratch.h
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

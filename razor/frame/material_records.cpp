@@ -1,8 +1,16 @@
 #include "razor/frame/material_records.h"
 
+#include "razor/scene/error.h"
+
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace razor {
+namespace {
 
 MaterialRecord material_record(const Material& m) {
     MaterialRecord r{};
@@ -19,15 +27,96 @@ MaterialRecord material_record(const Material& m) {
     r.transmission = m.transmission;
     r.coat = m.coat;
     r.coat_roughness = m.coat_roughness;
+    r.normal_scale = m.normal_scale;
+    std::fill(std::begin(r.map), std::end(r.map), -1);
     return r;
 }
 
-Look look_of(const Scene& scene) {
-    const auto plain = [](const Material& m) { return is_matte(m) && m.emission == glm::vec3(0); };
-    return scene.settings.diffuse_bounces == 0 &&
-                   std::all_of(scene.materials.begin(), scene.materials.end(), plain)
-               ? look_matte
-               : look_glossy;
+/// In the order of MaterialMap.
+std::array<const TextureMap*, map_count> maps_of(const Material& m) {
+    return {&m.albedo_map, &m.metallic_map, &m.roughness_map, &m.emission_map, &m.normal_map};
+}
+
+MapRecord map_record(const TextureMap& map, std::int32_t texture) {
+    MapRecord r{};
+    const float c = std::cos(map.rotation), s = std::sin(map.rotation);
+    const std::array<float, 3> u{c * map.scale.x, -s * map.scale.y, map.offset.x};
+    const std::array<float, 3> v{s * map.scale.x, c * map.scale.y, map.offset.y};
+    std::copy(u.begin(), u.end(), r.row_u);
+    std::copy(v.begin(), v.end(), r.row_v);
+    r.texture = texture;
+    return r;
+}
+
+constexpr std::int32_t wrap_of(Wrap wrap) {
+    return wrap == Wrap::repeat ? wrap_repeat : wrap == Wrap::clamp ? wrap_clamp : wrap_mirror;
+}
+
+class Tables {
+public:
+    explicit Tables(const Scene& scene) : scene_(scene), number_(scene.textures.size(), -1) {}
+
+    void add(const Material& m, bool used) {
+        MaterialRecord r = material_record(m);
+        const auto maps = maps_of(m);
+        bool any = false;
+        for (std::size_t k = 0; used && k < maps.size(); ++k)
+            if (maps[k]->texture >= 0) {
+                r.map[k] = static_cast<std::int32_t>(t.maps.size());
+                t.maps.push_back(map_record(*maps[k], texture(maps[k]->texture)));
+                any = true;
+            }
+        t.mapped.push_back(any);
+        t.materials.push_back(r);
+    }
+
+    MaterialTables t;
+
+private:
+    std::int32_t texture(int index) {
+        std::int32_t& number = number_[static_cast<std::size_t>(index)];
+        if (number >= 0)
+            return number;
+        number = static_cast<std::int32_t>(t.textures.size());
+        const Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
+        const std::vector<TextureLevel>& levels = texture.pyramid->levels;
+        TextureRecord r{};
+        r.levels = static_cast<std::int32_t>(levels.size());
+        r.wrap_u = wrap_of(texture.wrap_u);
+        r.wrap_v = wrap_of(texture.wrap_v);
+        r.size = std::sqrt(static_cast<float>(levels[0].width) * static_cast<float>(levels[0].height));
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+            r.width[l] = levels[l].width;
+            r.height[l] = levels[l].height;
+            r.first[l] = static_cast<std::int32_t>(t.texels);
+            t.texels += levels[l].texels.size();
+            t.levels.push_back(&levels[l]);
+            if (t.texels > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+                throw UserError(fmt::format(
+                    "{}: the textures have more than 2^31 texels together; make some of them smaller",
+                    scene_.name));
+        }
+        t.textures.push_back(r);
+        return number;
+    }
+
+    const Scene& scene_;
+    std::vector<std::int32_t> number_; // of each texture, its record
+};
+
+} // namespace
+
+MaterialTables tabulate_materials(const Scene& scene, const std::vector<bool>& used, bool by_face) {
+    Tables tables(scene);
+    bool glossy = scene.settings.diffuse_bounces > 0, mapped = by_face;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& m = scene.materials[i];
+        tables.add(m, used[i]);
+        glossy = glossy || (used[i] && !(is_matte(m) && m.emission == glm::vec3(0)));
+        mapped = mapped || tables.t.mapped.back();
+    }
+    tables.t.look = glossy ? (mapped ? look_glossy_mapped : look_glossy) : mapped ? look_mapped : look_matte;
+    return std::move(tables.t);
 }
 
 } // namespace razor

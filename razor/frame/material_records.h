@@ -1,14 +1,27 @@
-// Materials as the kernels want them, and what kernels they want.
+// Materials and textures as the kernels want them, and which kernels they want.
 #pragma once
 
 #include "razor/frame/kernel_table.h"
 #include "razor/scene/scene.h"
 
+#include <cstddef>
+#include <vector>
+
 namespace razor {
 
-MaterialRecord material_record(const Material& material);
+/// Of the materials that something drawn has; others take no room but their records.
+struct MaterialTables {
+    Look look = look_matte;
+    std::vector<bool> mapped; // of each material, whether it has maps
+    std::vector<MaterialRecord> materials;
+    std::vector<MapRecord> maps;
+    std::vector<TextureRecord> textures;
+    std::vector<const TextureLevel*> levels; // of all textures, one after the other
+    std::size_t texels = 0;                  // of all levels
+};
 
-/// What shading of the scene must be compiled for, by the materials that some mesh or instance may have.
-Look look_of(const Scene& scene);
+/// `used`: of each material, whether anything drawn has it; `by_face`: some mesh has several. Throws
+/// UserError for more texels than can be numbered.
+MaterialTables tabulate_materials(const Scene& scene, const std::vector<bool>& used, bool by_face);
 
 } // namespace razor

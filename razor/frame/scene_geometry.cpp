@@ -130,7 +130,10 @@ void locate_instance(SceneGeometry& g, const Scene& scene, const AutomaticLength
     const auto mesh = static_cast<std::size_t>(i.mesh);
     Instance placed;
     placed.mesh = i.mesh;
-    placed.material = i.material >= 0 ? i.material : scene.meshes[mesh].material;
+    if (i.material >= 0)
+        placed.material = i.material;
+    else
+        placed.material = scene.meshes[mesh].face_materials.empty() ? scene.meshes[mesh].material : -1;
     place_instance(g.flat.nodes[static_cast<std::size_t>(i.node)].world, g.mesh_origins[mesh], g.origin,
                    glm::length(g.boxes[n].high - g.boxes[n].low), placed);
     level_instance(scene, automatic, i, g.boxes[n], placed);

@@ -15,7 +15,7 @@ namespace razor {
 /// origin) to the instance's own, which are scene coordinates minus `origin`.
 struct Instance {
     int mesh = 0;
-    int material = 0;
+    int material = 0; // -1: each face has its own, see Mesh::face_materials
     glm::dmat3 linear{1};
     glm::vec3 offset{0}; // what rounding the origin left over
     glm::vec3 origin{0}; // the mesh's, in scene coordinates

@@ -46,10 +46,13 @@ enum BlendSlot : int {
     slot_normals = 3, // a BuildState
     slot_longest = 4, // 4 sides: log2 of their sub-edges on one edge, as packets test them
     slot_block = 16,  // laid out as a block
-    slot_floats = slot_block + blend_floats
+    slot_texcoords = slot_block + blend_floats // u, v, one row_vertices each, where some mesh has them
 };
-inline constexpr int blends_floats = blend_slots * slot_floats;
-inline constexpr int slot_lines = (slot_floats * 4 + line_bytes - 1) / line_bytes;
+constexpr int slot_floats(bool texcoords) {
+    return slot_texcoords + (texcoords ? 2 * row_vertices : 0);
+}
+inline constexpr int line_floats_log2 = 4;
+static_assert(4 << line_floats_log2 == line_bytes);
 
 inline constexpr int packet_origin = 0;                              // 3 vectors
 inline constexpr int packet_inverse = packet_origin + 3 * ISA_WIDTH; // 3 vectors: 1 / direction

@@ -322,7 +322,7 @@ inline Kept find_blended(const Context& c, sint number, sint line, sint level) {
     sint mixed = number * 40503;
     mixed = line * 7919 + mixed;
     sint slot = (mixed >> 8) & (blend_slots - 1);
-    kept.slot = c.blends + slot * slot_floats;
+    kept.slot = c.blends + slot * c.slot_floats;
     pointer<std::int32_t> key = as<std::int32_t>(kept.slot);
     kept.there = load(key + slot_line) == line;
     kept.there = kept.there & (load(key + slot_field) == number);
@@ -333,7 +333,7 @@ inline Kept find_blended(const Context& c, sint number, sint line, sint level) {
 /// Forgets all.
 inline void clear_blends(const Context& c) {
     for (int i = 0; i < blend_slots; ++i)
-        store(as<std::int32_t>(c.blends + i * slot_floats) + slot_line, -1);
+        store(as<std::int32_t>(c.blends + c.slot_floats * i) + slot_line, -1);
 }
 
 /// Blends block `line` as the field, of this number, sees it in a leaf of `level`: vertices, boxes of cells,
@@ -378,10 +378,10 @@ inline pointer<float> keep_blended(const Context& c, const Field& f, sint number
     if (branch(number == camera_number)) {
         pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
         build_once(c, field(block, &BlockHeader::seen), [&] {
-            sint at =
-                allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, slot_lines, trap_grids_full);
+            sint lines = (c.slot_floats + ((1 << line_floats_log2) - 1)) >> line_floats_log2;
+            sint at = allocate(c, &WorkerRecord::grid_next, &WorkerRecord::grid_end, lines, trap_grids_full);
             sint absolute = load(field(block, &BlockHeader::absolute));
-            note_level(c.grids + at, slot_lines, absolute);
+            note_level(c.grids + at, lines, absolute);
             pointer<float> shared = as<float>(c.grids + at);
             blend_block(c, f, number, line, level, shared);
             finish(shared);

@@ -52,8 +52,11 @@ inline Shape block_shape(const Dicing& d) {
     s.parts = s.parts & hang;
     s.parts = s.parts & (max(d.nu, d.nv) >= block_log2);
     words = words + select(s.parts, sint(parts_words), sint(0));
-    s.normals_at = select(flat, sint(0), words);
-    words = words + select(flat, sint(0), vertex_words);
+    // Normals; what lies on vertices besides follows them, and brings them along where they are not needed.
+    sbool plain = flat & (d.shading_planes == 0);
+    s.normals_at = select(plain, sint(0), words);
+    words = words + select(plain, sint(0), vertex_words);
+    words = words + s.stride * d.shading_planes;
     s.lines = (words + 15) >> 4;
     s.triangles = select(d.kind == static_cast<int>(PatchKind::flat_triangle), sint(1), sint(2));
     return s;

@@ -36,10 +36,19 @@ foreach(OBJECT IN LISTS OBJECTS)
       continue()
     endif()
     set(SEEN_${TARGET}_${NAME} TRUE)
-    foreach(LOOK 0 1)
+    # What is not a look's own in kernels.cpp serves them all.
+    set(OWN 0)
+    if(OBJECT MATCHES "/glossy_mapped")
+      set(OWN 3)
+    elseif(OBJECT MATCHES "/glossy")
+      set(OWN 2)
+    elseif(OBJECT MATCHES "/mapped")
+      set(OWN 1)
+    endif()
+    foreach(LOOK 0 1 2 3)
       foreach(GRIDS 0 1)
         if(NAME MATCHES "8FeaturesE(Lb([01])E)?E" AND NOT "0${CMAKE_MATCH_2}" EQUAL GRIDS
-           OR LOOK EQUAL 0 AND OBJECT MATCHES "/glossy" OR LOOK EQUAL 1 AND NAME MATCHES "5Matte|12MatteSampler|4LookE0E")
+           OR NOT LOOK EQUAL OWN AND (NOT OWN EQUAL 0 OR NAME MATCHES "5Matte|12MatteSampler|4LookE0E"))
           continue()
         endif()
         math(EXPR BYTES_${TARGET}_${LOOK}_${GRIDS}_${PHASE} "${BYTES_${TARGET}_${LOOK}_${GRIDS}_${PHASE}} + ${BYTES}")
@@ -54,7 +63,7 @@ list(LENGTH TARGETS COUNT)
 foreach(TARGET IN LISTS TARGETS)
   set(TABLE "")
   set(COMMON "")
-  foreach(LOOK 0 1)
+  foreach(LOOK 0 1 2 3)
     set(TABLES "")
     set(COMMONS "")
     foreach(GRIDS 0 1)
@@ -79,7 +88,7 @@ file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT "// Written by code_size.cmake.
 
 namespace razor {
 
-static_assert(look_count == 2 && grids_count == 2);
+static_assert(look_count == 4 && grids_count == 2);
 static constexpr std::array<CodeSize, @COUNT@> table = {{
 @ROWS@}};
 std::span<const CodeSize> code_sizes() {

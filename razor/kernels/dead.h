@@ -67,7 +67,7 @@ inline void discard_bounded(const Context& c, pointer<TreeBudget> tree) {
         discard_bounded(c, load(field(budget, &WorkerBudget::tree)));
     }
     constexpr int floats = line_bytes / 4;
-    discard_lines(as<Line>(c.blends), blends_floats / floats);
+    discard_lines(as<Line>(c.blends), c.slot_floats * blend_slots >> line_floats_log2);
     discard_lines(as<Line>(c.packets), 2 * spare_packets / floats);
     discard_lines(as<Line>(c.stack), 2 * spare_stack / floats);
 }

@@ -135,12 +135,15 @@ void dice_all(const WorkerArguments& w) {
 
 } // namespace
 
-constinit const KernelTable kernels = {RAZOR_TARGET_NAME(ISA_TARGET),
-                                       isa::width,
-                                       {{render<flat, MatteSampler>, render<hanging, MatteSampler>},
-                                        {render_glossy<flat>, render_glossy<hanging>}},
-                                       {trace_all<flat>, trace_all<hanging>},
-                                       build_all,
-                                       dice_all};
+constinit const KernelTable kernels = {
+    RAZOR_TARGET_NAME(ISA_TARGET),
+    isa::width,
+    {{render<flat, MatteSampler<false>>, render<hanging, MatteSampler<false>>},
+     {render_mapped<flat>, render_mapped<hanging>},
+     {render_glossy<flat>, render_glossy<hanging>},
+     {render_glossy_mapped<flat>, render_glossy_mapped<hanging>}},
+    {trace_all<flat>, trace_all<hanging>},
+    build_all,
+    dice_all};
 
 } // namespace razor::ISA_TARGET

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/kernels/glossy.h"
+#include "razor/kernels/mapped.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -15,20 +16,6 @@ struct Colours {
     vvec through; // of what is let through ...
     vfloat ior;   // ... and how that is bent
     vvec emission;
-};
-
-/// Members of the materials of a packet's hits.
-struct Materials {
-    pointer<MaterialRecord> first;
-    vint record; // words from there
-    vmask present;
-
-    vfloat number(float MaterialRecord::*member) const {
-        return gather(field(first, member), record, present);
-    }
-    vvec colour(float (MaterialRecord::*member)[3]) const {
-        return gather_vec(field(first, member), record, vint(1), present);
-    }
 };
 
 /// Shading normals that look away from the viewer are turned until they just do not.
@@ -45,9 +32,10 @@ struct Onward {
 };
 
 /// Of the surface hit, whose shading normal faces the viewer.
+template <bool Mapped>
 inline Glossy find_lobes(const Context& c, const Surface& s, const Beyond& b, const Onward& onward,
                          Colours& colours) {
-    Materials of{load(field(c.frame, &FrameHeader::materials)), b.material * vint(material_stride), s.hit};
+    Materials of = materials_of(c, b, s.hit);
     colours.albedo = of.colour(&MaterialRecord::albedo);
     colours.emission = of.colour(&MaterialRecord::emission);
     vfloat metallic = of.number(&MaterialRecord::metallic);
@@ -58,6 +46,12 @@ inline Glossy find_lobes(const Context& c, const Surface& s, const Beyond& b, co
     vfloat transmission = of.number(&MaterialRecord::transmission);
     vfloat coat = of.number(&MaterialRecord::coat);
     vfloat coat_roughness = of.number(&MaterialRecord::coat_roughness);
+    if constexpr (Mapped) {
+        colours.albedo = times(colours.albedo, of.mapped(c, map_albedo, b.map));
+        colours.emission = times(colours.emission, of.mapped(c, map_emission, b.map));
+        metallic = metallic * of.mapped(c, map_metallic, b.map).z;
+        roughness = roughness * of.mapped(c, map_roughness, b.map).y;
+    }
     vfloat one(1.0F);
     Glossy g;
     g.toward = b.toward;

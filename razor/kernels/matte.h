@@ -2,19 +2,22 @@
 #pragma once
 
 #include "razor/kernels/light.h"
+#include "razor/kernels/mapped.h"
 #include "razor/kernels/pixel_sums.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
 
-struct MatteSampler {
+/// Mapped: with textures and materials of faces.
+template <bool Mapped> struct MatteSampler {
     template <Features F>
     static void add(const Context& c, const Rays& r, const vint& pixel, const vint& sample, PixelSums& sums);
 };
 
+template <bool Mapped>
 template <Features F>
-inline void MatteSampler::add(const Context& c, const Rays& r, const vint& pixel, const vint& sample,
-                              PixelSums& sums) {
+inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vint& pixel, const vint& sample,
+                                      PixelSums& sums) {
     Hits h = trace_packet<F, kind_camera>(c, r);
     vfloat zero(0.0F);
     vmask hit = h.patch >= vint(0);
@@ -24,10 +27,16 @@ inline void MatteSampler::add(const Context& c, const Rays& r, const vint& pixel
     sums.beauty = sums.beauty + select(open, sky, {zero, zero, zero});
     if (branch(none(hit)))
         return;
-    Beyond nothing;
-    Surface s = find_surface<look_matte>(c, r, h, nothing);
+    Beyond beyond;
+    Surface s = find_surface < Mapped ? look_mapped : look_matte > (c, r, h, beyond);
     s.pixel = pixel;
     s.sample = sample;
+    if constexpr (Mapped) {
+        Materials of = materials_of(c, beyond, hit);
+        vvec own = of.colour(&MaterialRecord::albedo);
+        s.albedo = times(own, of.mapped(c, map_albedo, beyond.map));
+        bend_normals(c, beyond, s);
+    }
     sums.normal = sums.normal + select(hit, s.shading, {zero, zero, zero});
     sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});
     sums.depth = sums.depth + select(hit, h.t, zero);

@@ -1,8 +1,10 @@
 // Shading normals of a block's vertices, made when the first camera ray is shaded there: limit normals from
-// derivative pages, or those of the bilinear patch. Flat patches have none: their triangles' normals serve.
+// derivative pages, or those of the bilinear patch. Flat patches have none, unless they have texture
+// coordinates: their triangles' normals serve.
 #pragma once
 
 #include "razor/kernels/tessellate.h"
+#include "razor/kernels/texcoords.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -52,6 +54,10 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
     b.quads_u = load(field(header, &BlockHeader::quads_u));
     b.stride = load(field(header, &BlockHeader::stride));
     pointer<float> out = as<float>(c.grids + line) + normals_at;
+    if (branch(d.shading_planes != 0)) {
+        sint shift = load(field(c.instances + instance, &InstanceRecord::texture_faces));
+        make_texcoords(c, g, d, b, shift, out + b.stride * 3);
+    }
     if (branch(d.kind == static_cast<int>(PatchKind::catmull_clark))) {
         sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
         sint first = load(field(g.faces + d.face, &FaceRecord::control_first));

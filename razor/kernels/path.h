@@ -10,10 +10,6 @@
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
 
-inline vvec times(const vvec& a, const vvec& b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-
 /// What the lobes make of light of that colour.
 inline vvec coloured(const Gathered<Glossy>& light, const Colours& colours) {
     vfloat grazing = light.lobe[lobe_grazing] * colours.grazing;
@@ -62,14 +58,16 @@ inline void note_first(const Surface& s, const Hits& h, const vvec& albedo, Pixe
     sums.hits = sums.hits + select(s.hit, vfloat(1.0F), zero);
 }
 
-struct PathSampler {
+/// Mapped: with textures and materials of faces.
+template <bool Mapped> struct PathSampler {
     template <Features F>
     static void add(const Context& c, const Rays& r, const vint& pixel, const vint& sample, PixelSums& sums);
 };
 
+template <bool Mapped>
 template <Features F>
-inline void PathSampler::add(const Context& c, const Rays& camera, const vint& pixel, const vint& sample,
-                             PixelSums& sums) {
+inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const vint& pixel,
+                                     const vint& sample, PixelSums& sums) {
     vfloat zero(0.0F);
     vfloat one(1.0F);
     vvec black{zero, zero, zero};
@@ -100,14 +98,16 @@ inline void PathSampler::add(const Context& c, const Rays& camera, const vint& p
         }
         if (branch(any(hit))) {
             Beyond beyond;
-            Surface s = find_surface<look_glossy>(c, r, h, beyond);
+            Surface s = find_surface < Mapped ? look_glossy_mapped : look_glossy > (c, r, h, beyond);
             s.hit = hit;
             s.pixel = pixel + vint(n * std::int32_t(bounce_step));
             s.sample = sample;
+            if constexpr (Mapped)
+                bend_normals(c, beyond, s);
             s.shading = facing(s.shading, beyond.toward);
             Onward onward{n < bounces, n < diffuse_bounces};
             Colours colours;
-            Glossy g = find_lobes(c, s, beyond, onward, colours);
+            Glossy g = find_lobes<Mapped>(c, s, beyond, onward, colours);
             if (branch(n == 0))
                 note_first(s, h, colours.albedo, sums);
             vvec reflected = lit<F>(c, s, g, colours, n > 0);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "razor/kernels/budget_tiles.h"
+#include "razor/kernels/leave.h"
+#include "razor/kernels/packet.h"
 #include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/refit.h"
 #include "razor/kernels/screen_curve.h"

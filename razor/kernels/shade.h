@@ -83,7 +83,33 @@ inline vfloat position_error(const vvec& a, const vvec& b, const vvec& c, const 
     return max(size, shift) * (24.0F / 16777216.0F);
 }
 
-/// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them.
+inline void copy_corner_texcoords(pointer<float> own, sint quads_u, sint quads_v, sint stride,
+                                  pointer<float> out) {
+    for (int k = 0; k < 4; ++k) {
+        sint vertex = corner_vertex(k, quads_u, quads_v);
+        sfloat u = load(own + vertex);
+        store(out + vertex, u);
+        sfloat v = load(own + stride + vertex);
+        store(out + stride + vertex, v);
+    }
+}
+/// Of one pass' vertices, as normals are.
+inline void blend_texcoords(pointer<float> own, const BlendStep& s, const vfloat& weight, sint stride,
+                            pointer<float> out, const vmask& m) {
+    for (int k = 0; k < 2; ++k) {
+        vfloat at = gather(own, s.vertex, m);
+        vfloat one = gather(out, s.one, m);
+        vfloat other = gather(out, s.other, m);
+        vfloat mean = (one + other) * 0.5F;
+        scatter(out, s.vertex, fma(weight, at - mean, mean), m);
+        own = own + stride;
+        out = out + stride;
+    }
+}
+
+/// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them;
+/// Mapped: also texture coordinates.
+template <bool Mapped>
 inline void blend_normals(const Context& c, sint line, pointer<float> normals, pointer<float> slot) {
     pointer<float> area = slot + slot_block;
     pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
@@ -99,6 +125,8 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
         store(x + stride + vertex, n.y);
         store(x + stride * 2 + vertex, n.z);
     }
+    if constexpr (Mapped)
+        copy_corner_texcoords(normals + stride * 3, quads_u, quads_v, stride, slot + slot_texcoords);
     pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
     for (int p = 0; p < blend_passes; ++p) {
         sint n = load(pass);
@@ -111,15 +139,19 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
             vfloat weight = gather(weights, s.vertex, m);
             vvec q = blend_vertex(weight, own, one, other);
             scatter_vec(x, stride, s.vertex, q, m);
+            if constexpr (Mapped)
+                blend_texcoords(normals + stride * 3, s, weight, stride, slot + slot_texcoords, m);
         }
         pass = pass + pass_words;
     }
 }
 
 /// Returns them, once they are there.
+template <bool Mapped>
 inline pointer<float> blended_normals(const Context& c, sint line, pointer<float> normals,
                                       pointer<float> slot) {
-    build_once(c, as<shared_int>(slot) + slot_normals, [&] { blend_normals(c, line, normals, slot); });
+    build_once(c, as<shared_int>(slot) + slot_normals,
+               [&] { blend_normals<Mapped>(c, line, normals, slot); });
     return slot + (slot_block + blend_normals_at);
 }
 
@@ -141,12 +173,14 @@ struct Corners {
     vvec a, b, c;
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
     vfloat sway;                   // of the block's finest vertices
+    vpoint map_a, map_b, map_c;    // texture coordinates, where they are asked for and there are any
 };
 /// A block between two levels of the paper's scheme, `number` that of the finer one's field: arrays of both
 /// levels' vertices, and of their normals.
 struct BlockPair {
     pointer<float> fine, coarse, fine_normals, coarse_normals;
 };
+template <bool Mapped>
 inline BlockPair block_pair(const Context& c, sint line, sint number, sint normals_at) {
     sint level = level_of_number(number);
     pointer<float> fine = level_slot(c, level, line);
@@ -156,8 +190,8 @@ inline BlockPair block_pair(const Context& c, sint line, sint number, sint norma
     p.coarse = coarse + (slot_block + block_header_words);
     if (branch(normals_at != 0)) {
         pointer<float> normals = as<float>(c.grids + line) + normals_at;
-        p.fine_normals = blended_normals(c, line, normals, fine);
-        p.coarse_normals = blended_normals(c, line, normals, coarse);
+        p.fine_normals = blended_normals<Mapped>(c, line, normals, fine);
+        p.coarse_normals = blended_normals<Mapped>(c, line, normals, coarse);
     }
     return p;
 }
@@ -177,12 +211,25 @@ inline void find_between(const BlockPair& p, const Scale& s, const vvec& from, s
     }
 }
 
+/// Texture coordinates of a corner of the triangles hit, `texcoords` being those of the block, u[stride],
+/// v[stride].
+inline void gather_texcoord(pointer<float> texcoords, const vint& corner, const vint& stride,
+                            const vmask& here, vpoint& at) {
+    vfloat u = gather(texcoords, corner, here);
+    vfloat v = gather(texcoords, corner + stride, here);
+    at.u = select(here, u, at.u);
+    at.v = select(here, v, at.v);
+}
+
 /// Block after block.
+template <bool Mapped>
 inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, const vmask& hit) {
     TriangleWords t = locate(c, h, hit);
     vfloat zero(0.0F);
     vvec none_yet{zero, zero, zero};
-    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero};
+    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero, {}, {}, {}};
+    if constexpr (Mapped)
+        k.map_a = k.map_b = k.map_c = {zero, zero};
     vint first_word = h.block << 4;
     vint at_a = t.a - first_word;
     vint at_b = t.b - first_word;
@@ -201,8 +248,20 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
             k.sway = select(here, sway, k.sway);
         }
         sint normals_at = ensure_normals(c, block);
+        sint planes = 0;
+        if constexpr (Mapped) {
+            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
+            planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
+        }
+        const auto find_texcoords = [&](pointer<float> texcoords) {
+            if (branch(planes != 0)) {
+                gather_texcoord(texcoords, at_a, t.stride, here, k.map_a);
+                gather_texcoord(texcoords, at_b, t.stride, here, k.map_b);
+                gather_texcoord(texcoords, at_c, t.stride, here, k.map_c);
+            }
+        };
         if (branch(lane < -1)) {
-            BlockPair p = block_pair(c, block, lane, normals_at);
+            BlockPair p = block_pair<Mapped>(c, block, lane, normals_at);
             Scale scale = scale_of(c, r);
             sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
             svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
@@ -211,15 +270,28 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
             find_between(p, scale, from, lane, at_b, t.stride, normals_at, here, k.b, k.at_b);
             find_between(p, scale, from, lane, at_c, t.stride, normals_at, here, k.c, k.at_c);
             k.normal = select(here, blend(k.at_a, k.at_b, k.at_c, h), k.normal);
+            if constexpr (Mapped) { // as they are at the anchors
+                sint after = load(field(as<BlockHeader>(words), &BlockHeader::stride)) * 3;
+                find_texcoords(words + normals_at + after);
+            }
             continue;
         }
         pointer<float> vertices = words + block_header_words;
         pointer<float> normals = words + normals_at;
+        pointer<float> texcoords = normals;
+        if constexpr (Mapped) {
+            sint after = load(field(as<BlockHeader>(words), &BlockHeader::stride)) * 3;
+            texcoords = normals + after;
+        }
         if (branch(lane >= 0)) {
             pointer<float> slot = blended_slot(c, lane, block);
             vertices = slot + (slot_block + block_header_words);
             if (branch(normals_at != 0))
-                normals = blended_normals(c, block, normals, slot);
+                normals = blended_normals<Mapped>(c, block, normals, slot);
+            texcoords = slot + slot_texcoords;
+        }
+        if constexpr (Mapped) {
+            find_texcoords(texcoords);
         }
         vvec a = gather_vec(vertices, at_a, t.stride, here);
         vvec b = gather_vec(vertices, at_b, t.stride, here);
@@ -292,14 +364,67 @@ inline vfloat curvature_of(const Corners& k, const vfloat& side) {
     return (sum * side) * (1.0F / 3.0F);
 }
 
-/// What bounces need to know of a hit besides.
+/// Where a hit lies on its texture, and how.
+struct Mapping {
+    vpoint at;
+    vfloat footprint; // the area, in texture coordinates, that the ray asked for
+    vvec along_u;     // directions on the surface: unit, at right angles to the normal
+    vvec along_v;
+};
+
+inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const vvec& edge2,
+                       const vvec& area, const vfloat& target, const vfloat& cosine) {
+    Mapping map;
+    vfloat w = vfloat(1.0F) - h.u;
+    w = w - h.v;
+    map.at.u = fma(h.v, k.map_c.u, fma(h.u, k.map_b.u, k.map_a.u * w));
+    map.at.v = fma(h.v, k.map_c.v, fma(h.u, k.map_b.v, k.map_a.v * w));
+    vfloat u1 = k.map_b.u - k.map_a.u;
+    vfloat v1 = k.map_b.v - k.map_a.v;
+    vfloat u2 = k.map_c.u - k.map_a.u;
+    vfloat v2 = k.map_c.v - k.map_a.v;
+    vfloat across = fms(u1, v2, u2 * v1);
+    vfloat surface = sqrt(dot(area, area));
+    surface = max(surface, 1.0e-36F);
+    // Across the ray it asks for a square; on the surface that is as much longer as it is inclined.
+    vfloat inclined = max(cosine, 0.05F);
+    vfloat asked = (target * target) / inclined;
+    asked = asked / surface;
+    map.footprint = abs(across) * asked;
+    vfloat sign = select(across < vfloat(0.0F), vfloat(-1.0F), vfloat(1.0F));
+    vvec tangent = edge2 * v1;
+    map.along_u = (edge1 * v2 - tangent) * sign;
+    tangent = edge1 * u2;
+    map.along_v = (edge2 * u1 - tangent) * sign;
+    return map;
+}
+
+/// What shading other than that of plain matte surfaces needs to know of a hit besides.
 struct Beyond {
+    Mapping map;
+    vfloat side;      // 1, or -1 where the surface's own normal is turned over to face the viewer
     vvec toward;      // unit, to the viewer
     vmask inside;     // the viewer is behind the surface
     vvec position;    // moved off the surface to the side that the viewer is not on
     vfloat curvature; // see curvature_of()
     vint material;    // its number
 };
+
+/// Of the faces hit; `record`: word of their instances.
+inline vint face_material(const Context& c, const Hits& h, const vint& record, const vmask& m) {
+    pointer<std::int32_t> instances = as<std::int32_t>(c.instances);
+    constexpr int first_patch_word = offsetof(InstanceRecord, first_patch) / 4;
+    constexpr int first_record_word = offsetof(InstanceRecord, first_record) / 4;
+    vint first_patch = gather(instances + first_patch_word, record, m);
+    vint first_record = gather(instances + first_record_word, record, m);
+    vint patch = (h.patch - first_patch) + first_record;
+    constexpr int face_word = offsetof(PatchRecord, face) / 4;
+    constexpr int patch_words = sizeof(PatchRecord) / 4;
+    vint word = patch * vint(patch_words);
+    vint face = gather(as<std::int32_t>(c.patches) + face_word, word, m);
+    pointer<std::int32_t> materials = load(field(c.frame, &FrameHeader::face_materials));
+    return gather(materials, face, m);
+}
 
 /// `beyond` is filled in for looks that need it.
 template <Look L>
@@ -308,11 +433,14 @@ template <Look L>
     phase_scope phase(phase_shade);
     Surface s;
     s.hit = h.patch >= vint(0);
-    Corners k = find_triangles(c, r, h, s.hit);
+    constexpr bool mapped = L == look_mapped || L == look_glossy_mapped;
+    constexpr bool glossy = L == look_glossy || L == look_glossy_mapped;
+    Corners k = find_triangles<mapped>(c, r, h, s.hit);
     vvec toward = r.direction * vfloat(-1.0F);
     vvec edge1 = k.b - k.a;
     vvec edge2 = k.c - k.a;
-    vvec n = normalise(cross(edge1, edge2), toward);
+    vvec area = cross(edge1, edge2);
+    vvec n = normalise(area, toward);
     s.shading = normalise(k.normal, n);
     vvec way = madd(h.t, r.direction, r.origin - r.field_origin);
     s.target = asked_at(r, way);
@@ -341,14 +469,23 @@ template <Look L>
     vfloat apart = fma(k.sway, vfloat(leaving_share), error);
     error = select(morphs, apart, error);
     vfloat side = select(opposed, vfloat(-1.0F), vfloat(1.0F));
-    if constexpr (L != look_matte) {
+    if constexpr (glossy) {
         beyond.toward = toward;
         beyond.inside = away;
         beyond.position = madd(-error, s.geometric, p);
         beyond.position = beyond.position + origin;
         beyond.curvature = curvature_of(k, side);
+    }
+    if constexpr (L != look_matte) {
         constexpr int material_word = offsetof(InstanceRecord, material) / 4;
         beyond.material = gather(as<std::int32_t>(c.instances) + material_word, record, s.hit);
+    }
+    if constexpr (mapped) {
+        beyond.side = side;
+        beyond.map = map_hit(k, h, edge1, edge2, area, s.target, dot(s.geometric, toward));
+        vmask of_face = s.hit & (beyond.material < vint(0));
+        if (branch(any(of_face)))
+            beyond.material = select(of_face, face_material(c, h, record, of_face), beyond.material);
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;

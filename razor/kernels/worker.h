@@ -28,7 +28,9 @@ template <Features F, class Sampler> void render(const WorkerArguments& a) {
     render_worker<F, Sampler>(c);
 }
 
-/// Compiled apart (glossy.cpp), so that kernels of other looks do not depend on it.
+/// Compiled apart, see apart.h.
+template <Features F> void render_mapped(const WorkerArguments& a);
 template <Features F> void render_glossy(const WorkerArguments& a);
+template <Features F> void render_glossy_mapped(const WorkerArguments& a);
 
 } // namespace razor::ISA_TARGET

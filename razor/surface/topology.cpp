@@ -21,7 +21,8 @@ bool same_topology(const Mesh& a, const Mesh& b, double factor) {
     return a.scheme == b.scheme && a.points.size() == b.points.size() && a.face_sizes == b.face_sizes &&
            a.face_vertices == b.face_vertices && a.creases == b.creases && a.corners == b.corners &&
            a.holes == b.holes && a.boundary == b.boundary && a.crease_method == b.crease_method &&
-           a.triangles == b.triangles &&
+           a.triangles == b.triangles && a.face_texcoords == b.face_texcoords && a.texcoords == b.texcoords &&
+           a.face_varying == b.face_varying &&
            (!cuts || (alike(a.rest, b.rest) && (!a.rest.empty() || alike(a.points, b.points))));
 }
 
