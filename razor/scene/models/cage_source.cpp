@@ -55,10 +55,10 @@ CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
     return entry;
 }
 
-CageCache::Entry read_clip(const MeshDescription& mesh) {
+CageCache::Entry read_clip(const MeshDescription& mesh, TextureCache& textures) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
-    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle);
+    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle, &textures);
     if (p.clip.empty() && !model.clips.empty())
         p.clip = model.clips.front();
     entry.source = model.cage;
@@ -84,7 +84,7 @@ CageCache::Entry read(const MeshDescription& mesh, TextureCache& textures) {
     case ModelFile::md3:
         return read_md3_frames(mesh);
     case ModelFile::gltf:
-        return read_clip(mesh);
+        return read_clip(mesh, textures);
     case ModelFile::none:
     case ModelFile::obj:
         break;

@@ -1,6 +1,7 @@
 #include "razor/scene/models/obj_materials.h"
 
 #include "razor/scene/models/mtl_reader.h"
+#include "razor/scene/models/own_materials.h"
 #include "razor/scene/text_file.h"
 
 #include <algorithm>
@@ -40,14 +41,7 @@ void use(Mesh& mesh, const std::vector<std::string>& names, std::shared_ptr<cons
     }
     for (int& material : mesh.face_materials)
         material = material < 0 ? material : of_name[static_cast<std::size_t>(material)];
-    if (mesh.face_materials.empty()) {
-        mesh.material = -1;
-    } else if (std::all_of(mesh.face_materials.begin(), mesh.face_materials.end(),
-                           [&](int m) { return m == mesh.face_materials.front(); })) {
-        mesh.material = mesh.face_materials.front();
-        mesh.face_materials.clear();
-    }
-    mesh.own_materials = std::move(own);
+    set_own_materials(mesh, std::move(own));
 }
 
 } // namespace
@@ -63,10 +57,7 @@ Mesh read_obj(const std::filesystem::path& path, TextureCache& textures) {
                 reader.read(file);
         own = reader.finish();
     }
-    if (own.materials.empty())
-        mesh.face_materials.clear();
-    else
-        use(mesh, stated.names, std::make_shared<const ModelMaterials>(std::move(own)));
+    use(mesh, stated.names, std::make_shared<const ModelMaterials>(std::move(own)));
     return mesh;
 }
 
