@@ -57,6 +57,7 @@ TEST_F(Mtl, MattePhongGlassMirror) {
     EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKs 1 1 1\nNs 96\nillum 2"), want);
     EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKs 1 1 1\nNs 96\nillum 1").specular, 0);
     EXPECT_EQ(material("Ks 1 1 1\nNs 96\nNi 1.75").ior, 1.75F);
+    EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKs 1 1 1\nNs 96"), want) << "no illum";
     const Material glass = material("Kd 1 1 1\nd 0.25\nNi 1.25\nillum 7");
     EXPECT_EQ(glass.transmission, 0.75F);
     EXPECT_EQ(glass.ior, 1.25F);
