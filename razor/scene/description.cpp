@@ -1,6 +1,7 @@
 #include "razor/scene/description.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/material_fields.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -46,6 +47,67 @@ std::vector<glm::dvec3> placed(const MeshDescription& mesh, const std::vector<gl
     }
     return result;
 }
+
+/// Where the materials and textures of the models' files are in the scene: behind its own, those of each file
+/// once.
+class OwnMaterials {
+public:
+    struct Place {
+        std::shared_ptr<const ModelMaterials> own;
+        int material = 0, texture = 0; // the first of them
+    };
+
+    explicit OwnMaterials(const SceneDescription& description) {
+        auto material = static_cast<int>(description.materials.size());
+        auto texture = static_cast<int>(description.textures.size());
+        for (const MeshDescription& mesh : description.meshes) {
+            if (!uses_own(mesh) || find(*mesh.source->own_materials) != nullptr) {
+                continue;
+            }
+            const ModelMaterials& own = *mesh.source->own_materials;
+            places_.push_back({mesh.source->own_materials, material, texture});
+            material += static_cast<int>(own.materials.size());
+            texture += static_cast<int>(own.textures.size());
+        }
+    }
+
+    static bool uses_own(const MeshDescription& mesh) {
+        return mesh.material.empty() && mesh.source->own_materials != nullptr;
+    }
+
+    const Place* find(const ModelMaterials& own) const {
+        const auto found =
+            std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.own.get() == &own; });
+        return found == places_.end() ? nullptr : &*found;
+    }
+
+    void append_to(Scene& scene) const {
+        for (const Place& place : places_) {
+            scene.textures.insert(scene.textures.end(), place.own->textures.begin(),
+                                  place.own->textures.end());
+            for (Material material : place.own->materials) {
+                visit_material_maps(
+                    [&](std::string_view, TextureMap& map) {
+                        map.texture += map.texture < 0 ? 0 : place.texture;
+                    },
+                    material);
+                scene.materials.push_back(std::move(material));
+            }
+        }
+    }
+
+    /// Rewrites the indices of a mesh that has its own.
+    void place(Mesh& mesh) const {
+        const int first = find(*mesh.own_materials)->material;
+        const auto in_scene = [first](int own) { return own < 0 ? 0 : first + own; };
+        mesh.material = in_scene(mesh.material);
+        std::transform(mesh.face_materials.begin(), mesh.face_materials.end(), mesh.face_materials.begin(),
+                       in_scene);
+    }
+
+private:
+    std::vector<Place> places_;
+};
 
 class GraphBuilder {
 public:
@@ -175,7 +237,9 @@ SceneGraph build_graph(const SceneDescription& description) {
     return GraphBuilder(description).build();
 }
 
-Mesh build_mesh(const SceneDescription& description, std::size_t number) {
+namespace {
+
+Mesh build_mesh(const SceneDescription& description, std::size_t number, const OwnMaterials& own) {
     const MeshDescription& source = description.meshes[number];
     Mesh mesh = *source.cage;
     mesh.name = source.name;
@@ -183,8 +247,20 @@ Mesh build_mesh(const SceneDescription& description, std::size_t number) {
     mesh.edge_length = source.edge_length;
     mesh.points = placed_points(source);
     mesh.rest = placed(source, source.cage->rest);
-    mesh.material = material_index(description, source.material);
+    if (OwnMaterials::uses_own(source)) {
+        own.place(mesh);
+    } else {
+        mesh.material = source.material.empty() ? 0 : material_index(description, source.material);
+        mesh.face_materials.clear();
+    }
+    mesh.own_materials = nullptr;
     return mesh;
+}
+
+} // namespace
+
+Mesh build_mesh(const SceneDescription& description, std::size_t number) {
+    return build_mesh(description, number, OwnMaterials(description));
 }
 
 Scene build_scene(const SceneDescription& description) {
@@ -197,8 +273,10 @@ Scene build_scene(const SceneDescription& description) {
     scene.lights = description.lights;
     scene.textures = description.textures;
     scene.materials = description.materials;
+    const OwnMaterials own(description);
+    own.append_to(scene);
     for (std::size_t m = 0; m < description.meshes.size(); ++m) {
-        scene.meshes.push_back(build_mesh(description, m));
+        scene.meshes.push_back(build_mesh(description, m, own));
     }
     scene.graph = build_graph(description);
     return scene;

@@ -214,7 +214,9 @@ SceneDescription frame_model(const std::filesystem::path& path, const FramingOpt
     load_cage(model);
     model.name = cage_name(model.file);
     model.scheme = options.scheme;
-    model.material = "model";
+    if (!model.source->own_materials) {
+        model.material = "model";
+    }
     scene.name = model.name;
     if (options.up == Up::z) {
         model.rotate.x = -90;

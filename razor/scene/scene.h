@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,12 @@ struct Corner {
     bool operator==(const Corner&) const = default;
 };
 
+/// What a model's file says that its surfaces are made of; maps name its own textures.
+struct ModelMaterials {
+    std::vector<Material> materials;
+    std::vector<Texture> textures;
+};
+
 /// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face
 /// has 3 or more distinct corners; every index in range; points finite; as many in rest, if any.
 struct Mesh {
@@ -73,6 +80,9 @@ struct Mesh {
     int material = 0; // index into Scene::materials
     /// Of each face, indices likewise; empty: all are of `material`.
     std::vector<int> face_materials;
+    /// Of a cage as its file has it: what `material` and `face_materials` are indices into, -1 standing for
+    /// none of them. Null, as in every scene: Scene::materials.
+    std::shared_ptr<const ModelMaterials> own_materials{};
     /// Target edge length in world units. 0: from the camera (settings.edge_pixels). Rounded to a power of
     /// two when used.
     double edge_length = 0;

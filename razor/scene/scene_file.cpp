@@ -131,7 +131,10 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
     for (const Material& material : materials) {
         names.push_back(material.name);
     }
-    mesh.material = std::string(names[table.choice("material", 0, names)]);
+    if (table.has("material")) {
+        mesh.material = std::string(names[table.choice("material", 0, names)]);
+    }
+    table.may_have("material");
     read_playback(table, mesh, frame_rate);
     table.finish();
     try {
@@ -141,6 +144,9 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         load_cage(mesh, cages);
     } catch (const UserError& error) {
         table.fail(table.has("file") ? "file" : "shape", error.what());
+    }
+    if (mesh.material.empty() && !mesh.source->own_materials) {
+        mesh.material = materials.front().name;
     }
     if (mesh.name.empty()) {
         mesh.name = mesh.file.empty() ? mesh.shape : cage_name(mesh.file);

@@ -228,7 +228,6 @@ void add_table_meshes(SceneDescription& scene, const InstanceTable& table, const
         MeshDescription mesh;
         mesh.file = table.files[f];
         mesh.scheme = scheme;
-        mesh.material = material;
         try {
             load_cage(mesh, cages);
         } catch (const UserError& error) {
@@ -238,6 +237,9 @@ void add_table_meshes(SceneDescription& scene, const InstanceTable& table, const
             throw UserError(fmt::format("{}:{}: {}", printable(path, 1000), row->line, error.what()));
         }
         mesh.name = cage_name(mesh.file);
+        if (!mesh.source->own_materials) {
+            mesh.material = material;
+        }
         scene.meshes.push_back(std::move(mesh));
     }
 }

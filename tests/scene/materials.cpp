@@ -143,7 +143,7 @@ TEST(Materials, PrintedSceneIsTheSame) {
     for (int i = 0; i < 40; ++i)
         text += "[[material]]\nname = \"m" + std::to_string(i) +
                 "\"\nnormal_map = { texture = \"bricks\", scale = [0.1, 1], offset = [-0.3, 7], rotation = " +
-                std::to_string(i * 37.7 - 500) + " }\n";
+                std::to_string(i * 37.712345 - 500) + " }\n";
     text += box + "material = \"glass\"\n";
     const SceneDescription description = parsed(text, folder.path());
     const std::string printed = to_toml(description);

@@ -105,7 +105,7 @@ run_tests() {
 # What is compared with g++'s. What clang makes of the tests is seen under its sanitizers.
 build_by_clang() {
     configure clang build/clang -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON -DRAZOR_BENCHMARKS=OFF
-    compile build/clang razor-sim op_stream fuzz_obj fuzz_traces
+    compile build/clang razor-sim op_stream fuzz_obj fuzz_pictures fuzz_traces
 }
 
 # Ten times as slow, and one trial shows an error of memory as well as ten do.
@@ -154,7 +154,7 @@ compare_compilers() {
 
 fuzz() {
     local program name
-    for program in scene/fuzz_obj traces/fuzz_traces; do
+    for program in scene/fuzz_obj scene/fuzz_pictures traces/fuzz_traces; do
         name=$(basename $program)
         mkdir -p "build/fuzz/$name"
         # Findings are left beside the corpus; the log only matters when there are some.

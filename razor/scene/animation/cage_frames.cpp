@@ -1,7 +1,7 @@
 #include "razor/scene/animation/cage_frames.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/models/obj_reader.h"
+#include "razor/scene/models/obj_materials.h"
 #include "razor/scene/numbered_name.h"
 #include "razor/scene/text_file.h"
 
@@ -47,7 +47,8 @@ std::shared_ptr<const Mesh> PointFrames::at(double seconds) const {
                  blended(blend_at(times_, timing_, seconds), [&](std::size_t n) { return &frames_[n]; }));
 }
 
-ObjSequence::ObjSequence(std::string name, int first, int last, double rate, const Timing& timing)
+ObjSequence::ObjSequence(std::string name, int first, int last, double rate, const Timing& timing,
+                         TextureCache* textures)
     : name_(std::move(name)), first_(first),
       times_(even_times(static_cast<std::size_t>(last - first) + 1, rate)), timing_(timing) {
     for (int n = first; n <= last; ++n) {
@@ -57,7 +58,8 @@ ObjSequence::ObjSequence(std::string name, int first, int last, double rate, con
             throw UserError(fmt::format("{}: no such file, of frames {} to {}; give frames that are there",
                                         printable(file, 1000), first, last));
     }
-    rest_ = std::make_shared<const Mesh>(read_obj(numbered(name_, first)));
+    rest_ = std::make_shared<const Mesh>(textures == nullptr ? read_obj(numbered(name_, first))
+                                                             : read_obj(numbered(name_, first), *textures));
 }
 
 std::shared_ptr<const Mesh> ObjSequence::frame(std::size_t key) const {
@@ -78,7 +80,7 @@ std::shared_ptr<const Mesh> ObjSequence::frame(std::size_t key) const {
 
 std::shared_ptr<const Mesh> ObjSequence::read(std::size_t key) const {
     const std::string file = numbered(name_, first_ + static_cast<int>(key));
-    Mesh cage = read_obj(file);
+    Mesh cage = read_obj(file, rest_->own_materials);
     if (cage.points.size() == rest_->points.size() && cage.face_sizes == rest_->face_sizes &&
         cage.face_vertices == rest_->face_vertices)
         return moved(*rest_, std::move(cage.points));

@@ -11,6 +11,8 @@
 
 namespace razor {
 
+class TextureCache;
+
 /// One cage whose points are known in each frame, of which there must be one: n / rate seconds after the
 /// beginning they are those of frame n.
 class PointFrames : public MovingCage {
@@ -34,8 +36,10 @@ private:
 /// `step`.
 class ObjSequence : public MovingCage {
 public:
-    /// Throws UserError where a file is missing or the first cannot be read.
-    ObjSequence(std::string name, int first, int last, double rate, const Timing& timing);
+    /// With `textures`, also the materials of the first frame, which others name. Throws UserError where a
+    /// file is missing or the first cannot be read.
+    ObjSequence(std::string name, int first, int last, double rate, const Timing& timing,
+                TextureCache* textures = nullptr);
     /// Throws UserError where a file cannot be read or has other faces.
     std::shared_ptr<const Mesh> at(double seconds) const override;
     double length() const override { return times_.back(); }

@@ -4,7 +4,7 @@
 #include "razor/scene/error.h"
 #include "razor/scene/models/gltf_reader.h"
 #include "razor/scene/models/md3_reader.h"
-#include "razor/scene/models/obj_reader.h"
+#include "razor/scene/models/obj_materials.h"
 #include "razor/scene/numbered_name.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
@@ -55,10 +55,10 @@ CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
     return entry;
 }
 
-CageCache::Entry read_clip(const MeshDescription& mesh) {
+CageCache::Entry read_clip(const MeshDescription& mesh, TextureCache& textures) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
-    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle);
+    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle, &textures);
     if (p.clip.empty() && !model.clips.empty())
         p.clip = model.clips.front();
     entry.source = model.cage;
@@ -66,30 +66,30 @@ CageCache::Entry read_clip(const MeshDescription& mesh) {
     return entry;
 }
 
-CageCache::Entry read_sequence(const MeshDescription& mesh) {
+CageCache::Entry read_sequence(const MeshDescription& mesh, TextureCache& textures) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
     if (!p.frames)
         p.frames = all_frames(mesh.file);
     entry.motion = std::make_shared<const ObjSequence>(mesh.file, p.frames->first, p.frames->second,
-                                                       p.frame_rate, p.timing);
+                                                       p.frame_rate, p.timing, &textures);
     entry.source = entry.motion->at(0);
     return entry;
 }
 
-CageCache::Entry read(const MeshDescription& mesh) {
+CageCache::Entry read(const MeshDescription& mesh, TextureCache& textures) {
     switch (model_file(mesh.file)) {
     case ModelFile::obj_sequence:
-        return read_sequence(mesh);
+        return read_sequence(mesh, textures);
     case ModelFile::md3:
         return read_md3_frames(mesh);
     case ModelFile::gltf:
-        return read_clip(mesh);
+        return read_clip(mesh, textures);
     case ModelFile::none:
     case ModelFile::obj:
         break;
     }
-    return {.playback = mesh.playback, .source = std::make_shared<const Mesh>(read_obj(mesh.file))};
+    return {.playback = mesh.playback, .source = std::make_shared<const Mesh>(read_obj(mesh.file, textures))};
 }
 
 } // namespace
@@ -116,7 +116,7 @@ void load_cage(MeshDescription& mesh, CageCache& cages) {
     } else {
         CageCache::Entry& entry = cages.entries[key_of(mesh)];
         if (!entry.source)
-            entry = read(mesh);
+            entry = read(mesh, cages.textures);
         mesh.source = entry.source;
         mesh.motion = entry.motion;
         // Start, speed and moment are the mesh's own.

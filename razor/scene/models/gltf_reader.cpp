@@ -2,7 +2,9 @@
 
 #include "razor/scene/error.h"
 #include "razor/scene/models/gltf/drawn_mesh.h"
+#include "razor/scene/models/gltf/materials.h"
 #include "razor/scene/models/gltf/nodes.h"
+#include "razor/scene/models/own_materials.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 namespace razor {
@@ -53,11 +56,14 @@ private:
     double cycle_;
 };
 
-/// Adds the triangles of a mesh; `first_point`: number of its first point in the cage.
-void append_faces(const DrawnMesh& drawn, int first_point, bool turn, Mesh& cage) {
+/// Adds the triangles of a mesh; `first_point`: number of its first point in the cage. `materials`: may be
+/// null.
+void append_faces(const DrawnMesh& drawn, int first_point, bool turn, MaterialReader* materials, Mesh& cage) {
     const auto first_texcoord = static_cast<int>(cage.texcoords.size());
     for (std::size_t c = 0; c < drawn.triangles.size(); c += 3) {
         cage.face_sizes.push_back(3);
+        if (materials != nullptr)
+            cage.face_materials.push_back(materials->use(drawn.materials[c / 3]));
         for (const std::size_t corner : {c, turn ? c + 2 : c + 1, turn ? c + 1 : c + 2}) {
             cage.face_vertices.push_back(first_point + drawn.triangles[corner]);
             const int texcoord = drawn.corner_texcoords[corner];
@@ -119,7 +125,8 @@ bool moves(const Clip& clip, const Skeleton& skeleton, const std::vector<Skin>& 
     });
 }
 
-GltfModel read(const std::filesystem::path& path, const std::string& clip_name, double cycle) {
+GltfModel read(const std::filesystem::path& path, const std::string& clip_name, double cycle,
+               TextureCache* textures) {
     const Document document = load_document(path);
     if (!(cycle >= 0 && std::isfinite(cycle)))
         document.fail(fmt::format("a cycle of {} s; give 0 or more", cycle));
@@ -129,6 +136,9 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
     cage.name = path.stem().string();
     std::vector<Skin> skins;
     std::size_t points = 0;
+    std::optional<MaterialReader> materials;
+    if (textures != nullptr)
+        materials.emplace(document, path.parent_path(), *textures);
     for (const int node : nodes_to_draw(document, skeleton)) {
         if (document.nodes[static_cast<std::size_t>(node)].mesh == none)
             continue;
@@ -139,11 +149,13 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
         if (drawn.skin.points.size() > most - points ||
             drawn.triangles.size() > most - cage.face_vertices.size())
             document.fail("has more than 2^31 face corners; split the model");
-        append_faces(drawn, static_cast<int>(points), turn, cage);
+        append_faces(drawn, static_cast<int>(points), turn, materials ? &*materials : nullptr, cage);
         points += drawn.skin.points.size();
         skins.push_back(std::move(drawn.skin));
     }
     finish_texcoords(cage);
+    if (materials)
+        set_own_materials(cage, std::make_shared<const ModelMaterials>(materials->finish()));
     cage.points = pose_all(skins, rest);
     check_cage(document, cage);
     GltfModel model{std::make_shared<const Mesh>(std::move(cage)), nullptr, clip_names(document)};
@@ -159,13 +171,14 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
 
 } // namespace
 
-GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle) {
+GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle,
+                    TextureCache* textures) {
     const auto too_large = [&path] {
         return UserError(fmt::format("{}: the model does not fit in memory; give a smaller one",
                                      printable(path.string(), 1000)));
     };
     try {
-        return read(path, clip, cycle);
+        return read(path, clip, cycle, textures);
     } catch (const std::bad_alloc&) {
         throw too_large();
     } catch (const std::length_error&) {

@@ -3,11 +3,13 @@
 // Read: triangles (lists, strips, fans), nodes, skins, morph targets, animations of nodes and of morph
 // weights, sparse accessors, quantised meshes. Points that a file keeps apart only for their normals or
 // texture coordinates are joined, so that the surface is closed there; texture coordinates become
-// face-varying. Passed over: points, lines, normals, materials, images, cameras, lights. Refused: compressed
-// geometry and other required extensions that could change shapes.
+// face-varying. Materials: gltf/materials.h. Passed over: points, lines, normals, cameras, lights. Refused:
+// compressed geometry and other required extensions that could change shapes.
 #pragma once
 
 #include "razor/scene/animation/moving_cage.h"
+
+#include "razor/scene/textures/texture_cache.h"
 
 #include <filesystem>
 #include <string>
@@ -24,8 +26,10 @@ struct GltfModel {
 };
 
 /// The cage is named by the file's stem. `clip`: name of an animation; empty: the first. `cycle`: seconds
-/// after which the motion begins again; 0: it holds its last keys. Throws UserError: one line
+/// after which the motion begins again; 0: it holds its last keys. Materials are read if there is a place to
+/// keep their pictures. Throws UserError: one line
 /// `file: cause; mend`.
-GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle);
+GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle,
+                    TextureCache* textures = nullptr);
 
 } // namespace razor

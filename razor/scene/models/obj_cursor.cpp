@@ -79,6 +79,20 @@ std::string_view ObjCursor::word() {
     return {first, static_cast<std::size_t>(at_ - first)};
 }
 
+std::string_view ObjCursor::rest() {
+    if (at_statement_end()) {
+        return {};
+    }
+    const char* const first = at_;
+    const char* last = at_; // behind what is no blank
+    while (at_ != end_ && !is_line_end(*at_) && !(*at_ == '#' && is_blank(at_[-1]))) {
+        if (!is_blank(*at_++)) {
+            last = at_;
+        }
+    }
+    return {first, static_cast<std::size_t>(last - first)};
+}
+
 double ObjCursor::number(std::string_view what) {
     const std::string_view text = word();
     if (text.empty()) {

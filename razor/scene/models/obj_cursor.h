@@ -24,6 +24,8 @@ public:
 
     /// The next word of the statement, up to a blank; empty at the statement's end.
     std::string_view word();
+    /// All that is left of the statement, without blanks around it: names may hold some.
+    std::string_view rest();
     /// The next word as a finite number. `what` names it in messages: "x of v".
     double number(std::string_view what);
     /// The next word as a whole number.

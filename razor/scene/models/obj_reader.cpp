@@ -13,17 +13,18 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <unordered_map>
 
 namespace razor {
 namespace {
 
 constexpr std::int64_t max_count = std::numeric_limits<int>::max();
-constexpr int no_texcoord = -1;
+constexpr int no_texcoord = -1, no_material = -1;
 
 /// Statements without effect on one cage's surface.
-constexpr std::array<std::string_view, 18> passed_over{
-    "vn", "vp", "o",      "g",   "s",     "mg",         "usemtl",    "mtllib",   "usemap",
-    "l",  "p",  "maplib", "lod", "bevel", "shadow_obj", "trace_obj", "c_interp", "d_interp",
+constexpr std::array<std::string_view, 16> passed_over{
+    "vn", "vp",     "o",   "g",     "s",          "mg",        "usemap",   "l",
+    "p",  "maplib", "lod", "bevel", "shadow_obj", "trace_obj", "c_interp", "d_interp",
 };
 constexpr std::array<std::string_view, 23> free_form{
     "cstype", "deg", "bmat", "step", "curv",  "curv2", "surf", "parm", "trim", "hole", "scrv", "sp",
@@ -32,8 +33,8 @@ constexpr std::array<std::string_view, 23> free_form{
 
 class ObjReader {
 public:
-    ObjReader(std::string_view text, std::string_view file_name)
-        : cursor_(text, file_name), file_name_(file_name) {
+    ObjReader(std::string_view text, std::string_view file_name, ObjMaterialNames* materials)
+        : cursor_(text, file_name), file_name_(file_name), materials_(materials) {
         mesh_.name = std::filesystem::path(file_name).stem().string();
         const std::size_t guess = text.size() / 100;
         mesh_.points.reserve(guess);
@@ -64,6 +65,12 @@ private:
             read_face();
         } else if (keyword == "vt") {
             read_texcoord();
+        } else if (keyword == "usemtl") {
+            use_material();
+        } else if (keyword == "mtllib") {
+            if (materials_ != nullptr) {
+                materials_->libraries.emplace_back(cursor_.rest());
+            }
         } else if (keyword == "t") {
             tags_.read(cursor_, mesh_);
         } else if (std::any_of(free_form.begin(), free_form.end(), is_keyword)) {
@@ -73,6 +80,19 @@ private:
             cursor_.fail(fmt::format("'{}' is not an OBJ statement; remove the line or give an OBJ file",
                                      printable(keyword)));
         }
+    }
+
+    void use_material() {
+        if (materials_ == nullptr) {
+            return;
+        }
+        const auto [known, is_new] = material_numbers_.try_emplace(
+            std::string(cursor_.rest()), static_cast<int>(materials_->names.size()));
+        if (is_new) {
+            materials_->names.push_back(known->first);
+        }
+        material_ = known->second;
+        mesh_.face_materials.resize(mesh_.face_sizes.size(), no_material);
     }
 
     void read_point() {
@@ -123,6 +143,9 @@ private:
         check_distinct(first, line);
         mesh_.face_sizes.push_back(static_cast<int>(count));
         face_lines_.push_back(line);
+        if (material_ != no_material) {
+            mesh_.face_materials.push_back(material_);
+        }
     }
 
     /// v, v/t, v//n, v/t/n, and the careless v/ and v//.
@@ -224,6 +247,9 @@ private:
     std::string file_name_;
     Mesh mesh_;
     ObjTags tags_;
+    ObjMaterialNames* materials_;
+    std::unordered_map<std::string, int> material_numbers_;
+    int material_ = no_material; // in use
     std::vector<std::int64_t> face_lines_;
     bool any_textured_ = false, any_untextured_ = false;
 };
@@ -234,9 +260,9 @@ Mesh read_obj(const std::filesystem::path& path) {
     return parse_obj(read_text_file(path, "an OBJ file"), path.string());
 }
 
-Mesh parse_obj(std::string_view text, std::string_view file_name) {
+Mesh parse_obj(std::string_view text, std::string_view file_name, ObjMaterialNames* materials) {
     try {
-        return ObjReader(text, file_name).read();
+        return ObjReader(text, file_name, materials).read();
     } catch (const std::bad_alloc&) {
         throw UserError(fmt::format("{}: the model does not fit in memory; give a smaller one",
                                     printable(file_name, 1000)));

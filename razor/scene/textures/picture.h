@@ -1,5 +1,6 @@
 // Pictures as textures: PNG (every kind), JPEG (grey and YCbCr or RGB), OpenEXR (red, green, blue or
-// luminance, and opacity). By their first bytes, whatever their names.
+// luminance, and opacity). By their first bytes, whatever their names. What metadata say of gamma, primaries
+// or turns is passed over.
 #pragma once
 
 #include "razor/scene/texture.h"

@@ -9,6 +9,7 @@
 
 #include <csetjmp>
 #include <cstring>
+#include <memory>
 
 namespace razor {
 namespace {
@@ -110,10 +111,11 @@ public:
         const std::vector<float> colours = meanings(wide, linear), opacities = meanings(wide, true);
         const bool interlaced = png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE;
         const std::size_t row_bytes = png_get_rowbytes(png_, info_);
-        std::vector<png_byte> samples(row_bytes * (interlaced ? height : 1));
-        std::vector<png_bytep> rows;
-        for (std::size_t at = 0; at < samples.size(); at += row_bytes)
-            rows.push_back(samples.data() + at);
+        const std::size_t kept = interlaced ? height : 1; // rows
+        const auto samples = std::make_unique_for_overwrite<png_byte[]>(row_bytes * kept);
+        std::vector<png_bytep> rows(kept);
+        for (std::size_t y = 0; y < kept; ++y)
+            rows[y] = samples.get() + y * row_bytes;
 
         PyramidBuilder builder(static_cast<int>(width), static_cast<int>(height));
         std::vector<glm::vec4> texels(width);

@@ -57,7 +57,8 @@ PyramidBuilder::PyramidBuilder(int width, int height) {
         TextureLevel& level = building.level;
         level.width = width;
         level.height = height;
-        level.texels.resize(texel_tile * texel_tile * tiles(width) * tiles(height));
+        // Touched row by row: a damaged picture costs what there is of it.
+        level.texels.reserve(texel_tile * texel_tile * tiles(width) * tiles(height));
         const bool last = width == 1 && height == 1;
         width = half(width);
         height = half(height);
@@ -75,8 +76,10 @@ void PyramidBuilder::add_row(std::span<const glm::vec4> row) {
     if (opaque_ && std::any_of(row.begin(), row.end(), [](const glm::vec4& t) { return t.w != 1; })) {
         opaque_ = false;
         const std::uint32_t one = pack_shared_exponent(glm::vec3(1));
-        for (Building& building : levels_)
+        for (Building& building : levels_) {
+            building.level.opacity.reserve(building.level.texels.capacity());
             building.level.opacity.resize(building.level.texels.size(), one);
+        }
     }
     add(0, row);
 }
@@ -107,6 +110,11 @@ void PyramidBuilder::store(Building& building, std::span<const glm::vec4> row) {
     const auto y = static_cast<std::size_t>(building.rows);
     const bool last = building.rows + 1 == level.height;
     const std::size_t columns = tiles(level.width), end = last ? texel_tile * tiles(level.height) : y + 1;
+    if (y % texel_tile == 0) {
+        level.texels.resize(level.texels.size() + texel_tile * texel_tile * columns);
+        if (!opaque_)
+            level.opacity.resize(level.texels.size());
+    }
     const auto put = [&](std::vector<std::uint32_t>& words, std::size_t x, std::uint32_t word) {
         for (std::size_t at = y; at < end; ++at)
             words[16 * (at / 4 * columns + x / 4) + 4 * (at % 4) + x % 4] = word;

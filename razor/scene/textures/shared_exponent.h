@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -21,14 +22,17 @@ inline std::uint32_t pack_shared_exponent(const glm::vec3& colour) {
     for (int k = 0; k < 3; ++k)
         c[k] = colour[k] > 0 ? std::min(colour[k], most_shared) : 0.0F;
     const float largest = std::max({c.x, c.y, c.z});
-    int exponent = 0;
-    std::frexp(largest, &exponent); // largest < 2^exponent
-    exponent = std::max(exponent + 15, 0);
+    // largest < 2^(exponent - 15); pictures have many texels, so without the library's frexp and ldexp
+    int exponent = std::max(static_cast<int>(std::bit_cast<std::uint32_t>(largest) >> 23) - 126 + 15, 0);
+    double to_mantissa =
+        std::bit_cast<float>(static_cast<std::uint32_t>(127 + exponent_bias - exponent) << 23);
     const auto mantissa = [&](float value) {
-        return static_cast<std::uint32_t>(std::lround(std::ldexp(value, exponent_bias - exponent)));
+        return static_cast<std::uint32_t>(double{value} * to_mantissa + 0.5); // exact
     };
-    if (mantissa(largest) == 1U << mantissa_bits) // rounded up to the next power of two
+    if (mantissa(largest) == 1U << mantissa_bits) { // rounded up to the next power of two
         ++exponent;
+        to_mantissa /= 2;
+    }
     return mantissa(c.x) | mantissa(c.y) << 9 | mantissa(c.z) << 18 |
            static_cast<std::uint32_t>(exponent) << 27;
 }

@@ -25,6 +25,9 @@ constexpr std::array<std::string_view, 11> needed{
     "skins",   "animations",
 };
 
+/// Read apart; here extensions count.
+constexpr std::array<std::string_view, 4> of_appearance{"materials", "textures", "images", "samplers"};
+
 [[noreturn]] void fail(std::string_view file, std::string_view mistake) {
     throw UserError(fmt::format("{}: {}", printable(file, 1000), mistake));
 }
@@ -67,22 +70,35 @@ void summarise(const nlohmann::json& text, Container& container) {
 /// Reads the text, and leaves out what is not needed.
 void sift(std::string_view text, std::string_view file, Container& container) {
     using nlohmann::json;
-    const auto keep = [file](int depth, json::parse_event_t event, json& parsed) {
+    bool appearance = false; // whether the parser is inside such a list
+    const auto keep = [file, &appearance](int depth, json::parse_event_t event, json& parsed) {
         if (depth > deepest)
             fail(file, fmt::format("brackets more than {} deep; this is no glTF file", deepest));
         if (event != json::parse_event_t::key)
             return true;
         const auto& key = parsed.get_ref<const std::string&>();
-        if (depth == 1)
-            return key == "scene" || std::find(needed.begin(), needed.end(), key) != needed.end();
-        return key != "extras" && key != "extensions";
+        const auto is_in = [&](const auto& list) {
+            return std::find(list.begin(), list.end(), key) != list.end();
+        };
+        if (depth == 1) {
+            appearance = is_in(of_appearance);
+            return key == "scene" || appearance || is_in(needed);
+        }
+        return key != "extras" && (appearance || key != "extensions");
     };
     try {
-        const json sifted = json::parse(text, keep);
+        json sifted = json::parse(text, keep);
         if (!sifted.is_object())
             fail(file, "holds no JSON object; give a glTF file");
         summarise(sifted, container);
+        json apart = json::object();
+        for (const std::string_view list : of_appearance)
+            if (const auto found = sifted.find(list); found != sifted.end()) {
+                apart[std::string(list)] = std::move(*found);
+                sifted.erase(found);
+            }
         container.json = sifted.dump(-1, ' ', false, json::error_handler_t::replace);
+        container.appearance = apart.dump(-1, ' ', false, json::error_handler_t::replace);
     } catch (const json::exception& error) {
         fail(file, fmt::format("is no glTF file ({}); export it anew", printable(error.what(), 200)));
     }

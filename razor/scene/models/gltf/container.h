@@ -9,7 +9,8 @@
 namespace razor::gltf {
 
 struct Container {
-    std::string json;
+    std::string json;        // without:
+    std::string appearance;  // materials, textures, images and samplers, an object of these lists
     std::string_view binary; // of the first buffer of a .glb, part of the bytes read
     bool is_binary = false;
     std::string version;               // of glTF, as the file states it
@@ -18,7 +19,7 @@ struct Container {
 };
 
 /// Only what shapes and motion need is left in the text, so that odd images, materials and extensions cannot
-/// matter. Throws UserError, naming `file`.
+/// matter until they are used. Throws UserError, naming `file`.
 Container open_container(std::string_view bytes, std::string_view file);
 
 /// A .glb, glTF 2.0, 4.4. The parts must be smaller than 4 GiB together.

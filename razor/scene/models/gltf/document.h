@@ -1,4 +1,4 @@
-// A glTF 2.0 file as it says itself, as far as shapes and their motion go. Nothing in it has been checked but
+// A glTF 2.0 file as it says itself; materials and what they use as text. Nothing in it has been checked but
 // its grammar: numbers of accessors, nodes and so on may be any.
 #pragma once
 
@@ -42,7 +42,7 @@ using Attributes = std::map<std::string, int>; // accessors
 struct Primitive {
     Attributes attributes;
     std::vector<Attributes> targets;
-    int indices = none, mode = 4;
+    int indices = none, mode = 4, material = none;
 };
 
 struct MeshEntry {
@@ -86,6 +86,7 @@ struct Document {
     std::vector<AnimationEntry> animations;
     std::vector<std::vector<int>> scenes; // their nodes
     int scene = none;
+    std::string appearance; // see Container
 
     /// Throws UserError; `mistake`: "cause; mend".
     [[noreturn]] void fail(std::string_view mistake) const;

@@ -15,7 +15,7 @@ namespace {
 /// A mesh as the file has it: points apart where anything of them differs.
 struct Vertices {
     Skin skin;
-    std::vector<int> triangles;
+    std::vector<int> triangles, materials;
     std::vector<glm::vec2> texcoords;
     std::vector<bool> textured; // of each point: it has one
 };
@@ -80,6 +80,7 @@ private:
             read_influences(primitive, count);
         read_texcoords(primitive, count);
         append_triangles(primitive, count, static_cast<int>(base));
+        vertices_.materials.resize(vertices_.triangles.size() / 3, primitive.material);
     }
 
     static void append(const std::vector<double>& numbers, std::vector<glm::dvec3>& points) {
@@ -228,6 +229,7 @@ DrawnMesh read_drawn_mesh(const Document& document, int node) {
         const int p[3] = {points[vertex(0)], points[vertex(1)], points[vertex(2)]};
         if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0])
             continue;
+        drawn.materials.push_back(vertices.materials[c / 3]);
         for (std::size_t i = 0; i < 3; ++i) {
             const int t = texcoords[vertex(i)];
             drawn.triangles.push_back(point(p[i]));

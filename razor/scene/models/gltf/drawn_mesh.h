@@ -12,6 +12,7 @@ namespace razor::gltf {
 struct DrawnMesh {
     Skin skin;
     std::vector<int> triangles;        // points of `skin`, three a triangle, all distinct
+    std::vector<int> materials;        // of each triangle, in the file; -1: none
     std::vector<glm::vec2> texcoords;  // v upwards
     std::vector<int> corner_texcoords; // texture coordinate of each corner, -1: none
 };

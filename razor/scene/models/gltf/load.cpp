@@ -135,7 +135,7 @@ Accessor to_accessor(const tinygltf::Accessor& a) {
 MeshEntry to_mesh(const tinygltf::Mesh& mesh) {
     MeshEntry result{{}, mesh.weights};
     for (const tinygltf::Primitive& p : mesh.primitives)
-        result.primitives.push_back({p.attributes, p.targets, p.indices, p.mode});
+        result.primitives.push_back({p.attributes, p.targets, p.indices, p.mode, p.material});
     return result;
 }
 
@@ -185,6 +185,7 @@ Document load_document(const std::filesystem::path& path) {
     for (const tinygltf::Scene& scene : model.scenes)
         document.scenes.push_back(scene.nodes);
     document.scene = model.defaultScene;
+    document.appearance = container.appearance;
     return document;
 }
 

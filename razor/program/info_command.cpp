@@ -1,0 +1,37 @@
+#include "razor/program/info_command.h"
+
+#include "razor/image/output_file.h"
+#include "razor/program/arguments.h"
+#include "razor/program/info_report.h"
+#include "razor/program/interrupt.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace razor {
+
+void InfoCommand::add_to(CLI::App& app) {
+    command_ = app.add_subcommand("info", "list a scene's meshes, instances, materials, textures and lights");
+    scene_.add_to(*command_, "scene");
+    command_->add_option("--json", json_, "write it for programs")->type_name("FILE.json");
+}
+
+int InfoCommand::run() const {
+    if (!json_.empty()) {
+        check_writable(json_);
+    }
+    const SceneDescription description = scene_.describe();
+    const Scene scene = build_scene(description);
+    const SceneUse use = use_of(scene, mesh_bounds(description));
+    const OutputGuard guard;
+    if (!json_.empty()) {
+        nlohmann::ordered_json report{{"program", "razor"}, {"version", version()}};
+        report.update(json_of(scene, use));
+        // Names need not be UTF-8.
+        write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    }
+    fmt::print("{}", text_of(scene, use));
+    return 0;
+}
+
+} // namespace razor

@@ -1,0 +1,12 @@
+// Gives a cage the materials of its file.
+#pragma once
+
+#include "razor/scene/scene.h"
+
+namespace razor {
+
+/// `mesh.face_materials`: indices into `own`, -1 standing for none, or empty: none. Where all faces are of
+/// one, Mesh::material alone says so. If `own` is empty, the cage has none of its own.
+void set_own_materials(Mesh& mesh, std::shared_ptr<const ModelMaterials> own);
+
+} // namespace razor

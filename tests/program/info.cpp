@@ -1,0 +1,70 @@
+// razor info: what it lists of a scene, for people and for programs.
+#include "tests/program/run.h"
+#include "tests/scene/picture_writer.h"
+
+#include <nlohmann/json.hpp>
+
+namespace razor {
+namespace {
+
+class Info : public ::testing::Test {
+protected:
+    Info() {
+        folder_.file("a.png", png_of(6, 3, {}, std::vector<std::uint8_t>(54, 128)));
+        folder_.file("o.obj",
+                     "mtllib l.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl shown\n"
+                     "f 1 3 4\nf 1 2 4\n");
+        folder_.file("l.mtl", "newmtl red\nKd 1 0 0\nnewmtl shown\nKs 1 1 1\nNs 9\nmap_Kd a.png\n");
+        folder_.file("s.toml",
+                     "name = \"both\"\n[[texture]]\nname = \"t\"\nfile = \"a.png\"\nwrap = \"clamp\"\n"
+                     "color_space = \"linear\"\n[[material]]\nname = \"grey\"\nroughness_map = \"t\"\n"
+                     "[[material]]\nname = \"glass\"\nkind = \"glass\"\n"
+                     "[[mesh]]\nname = \"quad\"\nfile = \"o.obj\"\nscheme = \"bilinear\"\n"
+                     "[[object]]\nmesh = \"quad\"\narray = [3, 1, 1]\nspacing = [2, 0, 0]\n"
+                     "[[object]]\nmesh = \"quad\"\nmaterial = \"glass\"\ntranslate = [0, 4, 0]\n");
+    }
+    Outcome info(const std::string& arguments) const {
+        return run(quoted_argument(RAZOR_PROGRAM) + " info " + arguments, folder_.path());
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Info, ListsWhatASceneConsistsOf) {
+    const Outcome result = info("s.toml --json i.json");
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    for (const std::string& line :
+         {std::string("  quad: 3 faces, 4 points, bilinear, 4 instances\n"), std::string("instances: 4\n"),
+          std::string("  grey: matte, albedo 0.7, roughness 1, roughness_map t, not used\n"),
+          std::string("  glass: glossy, albedo 1, roughness 0, specular 1, transmission 1, 3 faces\n"),
+          std::string("  red: matte, albedo 1 0 0, 3 faces\n"),
+          std::string("  shown: glossy, albedo 1, roughness 0.652994, specular 1, albedo_map a, 6 faces\n"),
+          "  t: 6 x 3, 4 levels, 320 B, clamp, linear, " + (folder_ / "a.png").string() + ", not used\n",
+          "  a: 6 x 3, 4 levels, 320 B, repeat, srgb, " + (folder_ / "a.png").string() + "\n"})
+        EXPECT_NE(result.out.find(line), std::string::npos) << line << result.out;
+    std::ifstream file(folder_ / "i.json");
+    const auto json = nlohmann::json::parse(file);
+    EXPECT_EQ(json["scene"], "both");
+    EXPECT_EQ(json["meshes"][0]["instances"], 4);
+    EXPECT_EQ(json["materials"][1]["transmission"], 1.0);
+    EXPECT_EQ(json["materials"][3]["albedo_map"]["number"], 1);
+    EXPECT_EQ(json["materials"][3]["faces"], 6);
+    EXPECT_EQ(json["textures"][0]["color_space"], "linear");
+    EXPECT_EQ(json["textures"][0]["used"], false);
+    EXPECT_EQ(json["textures"][1]["bytes"], 320);
+    EXPECT_EQ(json["lights"].size(), 1U);
+    EXPECT_EQ(json["camera"]["target"].size(), 3U);
+}
+
+TEST_F(Info, TakesModelsAndNamesMistakes) {
+    EXPECT_NE(info("o.obj").out.find("materials: 4\n"), std::string::npos);
+    EXPECT_NE(info("").out.find("scene default"), std::string::npos);
+    folder_.file("l.mtl", "newmtl red\nmap_Kd none.png\n");
+    const Outcome result = info("s.toml");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.error_lines(), 1);
+    EXPECT_NE(result.err.find("l.mtl:2: the texture 'none.png' is not there"), std::string::npos);
+}
+
+} // namespace
+} // namespace razor
