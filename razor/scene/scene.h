@@ -57,7 +57,8 @@ struct ModelMaterials {
 };
 
 /// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face
-/// has 3 or more distinct corners; every index in range; points finite; as many in rest, if any.
+/// has 3 or more distinct corners; every index in range; points finite; as many in rest, and materials of as
+/// many faces, if any.
 struct Mesh {
     std::string name;
     Scheme scheme = Scheme::catmull_clark;

@@ -192,6 +192,10 @@ void validate_mesh(const Mesh& mesh) {
         first += static_cast<std::size_t>(mesh.face_sizes[f]);
     }
     check_texcoords(mesh);
+    if (!mesh.face_materials.empty() && mesh.face_materials.size() != mesh.face_sizes.size()) {
+        fail(mesh, "it has materials of {} faces, but {} faces; give each one, or none",
+             mesh.face_materials.size(), mesh.face_sizes.size());
+    }
     check_tags(mesh);
     if (!(mesh.edge_length >= 0) || !std::isfinite(mesh.edge_length)) {
         fail(mesh, "its edge length is {}; give a positive length, or 0 to take it from the camera",

@@ -96,6 +96,14 @@ TEST(ValidateMesh, TextureCoordinates) {
     expect_complaint(mesh, "texture coordinate 0");
 }
 
+TEST(ValidateMesh, MaterialsOfFaces) {
+    Mesh mesh = grid();
+    mesh.face_materials.assign(mesh.face_sizes.size(), 0);
+    EXPECT_EQ(complaint(mesh), "");
+    mesh.face_materials.pop_back();
+    expect_complaint(mesh, "materials of 15 faces, but 16 faces");
+}
+
 TEST(ValidateMesh, Tags) {
     Mesh mesh = grid();
     mesh.corners = {{25, 1}};
