@@ -368,6 +368,12 @@ FrameStatistics Frame::statistics() const {
     s.page_bytes = impl_->pages->made_bytes();
     s.page_seconds = impl_->pages->seconds();
     s.plan = plan_text(impl_->plan);
+    s.grids = impl_->plan.grids;
+    s.look = impl_->plan.look;
+    if (s.look != look_matte)
+        s.material_records = static_cast<std::int64_t>(impl_->materials.materials.size());
+    s.textured_meshes = static_cast<std::int64_t>(impl_->meshes.size() - impl_->scene_meshes);
+    s.texture_bytes = static_cast<std::int64_t>(impl_->materials.texels) * 4;
     return s;
 }
 

@@ -79,6 +79,9 @@ struct FrameStatistics {
     double page_seconds = 0;     // host time spent on them
     Touched touched;
     std::string plan; // which kernels the scene needs
+    Grids grids = grids_flat;
+    Look look = look_matte;
+    std::int64_t material_records = 0, textured_meshes = 0, texture_bytes = 0; // tables that they need
 };
 
 /// How many screen tiles the part of the picture has that is rendered; those on its rim are rendered whole.

@@ -162,6 +162,8 @@ void Frame::Impl::place_materials(const Scene& scene) {
 void Frame::Impl::fill_instances(const Scene& scene) {
     std::int32_t* cluster_instance = header->cluster_instance.get();
     std::int32_t first_patch = 0;
+    if (scene.settings.everything)
+        plan.grids = grids_hanging;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
         const Topology& t = topology_of(geometry.instances[n]);
         InstanceRecord& r = header->instances.get()[n];

@@ -108,7 +108,8 @@ private:
 
 MaterialTables tabulate_materials(const Scene& scene, const std::vector<bool>& used, bool by_face) {
     Tables tables(scene);
-    bool glossy = scene.settings.diffuse_bounces > 0, mapped = by_face;
+    const bool all = scene.settings.everything;
+    bool glossy = all || scene.settings.diffuse_bounces > 0, mapped = all || by_face;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& m = scene.materials[i];
         tables.add(m, used[i]);

@@ -31,9 +31,9 @@ struct Onward {
     sbool at_all, diffuse;
 };
 
-/// Of the surface hit, whose shading normal faces the viewer.
+/// Of the surface hit. Where something reflects, its shading normal is turned to face the viewer.
 template <bool Mapped>
-inline Glossy find_lobes(const Context& c, const Surface& s, const Beyond& b, const Onward& onward,
+inline Glossy find_lobes(const Context& c, Surface& s, const Beyond& b, const Onward& onward,
                          Colours& colours) {
     Materials of = materials_of(c, b, s.hit);
     colours.albedo = of.colour(&MaterialRecord::albedo);
@@ -53,6 +53,11 @@ inline Glossy find_lobes(const Context& c, const Surface& s, const Beyond& b, co
         roughness = roughness * of.mapped(c, map_roughness, b.map).y;
     }
     vfloat one(1.0F);
+    vfloat zero(0.0F);
+    vfloat most = max(metallic, specular);
+    most = max(most, transmission);
+    vmask matte = max(most, coat) <= zero;
+    s.shading = select(matte, s.shading, facing(s.shading, b.toward));
     Glossy g;
     g.toward = b.toward;
     g.view = max(dot(s.shading, b.toward), 1.0e-4F);

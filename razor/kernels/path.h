@@ -10,23 +10,27 @@
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
 
-/// What the lobes make of light of that colour.
-inline vvec coloured(const Gathered<Glossy>& light, const Colours& colours) {
+/// What the lobes make of light of that colour. In the order of operations that matte surfaces have where all
+/// other lobes are nothing: then it is the same, to the last bit.
+inline vvec coloured(const Gathered<Glossy>& light, const vvec& radiance, const Colours& colours) {
+    vvec diffuse = times(radiance * light.lobe[lobe_diffuse], colours.diffuse);
     vfloat grazing = light.lobe[lobe_grazing] * colours.grazing;
     vfloat white = grazing + light.lobe[lobe_coat];
-    vvec sum = madd(light.lobe[lobe_diffuse], colours.diffuse, {white, white, white});
-    return madd(light.lobe[lobe_normal], colours.normal, sum);
+    vvec bright = madd(light.lobe[lobe_normal], colours.normal, {white, white, white});
+    return diffuse + times(radiance, bright);
 }
 
-/// All light that reaches the hit and is reflected towards the viewer. `fewer`: one shadow ray to each light.
+/// Adds all light that reaches the hit and is reflected towards the viewer, who gets `carried` of it.
+/// `fewer`: one shadow ray to each light.
 template <Features F>
-inline vvec lit(const Context& c, const Surface& s, const Glossy& g, const Colours& colours, sbool fewer) {
+inline void add_light(const Context& c, const Surface& s, const Glossy& g, const Colours& colours,
+                      const vvec& carried, sbool fewer, vvec& beauty) {
     vfloat zero(0.0F);
-    vvec sum{zero, zero, zero};
     const auto add = [&](const Gathered<Glossy>& gathered, const vvec& radiance, sint stated, sint taken) {
         sfloat number = to_float(taken);
         vvec arriving = radiance * vfloat(to_float(stated) / number);
-        sum = sum + times(coloured(gathered, colours), arriving);
+        vvec seen = times(coloured(gathered, arriving, colours), carried);
+        beauty = beauty + select(s.hit, seen, {zero, zero, zero});
     };
     sint lights = load(field(c.frame, &FrameHeader::light_count));
     pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
@@ -43,7 +47,6 @@ inline vvec lit(const Context& c, const Surface& s, const Glossy& g, const Colou
         Gathered<Glossy> gathered = gather_light<F>(c, s, TowardsSky{}, g, taken);
         add(gathered, load_broadcast_vec(field(c.frame, &FrameHeader::sky)), sky_samples, taken);
     }
-    return sum;
 }
 
 /// Added to the numbers of pixels at each bounce, so that its samples have nothing to do with those before.
@@ -96,33 +99,30 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             vvec met = meet_lights(c, r, end, bounce.density, n > 1);
             found = found + select(bounce.diffuse, black, met);
         }
-        if (branch(any(hit))) {
-            Beyond beyond;
-            Surface s = find_surface < Mapped ? look_glossy_mapped : look_glossy > (c, r, h, beyond);
-            s.hit = hit;
-            s.pixel = pixel + vint(n * std::int32_t(bounce_step));
-            s.sample = sample;
-            if constexpr (Mapped)
-                bend_normals(c, beyond, s);
-            s.shading = facing(s.shading, beyond.toward);
-            Onward onward{n < bounces, n < diffuse_bounces};
-            Colours colours;
-            Glossy g = find_lobes<Mapped>(c, s, beyond, onward, colours);
-            if (branch(n == 0))
-                note_first(s, h, colours.albedo, sums);
-            vvec reflected = lit<F>(c, s, g, colours, n > 0);
-            found = found + select(hit, colours.emission + reflected, black);
-            sums.beauty = sums.beauty + times(found, carried);
-            if (branch(n == bounces))
-                return;
-            bounce = sample_bounce(c, s, beyond, g, colours);
-            carried = select(bounce.rays.active, times(carried, bounce.carried), black);
-            if (branch(none(bounce.rays.active)))
-                return;
-        } else {
-            sums.beauty = sums.beauty + times(found, carried);
+        sums.beauty = sums.beauty + times(found, carried);
+        if (branch(none(hit)))
             return;
-        }
+        Beyond beyond;
+        Surface s = find_surface < Mapped ? look_glossy_mapped : look_glossy > (c, r, h, beyond);
+        s.hit = hit;
+        s.pixel = pixel + vint(n * std::int32_t(bounce_step));
+        s.sample = sample;
+        if constexpr (Mapped)
+            bend_normals(c, beyond, s);
+        Onward onward{n < bounces, n < diffuse_bounces};
+        Colours colours;
+        Glossy g = find_lobes<Mapped>(c, s, beyond, onward, colours);
+        if (branch(n == 0))
+            note_first(s, h, colours.albedo, sums);
+        vvec emitted = times(colours.emission, carried);
+        sums.beauty = sums.beauty + select(hit, emitted, black);
+        add_light<F>(c, s, g, colours, carried, n > 0, sums.beauty);
+        if (branch(n == bounces))
+            return;
+        bounce = sample_bounce(c, s, beyond, g, colours);
+        carried = select(bounce.rays.active, times(carried, bounce.carried), black);
+        if (branch(none(bounce.rays.active)))
+            return;
     }
 }
 

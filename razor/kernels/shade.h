@@ -125,8 +125,15 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
         store(x + stride + vertex, n.y);
         store(x + stride * 2 + vertex, n.z);
     }
-    if constexpr (Mapped)
-        copy_corner_texcoords(normals + stride * 3, quads_u, quads_v, stride, slot + slot_texcoords);
+    sint planes = 0;
+    if constexpr (Mapped) {
+        sint instance = load(field(block, &BlockHeader::instance));
+        planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
+    }
+    if constexpr (Mapped) {
+        if (branch(planes != 0))
+            copy_corner_texcoords(normals + stride * 3, quads_u, quads_v, stride, slot + slot_texcoords);
+    }
     pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
     for (int p = 0; p < blend_passes; ++p) {
         sint n = load(pass);
@@ -139,8 +146,10 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
             vfloat weight = gather(weights, s.vertex, m);
             vvec q = blend_vertex(weight, own, one, other);
             scatter_vec(x, stride, s.vertex, q, m);
-            if constexpr (Mapped)
-                blend_texcoords(normals + stride * 3, s, weight, stride, slot + slot_texcoords, m);
+            if constexpr (Mapped) {
+                if (branch(planes != 0))
+                    blend_texcoords(normals + stride * 3, s, weight, stride, slot + slot_texcoords, m);
+            }
         }
         pass = pass + pass_words;
     }

@@ -3,6 +3,7 @@
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
 #include "razor/program/arguments.h"
+#include "razor/program/explain.h"
 #include "razor/program/frame_trace.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/sequence.h"
@@ -91,6 +92,8 @@ void RenderCommand::add_to(CLI::App& app) {
                     "no machine")
         ->type_name("FILE.rzt");
     render.add_flag("--print-config", print_config_, "print the complete scene file and render nothing");
+    render.add_flag("--explain", explain_,
+                    "tell what the frame needed, what was left out, and what was never built");
     render.add_flag("--quiet", quiet_, "show no progress");
 }
 
@@ -111,7 +114,7 @@ int RenderCommand::run() const {
         throw UserError("--resume without --frames; leave it out");
     }
     const FrameRange frames = sequence ? parse_frames(frames_) : FrameRange{scene_.frame(), scene_.frame()};
-    if (!print_config_ && outputs_.empty() && statistics_.empty() && trace_.empty()) {
+    if (!print_config_ && outputs_.empty() && statistics_.empty() && trace_.empty() && !explain_) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
     }
     if (!trace_.empty() && (sequence || options.frames > 1 || eager_ || options.isa != "auto")) {
@@ -232,6 +235,9 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
         fmt::print(
             stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
             result.film.width, result.film.height, seconds, built.first_packet_seconds, built.refit_seconds);
+    }
+    if (explain_) {
+        fmt::print("{}", explain(moving.scene(), result.statistics));
     }
     if (!traced.empty() && !quiet_) {
         fmt::print("{}\n", traced);

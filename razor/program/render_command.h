@@ -31,7 +31,7 @@ private:
     std::vector<std::string> outputs_;
     std::string threads_, isa_ = "auto", share_ = "chip", memory_, repeat_ = "1", frames_, statistics_,
                           trace_;
-    bool print_config_ = false, quiet_ = false, eager_ = false, resume_ = false;
+    bool print_config_ = false, explain_ = false, quiet_ = false, eager_ = false, resume_ = false;
 };
 
 } // namespace razor

@@ -48,6 +48,11 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
     app.add_option("--light-samples", light_samples_, "shadow rays a hit to each light")->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
+    app.add_option("--bounces", bounces_, "reflections and refractions in a row that are followed")
+        ->type_name("N");
+    app.add_option("--diffuse-bounces", diffuse_bounces_,
+                   "the first so many of them also of light that goes in all directions")
+        ->type_name("N");
     app.add_option("--seed", seed_,
                    "of all samples and random rays: pictures of different seeds differ in noise alone")
         ->type_name("N");
@@ -66,6 +71,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");
     app.add_flag("--no-floor", no_floor_, "put no floor under a model file");
+    app.add_flag("--everything", everything_,
+                 "run kernels that can do all that any scene may need, to compare with: the same picture");
 }
 
 SceneDescription SceneOptions::describe() const {
@@ -96,6 +103,13 @@ SceneDescription SceneOptions::describe_moving() const {
         if (!sky_samples_.empty()) {
             settings.sky_samples = parse_whole("--sky-samples", sky_samples_, shadow_samples_range);
         }
+        if (!bounces_.empty()) {
+            settings.bounces = parse_whole("--bounces", bounces_, bounces_range);
+        }
+        if (!diffuse_bounces_.empty()) {
+            settings.diffuse_bounces = parse_whole("--diffuse-bounces", diffuse_bounces_, bounces_range);
+        }
+        settings.everything = everything_;
         if (!seed_.empty()) {
             settings.seed = parse_whole("--seed", seed_, seed_range);
         }

@@ -147,6 +147,7 @@ struct Settings {
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
     int bounces = 4;               // reflections and refractions in a row that are followed
     int diffuse_bounces = 0;       // the first so many of them also of light that goes in all directions
+    bool everything = false;       // kernels that can do all that a scene may need, whether this one does
     int seed = 0;                  // another takes other samples of the same picture
     double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
 };
