@@ -115,7 +115,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             sums.beauty = sums.beauty + times(found, carried);
             if (branch(n == bounces))
                 return;
-            bounce = sample_bounce(c, s, beyond, g, colours);
+            bounce = sample_bounce(c, s, beyond, g, colours, onward);
             carried = select(bounce.rays.active, times(carried, bounce.carried), black);
             if (branch(none(bounce.rays.active)))
                 return;
