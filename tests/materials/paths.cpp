@@ -8,6 +8,7 @@
 #include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace razor::test {
@@ -145,10 +146,11 @@ Comparison compare(Scene scene, const std::string& target, const std::vector<Blo
     return c;
 }
 
-void expect_same_picture(const Scene& scene, int samples_a_pixel) {
+/// `alike`: rendered instead, if not null.
+void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* alike = nullptr) {
     const std::vector<BlockSums> plain = plain_picture(scene, side, samples_a_pixel);
     for (const KernelTable* target : native_targets()) {
-        const Comparison c = compare(scene, target->name, plain);
+        const Comparison c = compare(alike != nullptr ? *alike : scene, target->name, plain);
         fmt::print(
             "  {}, {}: blocks differ by {:.1f} standard errors at most, means by {:+.2f} {:+.2f} {:+.2f} "
             "% (noise {:.2f} %)\n",
@@ -159,6 +161,22 @@ void expect_same_picture(const Scene& scene, int samples_a_pixel) {
             EXPECT_LT(std::abs(c.relative[k]), 0.02) << scene.name;
         EXPECT_LT(c.noise, 0.007) << "noise hides mistakes: " << scene.name;
     }
+}
+
+/// Each mesh mirrored, and drawn mirrored again.
+Scene twice_mirrored(Scene s) {
+    s.graph.groups = {{"scene", {}}};
+    for (std::size_t m = 0; m < s.meshes.size(); ++m) {
+        Mesh& mesh = s.meshes[m];
+        for (dvec3& p : mesh.points)
+            p.x = -p.x;
+        std::reverse(mesh.face_vertices.begin(), mesh.face_vertices.end());
+        std::reverse(mesh.face_sizes.begin(), mesh.face_sizes.end());
+        Transform mirror{.scale = {-1, 1, 1}};
+        s.graph.groups[0].placements.push_back(
+            {.name = mesh.name, .mesh = static_cast<int>(m), .local = mirror});
+    }
+    return s;
 }
 
 TEST(Paths, DiffuseBouncesAndEmission) {
@@ -223,6 +241,11 @@ TEST(Paths, GlassBox) {
         s.settings.bounces = bounces;
         s.settings.diffuse_bounces = 1;
         expect_same_picture(s, 160);
+        if (bounces == 6) { // outside and inside are where they were
+            s.name += ", mirrored twice";
+            const Scene mirrored = twice_mirrored(s);
+            expect_same_picture(s, 160, &mirrored);
+        }
     }
 }
 
