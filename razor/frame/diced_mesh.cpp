@@ -71,10 +71,7 @@ public:
         field_ = {vec(h.field_origin) - origin, vec(h.camera_slope), h.camera_base, h.camera_growth};
         morphs_ = h.morphs != 0 && h.level_choice == by_leaf;
         // Of what a mirror turned over, counter-clockwise is clockwise.
-        const float* m = record.linear;
-        mirrored_ =
-            record.moved != 0 && glm::dot(dvec3(m[0], m[1], m[2]),
-                                          glm::cross(dvec3(m[3], m[4], m[5]), dvec3(m[6], m[7], m[8]))) < 0;
+        mirrored_ = record.moved < 0;
         world_ = frame.origin() + frame.unit() * origin;
         out_.mesh = record.mesh;
     }

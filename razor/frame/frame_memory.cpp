@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -190,7 +191,7 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
         for (int column = 0; column < 3; ++column)
             r.linear[3 * k + column] = static_cast<float>(i.linear[column][k]);
     }
-    r.moved = i.moved() ? 1 : 0;
+    r.moved = !i.moved() ? 0 : glm::determinant(i.linear) < 0 ? -1 : 1;
     r.edge_length = static_cast<float>(i.edge_length);
     r.mesh_edge_length = static_cast<float>(i.mesh_edge_length);
     r.first_level = static_cast<std::int32_t>(std::lround(std::log2(i.edge_length)));

@@ -176,9 +176,9 @@ struct InstanceRecord {
     std::int32_t patch_count;
     std::int32_t first_record;                 // of its mesh's patches
     std::int32_t first_cluster, cluster_count; // of its mesh
-    std::int32_t moved;                        // 0: mesh coordinates are the instance's own
-    float linear[9]; // rows: of the map from mesh coordinates to the instance's own ...
-    float offset[3]; // ... and what rounding the origin left over
+    std::int32_t moved; // 0: mesh coordinates are the instance's own; -1: they come to lie mirrored
+    float linear[9];    // rows: of the map from mesh coordinates to the instance's own ...
+    float offset[3];    // ... and what rounding the origin left over
     float albedo[3];
     std::int32_t material; // where the frame has materials; -1: see FrameHeader::face_materials
     std::int32_t

@@ -145,7 +145,7 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
 }
 
 [[gnu::noinline]] inline Bounce sample_bounce(const Context& c, const Surface& s, const Beyond& b,
-                                              const Glossy& g, const Colours& colours) {
+                                              const Glossy& g, const Colours& colours, const Onward& onward) {
     phase_scope phase(phase_shade);
     vfloat zero(0.0F);
     vpoint square = sample_square(s.pixel, s.sample, dimension_lobe);
@@ -167,6 +167,7 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
     }
     Bounce out;
     out.diffuse = !(of_base | of_coat);
+    out.diffuse = out.diffuse & vmask(onward.diffuse); // matte surfaces have no other lobe to choose
     vfloat rest = vfloat(1.0F) - g.coat_share;
     rest = rest - g.base_share;
     out.diffuse = out.diffuse & (rest > vfloat(1.0e-6F));

@@ -119,7 +119,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         add_light<F>(c, s, g, colours, carried, n > 0, sums.beauty);
         if (branch(n == bounces))
             return;
-        bounce = sample_bounce(c, s, beyond, g, colours);
+        bounce = sample_bounce(c, s, beyond, g, colours, onward);
         carried = select(bounce.rays.active, times(carried, bounce.carried), black);
         if (branch(none(bounce.rays.active)))
             return;

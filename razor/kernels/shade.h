@@ -411,10 +411,10 @@ inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const
 /// What shading other than that of plain matte surfaces needs to know of a hit besides.
 struct Beyond {
     Mapping map;
-    vfloat side;      // 1, or -1 where the surface's own normal is turned over to face the viewer
-    vvec toward;      // unit, to the viewer
-    vmask inside;     // the viewer is behind the surface
-    vvec position;    // moved off the surface to the side that the viewer is not on
+    vfloat side;   // 1, or -1 where the surface's own normal, outwards, is not the one that faces the viewer
+    vvec toward;   // unit, to the viewer
+    vmask inside;  // the viewer is behind the surface
+    vvec position; // moved off the surface to the side that the viewer is not on
     vfloat curvature; // see curvature_of()
     vint material;    // its number
 };
@@ -480,7 +480,6 @@ template <Look L>
     vfloat side = select(opposed, vfloat(-1.0F), vfloat(1.0F));
     if constexpr (glossy) {
         beyond.toward = toward;
-        beyond.inside = away;
         beyond.position = madd(-error, s.geometric, p);
         beyond.position = beyond.position + origin;
         beyond.curvature = curvature_of(k, side);
@@ -488,9 +487,15 @@ template <Look L>
     if constexpr (L != look_matte) {
         constexpr int material_word = offsetof(InstanceRecord, material) / 4;
         beyond.material = gather(as<std::int32_t>(c.instances) + material_word, record, s.hit);
+        // Of what a mirror turned over, counter-clockwise is clockwise.
+        constexpr int moved_word = offsetof(InstanceRecord, moved) / 4;
+        vint moved = gather(as<std::int32_t>(c.instances) + moved_word, record, s.hit);
+        vmask turned = moved < vint(0);
+        beyond.inside = away & !turned;
+        beyond.inside = beyond.inside | (turned & !away);
+        beyond.side = select(turned, -side, side);
     }
     if constexpr (mapped) {
-        beyond.side = side;
         beyond.map = map_hit(k, h, edge1, edge2, area, s.target, dot(s.geometric, toward));
         vmask of_face = s.hit & (beyond.material < vint(0));
         if (branch(any(of_face)))

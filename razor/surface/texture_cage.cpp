@@ -17,52 +17,6 @@ namespace {
 /// Of a cage's point: the point of the mesh, and its texture coordinate there.
 using Value = std::pair<int, int>;
 
-/// What a point of the cage is on its boundary.
-struct Rim {
-    bool is_corner = false;   // of one face only
-    bool is_boundary = false; // some edge there has one face
-};
-
-Rim rim_of(const Adjacency& adjacency, int point) {
-    Rim rim;
-    const std::span<const int> corners = adjacency.corners_at_point(point);
-    rim.is_corner = corners.size() == 1;
-    for (const int corner : corners)
-        for (const int edge : {adjacency.leading_edge(corner), adjacency.trailing_edge(corner)})
-            rim.is_boundary = rim.is_boundary || adjacency.corners_at_edge(edge).size() == 1;
-    return rim;
-}
-
-/// Points that are sharp by the rule, all infinitely so.
-void sharpen_seams(const Mesh& mesh, const std::vector<Value>& values, Mesh& cage) {
-    if (mesh.face_varying == FaceVaryingInterpolation::none)
-        return;
-    const Adjacency adjacency = build_adjacency(cage);
-    const Adjacency own = build_adjacency(mesh);
-    std::vector<Rim> rims;
-    std::map<int, std::vector<int>> at_point; // of the mesh
-    for (std::size_t v = 0; v < values.size(); ++v) {
-        rims.push_back(rim_of(adjacency, static_cast<int>(v)));
-        at_point[values[v].first].push_back(static_cast<int>(v));
-    }
-    const bool three_regions = mesh.face_varying == FaceVaryingInterpolation::corners_plus1 ||
-                               mesh.face_varying == FaceVaryingInterpolation::corners_plus2;
-    const bool concave = mesh.face_varying == FaceVaryingInterpolation::corners_plus2;
-    const bool all = mesh.face_varying == FaceVaryingInterpolation::boundaries;
-    for (const auto& [point, here] : at_point) {
-        const bool some_corner = std::any_of(
-            here.begin(), here.end(), [&](int v) { return rims[static_cast<std::size_t>(v)].is_corner; });
-        const bool whole = !rim_of(own, point).is_boundary;
-        for (const int v : here) {
-            const Rim& rim = rims[static_cast<std::size_t>(v)];
-            const bool dart = whole && here.size() == 1 && rim.is_boundary;
-            if (rim.is_corner || (all && rim.is_boundary) || (three_regions && here.size() > 2) ||
-                (concave && (dart || (some_corner && here.size() == 2))))
-                cage.corners.push_back({v, infinite_sharpness});
-        }
-    }
-}
-
 /// The mesh's own tags, where the cage goes on as the mesh does.
 void copy_tags(const Mesh& mesh, const std::vector<Value>& values, Mesh& cage) {
     const Adjacency adjacency = build_adjacency(cage);
@@ -86,6 +40,94 @@ void copy_tags(const Mesh& mesh, const std::vector<Value>& values, Mesh& cage) {
         for (std::size_t v = 0; v < values.size(); ++v)
             if (const auto found = at_point.find(values[v].first); found != at_point.end())
                 cage.corners.push_back({static_cast<int>(v), found->second});
+}
+
+/// How the faces around a point hang together.
+struct Around {
+    int faces = 0;
+    int fans = 0;         // of faces that follow each other
+    bool is_open = false; // some fan does not close
+};
+
+Around around(const Adjacency& adjacency, int point) {
+    const std::span<const int> corners = adjacency.corners_at_point(point);
+    Around result{static_cast<int>(corners.size())};
+    for (std::set<int> left(corners.begin(), corners.end()); !left.empty(); ++result.fans) {
+        const int first = *left.begin();
+        int c = first;
+        do {
+            left.erase(c);
+            c = adjacency.counter_clockwise(c);
+        } while (c >= 0 && c != first);
+        if (c >= 0)
+            continue;
+        result.is_open = true;
+        for (c = adjacency.clockwise(first); c >= 0; c = adjacency.clockwise(c))
+            left.erase(c);
+    }
+    return result;
+}
+
+/// Of each point of the cage the sharpest crease that ends there.
+std::vector<float> sharpest_creases(const Mesh& cage) {
+    std::vector<float> sharpest(cage.points.size(), 0.0F);
+    for (const Crease& crease : cage.creases)
+        for (const int v : {crease.v0, crease.v1}) {
+            float& most = sharpest[static_cast<std::size_t>(v)];
+            most = std::max(most, crease.sharpness);
+        }
+    return sharpest;
+}
+
+/// Whether the rule makes a boundary's point a corner. `own`: around it in the cage, `whole`: in the mesh,
+/// where `fans` hold together in both.
+bool is_sharp(const Mesh& mesh, const Around& own, const Around& whole, int fans) {
+    if (mesh.face_varying == FaceVaryingInterpolation::none)
+        return whole.faces == 1 && mesh.boundary == BoundaryInterpolation::edge_and_corner;
+    if (own.faces == 1 || mesh.face_varying == FaceVaryingInterpolation::boundaries)
+        return true;
+    if (mesh.face_varying == FaceVaryingInterpolation::corners_only)
+        return false;
+    const int others = whole.faces - own.faces;
+    const bool is_dart = others == 0 && !whole.is_open;
+    return fans > 2 ||
+           (mesh.face_varying == FaceVaryingInterpolation::corners_plus2 && (is_dart || others == 1));
+}
+
+/// Points that are sharp by the rule; last, as it overrides the mesh's own corners.
+void sharpen_seams(const Mesh& mesh, const std::vector<Value>& values, Mesh& cage) {
+    const Adjacency adjacency = build_adjacency(cage);
+    const Adjacency own = build_adjacency(mesh);
+    std::map<int, std::vector<int>> at_point; // of the mesh
+    for (std::size_t v = 0; v < values.size(); ++v)
+        at_point[values[v].first].push_back(static_cast<int>(v));
+    const std::vector<float> sharpest = sharpest_creases(cage);
+    std::vector<float> corners(cage.points.size(), 0.0F);
+    for (const Corner& corner : cage.corners)
+        corners[static_cast<std::size_t>(corner.vertex)] = corner.sharpness;
+    const bool by_others = mesh.face_varying == FaceVaryingInterpolation::corners_plus1 ||
+                           mesh.face_varying == FaceVaryingInterpolation::corners_plus2;
+    for (const auto& [point, here] : at_point) {
+        const Around whole = around(own, point);
+        std::vector<Around> parts;
+        int fans = 0;
+        for (const int v : here) {
+            parts.push_back(around(adjacency, v));
+            fans += parts.back().fans;
+        }
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            float sharpness = 0;
+            if (whole.fans > 1 || (parts[i].is_open && is_sharp(mesh, parts[i], whole, fans))) {
+                sharpness = infinite_sharpness;
+            } else if (by_others && parts[i].is_open && sharpest[static_cast<std::size_t>(here[i])] == 0) {
+                // A crease that ends at a seam sharpens what lies on the other side of it as well.
+                for (const int v : here)
+                    sharpness = std::max(sharpness, sharpest[static_cast<std::size_t>(v)]);
+            }
+            if (sharpness > corners[static_cast<std::size_t>(here[i])])
+                cage.corners.push_back({here[i], sharpness});
+        }
+    }
 }
 
 } // namespace

@@ -1,0 +1,253 @@
+// Whole pictures of small rooms against paths that are followed one by one in double.
+#include "tests/kernels/targets.h"
+#include "tests/materials/floor.h"
+#include "tests/materials/plain_paths.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace razor::test {
+namespace {
+
+using glm::dvec3;
+
+constexpr int size = 24, side = 4, seeds = 8; // pixels of a picture and of a block
+
+Mesh of_faces(const char* name, std::vector<dvec3> points, const std::vector<std::vector<int>>& faces,
+              int material) {
+    Mesh m;
+    m.name = name;
+    m.scheme = Scheme::bilinear;
+    m.points = std::move(points);
+    for (const std::vector<int>& face : faces) {
+        m.face_sizes.push_back(static_cast<int>(face.size()));
+        m.face_vertices.insert(m.face_vertices.end(), face.begin(), face.end());
+    }
+    m.edge_length = 1;
+    m.material = material;
+    return m;
+}
+
+Mesh quad(const char* name, const dvec3& corner, const dvec3& u, const dvec3& v, int material) {
+    return of_faces(name, {corner, corner + u, corner + u + v, corner + v}, {{0, 1, 2, 3}}, material);
+}
+
+/// Turned about its upright axis.
+Mesh box(const char* name, const dvec3& low, const dvec3& edges, double degrees, int material) {
+    const double c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
+    std::vector<dvec3> points;
+    for (int k = 0; k < 8; ++k) {
+        const dvec3 p = edges * dvec3(k & 1, k >> 1 & 1, k >> 2);
+        points.push_back(low + dvec3(c * p.x + s * p.z, p.y, c * p.z - s * p.x));
+    }
+    return of_faces(name, points,
+                    {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}},
+                    material);
+}
+
+/// Of triangles, 8 around and 4 high.
+Mesh ball(const char* name, const dvec3& middle, double radius, int material) {
+    std::vector<dvec3> points{middle + dvec3(0, radius, 0)};
+    std::vector<std::vector<int>> faces;
+    for (int j = 1; j < 4; ++j)
+        for (int i = 0; i < 8; ++i) {
+            const double a = glm::radians(45.0 * j), b = glm::radians(45.0 * i);
+            points.push_back(
+                middle + radius * dvec3(std::sin(a) * std::sin(b), std::cos(a), std::sin(a) * std::cos(b)));
+        }
+    points.push_back(middle - dvec3(0, radius, 0));
+    const auto at = [](int j, int i) { return 1 + (j - 1) * 8 + i % 8; };
+    for (int i = 0; i < 8; ++i) {
+        faces.push_back({0, at(1, i), at(1, i + 1)});
+        for (int j = 1; j < 3; ++j) {
+            faces.push_back({at(j, i), at(j + 1, i), at(j + 1, i + 1)});
+            faces.push_back({at(j, i), at(j + 1, i + 1), at(j, i + 1)});
+        }
+        faces.push_back({25, at(3, i + 1), at(3, i)});
+    }
+    return of_faces(name, std::move(points), faces, material);
+}
+
+Material named(const char* name, const glm::vec3& albedo) {
+    Material m;
+    m.name = name;
+    m.albedo = albedo;
+    return m;
+}
+
+/// A floor and two walls, a light above and a sky.
+Scene room() {
+    Scene s;
+    s.name = "room";
+    s.meshes = {quad("floor", {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 0),
+                quad("back", {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, 1),
+                quad("left", {-2, 0, -2}, {0, 3, 0}, {0, 0, 4}, 2)};
+    s.materials = {named("floor", {0.7F, 0.7F, 0.6F}), named("back", {0.3F, 0.6F, 0.7F}),
+                   named("left", {0.8F, 0.3F, 0.2F})};
+    Light l;
+    l.corner = {-1, 3, -1};
+    l.edge_u = {1.6, 0, 0};
+    l.edge_v = {0, 0, 1.4};
+    l.radiance = {4, 3.5F, 3};
+    s.lights = {l};
+    s.sky = {0.3F, 0.4F, 0.5F};
+    s.camera.position = {1.6, 2, 5};
+    s.camera.target = {-0.2, 0.8, 0};
+    s.camera.fov_degrees = 38;
+    s.settings = {.width = size, .height = size, .samples = 32, .light_samples = 2, .sky_samples = 2};
+    return s;
+}
+
+struct Comparison {
+    double worst = 0;  // difference of blocks, in standard errors
+    dvec3 relative{0}; // of the whole pictures' means
+    double noise = 0;  // of the mean, relative
+};
+
+Comparison compare(Scene scene, const std::string& target, const std::vector<BlockSums>& plain) {
+    std::vector<BlockSums> ours(plain.size()); // one sample a seed
+    for (int seed = 0; seed < seeds; ++seed) {
+        scene.settings.seed = seed;
+        RenderOptions options;
+        options.threads = 1;
+        options.isa = target;
+        const Film film = render_native(scene, options).film;
+        std::vector<dvec3> sums(plain.size(), dvec3(0));
+        for (std::size_t p = 0; p < film.pixel_count(); ++p)
+            sums[p / size / side * (size / side) + p % size / side] +=
+                dvec3(film.find("R")->values[p], film.find("G")->values[p], film.find("B")->values[p]) /
+                double(side * side);
+        for (std::size_t b = 0; b < sums.size(); ++b) {
+            ours[b].sum += sums[b];
+            ours[b].squares += sums[b] * sums[b];
+            ++ours[b].samples;
+        }
+    }
+    Comparison c;
+    dvec3 all(0), all_plain(0), variance(0);
+    for (std::size_t b = 0; b < plain.size(); ++b) {
+        // Few seeds may agree by chance: never less than 0.1 %.
+        const dvec3 floor = 1e-3 * plain[b].mean();
+        const dvec3 square = plain[b].variance() + ours[b].variance() + floor * floor;
+        for (int k = 0; k < 3; ++k)
+            c.worst = std::max(c.worst, std::abs(ours[b].mean()[k] - plain[b].mean()[k]) /
+                                            std::sqrt(std::max(square[k], 1e-12)));
+        all += ours[b].mean();
+        all_plain += plain[b].mean();
+        variance += square;
+    }
+    c.relative = all / all_plain - dvec3(1);
+    c.noise = std::sqrt(variance.y) / all_plain.y;
+    return c;
+}
+
+/// `alike`: rendered instead, if not null.
+void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* alike = nullptr) {
+    const std::vector<BlockSums> plain = plain_picture(scene, side, samples_a_pixel);
+    for (const KernelTable* target : native_targets()) {
+        const Comparison c = compare(alike != nullptr ? *alike : scene, target->name, plain);
+        fmt::print(
+            "  {}, {}: blocks differ by {:.1f} standard errors at most, means by {:+.2f} {:+.2f} {:+.2f} "
+            "% (noise {:.2f} %)\n",
+            scene.name, target->name, c.worst, 100 * c.relative.x, 100 * c.relative.y, 100 * c.relative.z,
+            100 * c.noise);
+        EXPECT_LT(c.worst, 4) << scene.name;
+        for (int k = 0; k < 3; ++k)
+            EXPECT_LT(std::abs(c.relative[k]), 0.02) << scene.name;
+        EXPECT_LT(c.noise, 0.007) << "noise hides mistakes: " << scene.name;
+    }
+}
+
+/// Each mesh mirrored, and drawn mirrored again.
+Scene twice_mirrored(Scene s) {
+    s.graph.groups = {{"scene", {}}};
+    for (std::size_t m = 0; m < s.meshes.size(); ++m) {
+        Mesh& mesh = s.meshes[m];
+        for (dvec3& p : mesh.points)
+            p.x = -p.x;
+        std::reverse(mesh.face_vertices.begin(), mesh.face_vertices.end());
+        std::reverse(mesh.face_sizes.begin(), mesh.face_sizes.end());
+        Transform mirror{.scale = {-1, 1, 1}};
+        s.graph.groups[0].placements.push_back(
+            {.name = mesh.name, .mesh = static_cast<int>(m), .local = mirror});
+    }
+    return s;
+}
+
+TEST(Paths, DiffuseBouncesAndEmission) {
+    for (const int diffuse_bounces : {0, 1, 2}) {
+        Scene s = room();
+        s.name = fmt::format("box and lamp, {} diffuse bounces", diffuse_bounces);
+        s.meshes.push_back(box("box", {-1.1, 0, -0.6}, {1, 1.2, 0.9}, 25, 0));
+        s.meshes.push_back(quad("lamp", {0.6, 0.2, -1.4}, {0.9, 0, 0.1}, {0, 0.8, 0.1}, 3));
+        s.materials.push_back(named("lamp", {0.2F, 0.2F, 0.2F}));
+        s.materials.back().emission = {2, 1, 0.5F};
+        s.settings.diffuse_bounces = diffuse_bounces;
+        expect_same_picture(s, 160);
+    }
+}
+
+TEST(Paths, MirrorAndRoughMetal) {
+    for (const float roughness : {0.35F, 0.7F}) {
+        Scene s = room();
+        s.name = fmt::format("mirror and metal of roughness {}", roughness);
+        s.meshes[1].material = 3;
+        s.meshes.push_back(ball("ball", {-0.4, 0.8, 0}, 0.8, 4));
+        s.materials.push_back(named("mirror", {0.9F, 0.9F, 0.8F}));
+        s.materials.back().metallic = 1;
+        s.materials.back().roughness = 0;
+        s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
+        s.materials.back().metallic = 1;
+        s.materials.back().roughness = roughness;
+        s.settings.diffuse_bounces = 1;
+        expect_same_picture(s, 160);
+    }
+}
+
+TEST(Paths, PlasticAndCoats) {
+    for (const bool rough_coat : {false, true}) {
+        Scene s = room();
+        s.name = rough_coat ? "plastic under a rough coat" : "plastic, smooth coat";
+        s.materials[0].specular = 1;
+        s.materials[0].roughness = 0.4F;
+        s.meshes.push_back(box("box", {-0.9, 0, -0.6}, {1, 1.2, 0.9}, 25, 3));
+        s.materials.push_back(named("coated", {0.2F, 0.5F, 0.2F}));
+        Material& m = s.materials.back();
+        m.coat = 1;
+        m.coat_roughness = rough_coat ? 0.3F : 0;
+        m.specular = rough_coat ? 1 : 0;
+        m.roughness = 0.6F;
+        s.settings.diffuse_bounces = 2;
+        expect_same_picture(s, 160);
+    }
+}
+
+TEST(Paths, GlassBox) {
+    for (const int bounces : {3, 6}) {
+        Scene s = room();
+        s.name = fmt::format("glass, {} bounces", bounces);
+        s.meshes.push_back(box("glass", {-0.9, 0.1, -0.2}, {1.2, 1.3, 0.8}, 30, 3));
+        s.materials.push_back(named("glass", {0.9F, 1, 0.9F}));
+        Material& m = s.materials.back();
+        m.specular = 1;
+        m.roughness = 0;
+        m.transmission = 1;
+        m.ior = 1.4F;
+        s.settings.bounces = bounces;
+        s.settings.diffuse_bounces = 1;
+        expect_same_picture(s, 160);
+        if (bounces == 6) { // outside and inside are where they were
+            s.name += ", mirrored twice";
+            const Scene mirrored = twice_mirrored(s);
+            expect_same_picture(s, 160, &mirrored);
+        }
+    }
+}
+
+} // namespace
+} // namespace razor::test

@@ -1,0 +1,285 @@
+#include "tests/materials/plain_paths.h"
+
+#include "tests/materials/plain_surface.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace razor::test {
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+constexpr double smooth = 1e-3; // widths below are of mirrors
+
+struct Facet {
+    dvec3 a, e1, e2, normal;
+    const Material* material;
+};
+
+/// The normal and two directions across it.
+struct Frame3 {
+    dvec3 x, y, z;
+    explicit Frame3(const dvec3& normal) : z(normal) {
+        x = glm::normalize(glm::cross(std::abs(z.x) > 0.5 ? dvec3(0, 1, 0) : dvec3(1, 0, 0), z));
+        y = glm::cross(z, x);
+    }
+    dvec3 in(const dvec3& w) const { return {glm::dot(x, w), glm::dot(y, w), glm::dot(z, w)}; }
+    dvec3 out(const dvec3& l) const { return l.x * x + l.y * y + l.z * z; }
+};
+
+double width(float roughness) {
+    return double{roughness} * roughness;
+}
+
+double largest(const dvec3& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+class Tracer {
+public:
+    explicit Tracer(const Scene& scene) : scene_(scene) {
+        for (const Mesh& mesh : scene.meshes) {
+            std::size_t first = 0;
+            for (const int size : mesh.face_sizes) {
+                const auto corner = [&](int k) {
+                    return mesh.points[static_cast<std::size_t>(
+                        mesh.face_vertices[first + static_cast<std::size_t>(k)])];
+                };
+                for (int k = 1; k + 1 < size; ++k) {
+                    Facet f{corner(0), corner(k) - corner(0), corner(k + 1) - corner(0), {}, nullptr};
+                    f.normal = glm::normalize(glm::cross(f.e1, f.e2));
+                    f.material = &scene.materials[static_cast<std::size_t>(mesh.material)];
+                    facets_.push_back(f);
+                }
+                first += static_cast<std::size_t>(size);
+            }
+        }
+    }
+
+    double next() { return static_cast<double>(random_()) / 4294967296.0; }
+
+    /// `n`: bounces before. `diffuse`: the last one went in all directions.
+    dvec3 radiance(const dvec3& o, const dvec3& d, int n, bool diffuse) {
+        double t = std::numeric_limits<double>::infinity();
+        const Facet* facet = nullptr;
+        for (const Facet& f : facets_)
+            if (const double at = meet(f, o, d); at < t) {
+                t = at;
+                facet = &f;
+            }
+        dvec3 sum(0);
+        if (n > 0 && !diffuse)
+            for (const Light& light : scene_.lights)
+                sum += met_light(light, o, d, t);
+        if (facet == nullptr)
+            return diffuse ? sum : sum + dvec3(scene_.sky);
+        return sum + dvec3(facet->material->emission) + reflected(*facet, o + t * d, -d, n);
+    }
+
+private:
+    static double meet(const Facet& f, const dvec3& o, const dvec3& d) {
+        constexpr double miss = std::numeric_limits<double>::infinity();
+        const dvec3 p = glm::cross(d, f.e2), s = o - f.a, q = glm::cross(s, f.e1);
+        const double det = glm::dot(f.e1, p);
+        if (det == 0)
+            return miss;
+        const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, t = glm::dot(f.e2, q) / det;
+        return u >= 0 && v >= 0 && u + v <= 1 && t > 1e-7 ? t : miss;
+    }
+    bool open(const dvec3& o, const dvec3& d, double end) const {
+        return std::none_of(facets_.begin(), facets_.end(),
+                            [&](const Facet& f) { return meet(f, o, d) < end * (1 - 1e-9); });
+    }
+    static dvec3 met_light(const Light& l, const dvec3& o, const dvec3& d, double end) {
+        const dvec3 n = glm::cross(l.edge_u, l.edge_v);
+        const double facing = -glm::dot(n, d);
+        if (facing <= 0)
+            return dvec3(0);
+        const double t = glm::dot(n, o - l.corner) / facing;
+        const dvec3 p = o + t * d - l.corner;
+        const double u = glm::dot(glm::cross(p, l.edge_v), n) / glm::dot(n, n);
+        const double v = glm::dot(glm::cross(l.edge_u, p), n) / glm::dot(n, n);
+        const bool within = t > 0 && t < end && u >= 0 && u <= 1 && v >= 0 && v <= 1;
+        return within ? dvec3(l.radiance) : dvec3(0);
+    }
+
+    /// Into the hemisphere, by its cosine.
+    dvec3 cosine_direction() {
+        const double r = std::sqrt(next()), phi = 2 * pi * next();
+        return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(1 - r * r, 0.0))};
+    }
+
+    /// Light of lights and, in all directions, of the sky. `glossy`: what rough lobes reflect of lights too.
+    dvec3 direct(const Frame3& frame, const PlainSurface& all, const PlainSurface& rough, const dvec3& p,
+                 const dvec3& v, bool glossy) {
+        const auto reflectance = [&](const dvec3& l) {
+            return glossy ? all.reflectance(v, l) : all.reflectance(v, l) - rough.reflectance(v, l);
+        };
+        dvec3 sum(0);
+        for (const Light& light : scene_.lights) {
+            const dvec3 n = glm::cross(light.edge_u, light.edge_v);
+            const double s = next(), t = next();
+            const dvec3 way = light.corner + s * light.edge_u + t * light.edge_v - p;
+            const double away = glm::length(way);
+            const dvec3 d = way / away, l = frame.in(d);
+            const double facing = -glm::dot(n, d);
+            if (l.z > 0 && facing > 0 && open(p, d, away))
+                sum += reflectance(l) * dvec3(light.radiance) * (l.z * facing / (away * away));
+        }
+        if (largest(dvec3(scene_.sky)) > 0) {
+            const dvec3 l = cosine_direction();
+            if (l.z > 0 && open(p, frame.out(l), std::numeric_limits<double>::infinity()))
+                sum += (all.reflectance(v, l) - rough.reflectance(v, l)) * dvec3(scene_.sky) * pi;
+        }
+        return sum;
+    }
+
+    /// Density of directions l that rough lobes of that width send v to, by normals of density D cos.
+    static double density(const dvec3& v, const dvec3& l, double alpha) {
+        const dvec3 h = glm::normalize(v + l);
+        const double t = h.z * h.z * (alpha * alpha - 1) + 1;
+        return alpha * alpha / (pi * t * t) * h.z / (4 * glm::dot(v, h));
+    }
+    dvec3 about_normal(const dvec3& v, double alpha) {
+        const double x = next(), phi = 2 * pi * next();
+        const double tan = alpha * std::sqrt(x / (1 - x)), z = 1 / std::sqrt(1 + tan * tan);
+        const dvec3 h(tan * z * std::cos(phi), tan * z * std::sin(phi), z);
+        return 2 * glm::dot(v, h) * h - v;
+    }
+
+    struct Branch {
+        double weight = 0; // by which it is chosen
+        dvec3 direction{0, 0, 1}, factor{0};
+        bool diffuse = false;
+    };
+
+    /// What a smooth base reflects and lets through.
+    static void add_smooth_base(const Material& m, const PlainSurface& plain, const dvec3& v, double beneath,
+                                bool inside, std::vector<Branch>& branches) {
+        const double through = m.transmission * (1.0 - m.metallic), ior = m.ior;
+        const double eta = inside ? ior : 1 / ior, sine_square = eta * eta * (1 - v.z * v.z);
+        const double cosine = std::sqrt(std::max(1 - sine_square, 0.0)); // beyond
+        dvec3 reflected = plain.base_fresnel(v.z);
+        double lost = reflected.x; // of a dielectric
+        if (through > 0 && inside) {
+            const double f0 = std::pow((ior - 1) / (ior + 1), 2);
+            lost = m.specular * (f0 + (1 - f0) * PlainSurface::schlick(cosine));
+            reflected = dvec3(lost);
+        }
+        branches.push_back({0, {-v.x, -v.y, v.z}, beneath * reflected});
+        if (through > 0 && sine_square < 1)
+            branches.push_back({0,
+                                {-eta * v.x, -eta * v.y, -cosine},
+                                beneath * through * (1 - lost) * eta * eta * dvec3(m.albedo)});
+    }
+
+    dvec3 reflected(const Facet& facet, const dvec3& p, const dvec3& toward, int n) {
+        const Material& m = *facet.material;
+        const bool inside = glm::dot(facet.normal, toward) < 0;
+        const Frame3 frame(inside ? -facet.normal : facet.normal);
+        const dvec3 v = frame.in(toward);
+        Material without = m; // diffuse reflection
+        if (m.metallic == 0)
+            without.albedo = {0, 0, 0};
+        const PlainSurface all(m), rough(without);
+        const bool last = n == scene_.settings.bounces;
+        const dvec3 sum = direct(frame, all, rough, p, v, last);
+        if (last)
+            return sum;
+        const double alpha = width(m.roughness), coat_alpha = width(m.coat_roughness);
+        const double beneath = 1 - all.coat_fresnel(v.z);
+        std::vector<Branch> branches;
+        const bool shiny = m.metallic > 0 || m.specular > 0 || m.transmission > 0;
+        if (shiny && alpha < smooth)
+            add_smooth_base(m, all, v, beneath, inside, branches);
+        if (m.coat > 0 && coat_alpha < smooth)
+            branches.push_back({0, {-v.x, -v.y, v.z}, dvec3(all.coat_fresnel(v.z))});
+        std::vector<double> widths;
+        if (shiny && alpha >= smooth)
+            widths.push_back(alpha);
+        if (m.coat > 0 && coat_alpha >= smooth)
+            widths.push_back(coat_alpha);
+        if (!widths.empty()) {
+            Branch b;
+            b.direction =
+                about_normal(v, widths[std::min(static_cast<std::size_t>(next() * double(widths.size())),
+                                                widths.size() - 1)]);
+            if (b.direction.z > 0) {
+                double sum_of = 0;
+                for (const double w : widths)
+                    sum_of += density(v, b.direction, w) / double(widths.size());
+                b.factor = rough.reflectance(v, b.direction) * (b.direction.z / sum_of);
+            }
+            // Not by this one direction: the choice must not depend on it.
+            b.weight = largest(all.base_fresnel(v.z)) + all.coat_fresnel(v.z) + 0.1;
+            branches.push_back(b);
+        }
+        const double scattered = (1.0 - m.metallic) * (1.0 - m.transmission);
+        if (n < scene_.settings.diffuse_bounces && scattered > 0) {
+            Branch b;
+            b.direction = cosine_direction();
+            b.factor = (all.reflectance(v, b.direction) - rough.reflectance(v, b.direction)) * pi;
+            b.weight = scattered * largest(dvec3(m.albedo));
+            b.diffuse = true;
+            branches.push_back(b);
+        }
+        double weights = 0;
+        for (Branch& b : branches) {
+            if (b.weight == 0)
+                b.weight = largest(b.factor);
+            weights += b.weight;
+        }
+        double choice = next() * weights;
+        for (const Branch& b : branches) {
+            choice -= b.weight;
+            if (choice >= 0)
+                continue;
+            if (largest(b.factor) <= 0)
+                return sum;
+            const dvec3 d = glm::normalize(frame.out(b.direction));
+            return sum + b.factor * (weights / b.weight) * radiance(p, d, n + 1, b.diffuse);
+        }
+        return sum;
+    }
+
+    const Scene& scene_;
+    std::vector<Facet> facets_;
+    std::mt19937 random_{4711};
+};
+
+} // namespace
+
+std::vector<BlockSums> plain_picture(const Scene& scene, int side, int samples_a_pixel) {
+    Tracer tracer(scene);
+    const Camera& camera = scene.camera;
+    const Settings& s = scene.settings;
+    const dvec3 forward = glm::normalize(camera.target - camera.position);
+    const dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+    const double high = std::tan(glm::radians(camera.fov_degrees) / 2), wide = high * s.width / s.height;
+    std::vector<BlockSums> blocks(static_cast<std::size_t>((s.width / side) * (s.height / side)));
+    for (int row = 0; row < s.height; ++row)
+        for (int column = 0; column < s.width; ++column) {
+            BlockSums& b = blocks[static_cast<std::size_t>(row / side * (s.width / side) + column / side)];
+            for (int k = 0; k < samples_a_pixel; ++k, ++b.samples) {
+                const double x = (column + tracer.next()) / s.width * 2 - 1;
+                const double y = 1 - (row + tracer.next()) / s.height * 2;
+                const dvec3 d = glm::normalize(forward + x * wide * right + y * high * up);
+                const dvec3 seen = tracer.radiance(camera.position, d, 0, false);
+                b.sum += seen;
+                b.squares += seen * seen;
+            }
+        }
+    return blocks;
+}
+
+} // namespace razor::test
