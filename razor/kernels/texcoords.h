@@ -95,6 +95,12 @@ inline void weigh_texcoords(const Context& c, const Cage& g, const Dicing& d, co
     }
 }
 
+/// `rest`: 1 - t.
+inline vfloat between(const sfloat& a, const sfloat& b, const vfloat& t, const vfloat& rest) {
+    vfloat part = vfloat(a) * rest;
+    return fma(t, vfloat(b), part);
+}
+
 inline void interpolate_texcoords(const Cage& g, const Dicing& d, const Block& b, const TextureFace& face,
                                   pointer<float> out) {
     spoint corner[4];
@@ -117,13 +123,13 @@ inline void interpolate_texcoords(const Cage& g, const Dicing& d, const Block& b
         t = t * vfloat(step_v);
         vfloat s0 = vfloat(1.0F) - s;
         vfloat t0 = vfloat(1.0F) - t;
-        vfloat low = fma(s, vfloat(corner[1].u), vfloat(corner[0].u) * s0);
-        vfloat high = fma(s, vfloat(corner[2].u), vfloat(corner[3].u) * s0);
+        vfloat low = between(corner[0].u, corner[1].u, s, s0);
+        vfloat high = between(corner[3].u, corner[2].u, s, s0);
         low = low * t0;
         vfloat value = fma(t, high, low);
         store_vector(out + from, value, m);
-        low = fma(s, vfloat(corner[1].v), vfloat(corner[0].v) * s0);
-        high = fma(s, vfloat(corner[2].v), vfloat(corner[3].v) * s0);
+        low = between(corner[0].v, corner[1].v, s, s0);
+        high = between(corner[3].v, corner[2].v, s, s0);
         low = low * t0;
         pointer<float> second = out + b.stride;
         value = fma(t, high, low);

@@ -119,7 +119,8 @@ inline vvec bilinear(const Sampled& t, const vint& level, const vmask& m) {
     vfloat weight = level - finer;
     if (branch(none(m & (weight > vfloat(0.0F)))))
         return fine;
-    vint next = min(at + vint(1), vint(levels - 1));
+    vint next = at + vint(1);
+    next = min(next, vint(levels - 1));
     vvec coarse = bilinear(t, next, m);
     return madd(weight, coarse - fine, fine);
 }
