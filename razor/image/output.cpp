@@ -35,9 +35,10 @@ bool is_png(const std::filesystem::path& path) {
     return extension_of(path) == ".png";
 }
 
-void write_image(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes) {
+void write_image(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes,
+                 const Tone& tone) {
     if (is_png(path)) {
-        write_png(path, film, attributes);
+        write_png(path, film, attributes, tone);
     } else {
         write_exr(path, film, attributes);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/image/image.h"
+#include "razor/image/tone.h"
 
 #include <filesystem>
 
@@ -15,6 +16,8 @@ void check_output(const std::filesystem::path& path);
 bool is_png(const std::filesystem::path& path);
 
 /// Writes the picture in the format of the extension; the file is whole or not there.
-void write_image(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes);
+/// `tone` is of pictures for looking at alone.
+void write_image(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes,
+                 const Tone& tone = {});
 
 } // namespace razor

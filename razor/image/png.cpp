@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <array>
 #include <cmath>
 #include <csetjmp>
 #include <memory>
@@ -74,15 +75,19 @@ std::uint8_t to_srgb8(float linear) {
 }
 
 void write_png(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes,
-               float exposure) {
+               const Tone& tone) {
     OutputFile file(path); // refuses first what cannot be written
     const std::size_t width = static_cast<std::size_t>(film.width);
     std::vector<std::uint8_t> pixels(3 * film.pixel_count());
-    constexpr const char* names[] = {"R", "G", "B"};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const Plane* const plane = film.find(names[c]);
-        for (std::size_t i = 0; plane != nullptr && i < plane->values.size(); ++i) {
-            pixels[3 * i + c] = to_srgb8(exposure * plane->values[i]);
+    const std::array<const Plane*, 3> planes{film.find("R"), film.find("G"), film.find("B")};
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        glm::vec3 light(0);
+        for (std::size_t c = 0; c < 3; ++c) {
+            light[static_cast<int>(c)] = planes[c] != nullptr ? planes[c]->values[i] : 0.0F;
+        }
+        const glm::vec3 colour = display_colour(light, tone);
+        for (std::size_t c = 0; c < 3; ++c) {
+            pixels[3 * i + c] = to_srgb8(colour[static_cast<int>(c)]);
         }
     }
     std::vector<png_bytep> rows;

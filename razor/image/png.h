@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/image/image.h"
+#include "razor/image/tone.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -12,9 +13,9 @@ namespace razor {
 /// gives 0.
 std::uint8_t to_srgb8(float linear);
 
-/// Writes planes R, G, B times `exposure`; attributes become compressed text chunks. The file is whole or not
-/// there. Throws UserError where it cannot be written.
+/// Writes planes R, G, B as `tone` shows them; attributes become compressed text chunks. The file is whole or
+/// not there. Throws UserError where it cannot be written.
 void write_png(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes = {},
-               float exposure = 1.0F);
+               const Tone& tone = {});
 
 } // namespace razor

@@ -408,6 +408,18 @@ inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const
     return map;
 }
 
+/// What a texture is filtered for: what the ray asked for; where one level serves all, what a ray of the
+/// camera asks for as far away.
+inline vfloat filtered_target(const Context& c, const vfloat& target, const vvec& way) {
+    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
+    if (branch(fixed > 0.0F)) {
+        vfloat base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
+        vfloat growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
+        return fma(growth, sqrt(dot(way, way)), abs(base));
+    }
+    return target;
+}
+
 /// What shading other than that of plain matte surfaces needs to know of a hit besides.
 struct Beyond {
     Mapping map;
@@ -496,7 +508,8 @@ template <Look L>
         beyond.side = select(turned, -side, side);
     }
     if constexpr (mapped) {
-        beyond.map = map_hit(k, h, edge1, edge2, area, s.target, dot(s.geometric, toward));
+        vfloat target = filtered_target(c, s.target, way);
+        beyond.map = map_hit(k, h, edge1, edge2, area, target, dot(s.geometric, toward));
         vmask of_face = s.hit & (beyond.material < vint(0));
         if (branch(any(of_face)))
             beyond.material = select(of_face, face_material(c, h, record, of_face), beyond.material);

@@ -84,6 +84,12 @@ void RenderCommand::add_to(CLI::App& app) {
                     "render the frame N times and tell the time of each; all but the first find the topology "
                     "analysed, as in an animation")
         ->type_name("N");
+    render.add_option("--exposure", exposure_, "of PNG files, in stops; without it, 0")->type_name("X");
+    render
+        .add_option("--tone", tone_,
+                    "how PNG files show light: srgb (as it is, cut off at 1; the default) or aces (as film "
+                    "does)")
+        ->type_name("NAME");
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
     render
@@ -121,6 +127,7 @@ int RenderCommand::run() const {
         throw UserError("--trace is of one frame, rendered once, by kernels of its own; leave out --frames, "
                         "--repeat, --eager and --isa");
     }
+    tone(); // a wrong one is found before any file is read
     options.cancel = &watch_interrupts();
     if (print_config_) {
         fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
@@ -167,6 +174,15 @@ int RenderCommand::run() const {
     return 0;
 }
 
+Tone RenderCommand::tone() const {
+    constexpr std::array<std::string_view, 2> curves{"srgb", "aces"};
+    Tone tone;
+    tone.curve = parse_choice("--tone", tone_, curves) == 0 ? ToneCurve::srgb : ToneCurve::aces;
+    if (!exposure_.empty())
+        tone.exposure = static_cast<float>(parse_number("--exposure", exposure_, exposure_range));
+    return tone;
+}
+
 bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
                            const RenderOptions& options, const Progress& progress) const {
     const auto start = std::chrono::steady_clock::now();
@@ -203,7 +219,7 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
                                      {"razor.scene", config},
                                      {"razor.isa", result.statistics.isa}};
     for (const std::string& output : outputs_) {
-        write_image(numbered(output, frame), result.film, attributes);
+        write_image(numbered(output, frame), result.film, attributes, tone());
     }
     if (!statistics_.empty()) {
         const nlohmann::ordered_json report{{"program", "razor"},

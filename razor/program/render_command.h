@@ -27,10 +27,13 @@ private:
     bool render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
                 const RenderOptions& options, const Progress& progress) const;
 
+    /// Of PNG files. Throws UserError.
+    Tone tone() const;
+
     SceneOptions scene_;
     std::vector<std::string> outputs_;
     std::string threads_, isa_ = "auto", share_ = "chip", memory_, repeat_ = "1", frames_, statistics_,
-                          trace_;
+                          trace_, exposure_, tone_ = "srgb";
     bool print_config_ = false, explain_ = false, quiet_ = false, eager_ = false, resume_ = false;
 };
 

@@ -105,7 +105,8 @@ TEST(Png, EncodesSrgb) {
 TEST(Png, RoundTrip) {
     const TemporaryFolder folder;
     const Film film = noise(19, 7);
-    write_png(folder / "a.png", film, {{"razor.config", std::string(5000, 'x') + "\xc3\xa9"}}, 0.5F);
+    write_png(folder / "a.png", film, {{"razor.config", std::string(5000, 'x') + "\xc3\xa9"}},
+              {.exposure = -1, .curve = ToneCurve::srgb});
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     ASSERT_NE(png_image_begin_read_from_file(&image, (folder / "a.png").c_str()), 0);
@@ -174,6 +175,36 @@ TEST(Output, WritesThroughLinks) {
     write_text_file(folder / "link.txt", "newer");
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
     EXPECT_EQ(std::filesystem::file_size(folder / "real.txt"), 5U);
+}
+
+TEST(Tone, FilmCurveKeepsGreysGreyAndNeverFalls) {
+    const Tone aces{.exposure = 0, .curve = ToneCurve::aces};
+    float before = -1;
+    for (float light = 0; light < 1e6F; light = light * 1.1F + 0.001F) {
+        const glm::vec3 colour = display_colour(glm::vec3(light), aces);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_GE(colour[c], 0);
+            EXPECT_LE(colour[c], 1);
+            EXPECT_NEAR(colour[c], colour[1], 2e-4F) << light;
+        }
+        EXPECT_GE(colour.y, before);
+        before = colour.y;
+    }
+    EXPECT_EQ(before, 1);
+    EXPECT_NEAR(display_colour(glm::vec3(0.18F), aces).y, 0.1056F, 0.002F); // of the fit, by hand
+    EXPECT_LT(display_colour(glm::vec3(0), aces).y, 1e-4F);
+    // What is bright and coloured turns white, not into another colour cut off.
+    const glm::vec3 red = display_colour({50, 1, 0.5F}, aces);
+    EXPECT_GT(red.y, 0.5F);
+    EXPECT_EQ(red.x, 1);
+}
+
+TEST(Tone, ExposureIsInStops) {
+    EXPECT_EQ(display_colour({0.1F, 0.2F, 0.3F}, {.exposure = 2, .curve = ToneCurve::srgb}),
+              glm::vec3(0.4F, 0.8F, 1.2F));
+    const glm::vec3 a = display_colour(glm::vec3(0.5F), {.exposure = -3, .curve = ToneCurve::aces});
+    const glm::vec3 b = display_colour(glm::vec3(0.0625F), {.exposure = 0, .curve = ToneCurve::aces});
+    EXPECT_EQ(a, b);
 }
 
 } // namespace
