@@ -69,14 +69,14 @@ TEST(Statistics, AreWrittenByKind) {
     const RenderStatistics s = statistics(named_scene("torus_bilinear")->scene, 3, 5);
     const nlohmann::ordered_json json = s;
     const auto& kinds = json.at("counters_by_kind");
-    ASSERT_EQ(kinds.size(), 4U);
+    ASSERT_EQ(kinds.size(), 5U);
     for (const auto& [name, total] : json.at("counters").items()) {
         std::int64_t sum = 0;
         for (const auto& kind : kinds)
             sum += kind.at(name).get<std::int64_t>();
         EXPECT_EQ(total, sum) << name;
     }
-    EXPECT_EQ(json.at("utilisation").size(), 3U);
+    EXPECT_EQ(json.at("utilisation").size(), 4U);
     for (const std::string kind : {"camera", "light", "sky"}) {
         const auto rays = kinds.at(kind).at("rays").get<double>();
         const auto packets = kinds.at(kind).at("packets").get<double>();
