@@ -415,7 +415,8 @@ inline vfloat filtered_target(const Context& c, const vfloat& target, const vvec
     if (branch(fixed > 0.0F)) {
         vfloat base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
         vfloat growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
-        return fma(growth, sqrt(dot(way, way)), abs(base));
+        vfloat distance = sqrt(dot(way, way));
+        return fma(growth, distance, abs(base));
     }
     return target;
 }

@@ -239,6 +239,8 @@ TEST(Textures, AreTrilinearByWhatRaysAskFor) {
         }
         const Layout layout = random_layout(places.random);
         Scene scene = scene_with(laid_out(square(1, Scheme::bilinear), layout), texture, map);
+        if (n % 4 == 1) // one level of geometry, yet textures are filtered
+            scene.settings.lod = Lod::fixed;
         const dvec3 target = places.on(0.9), toward = places.above(86);
         const double distance = 3 + 2 * places.next();
         const double footprint = 2 * std::tan(glm::radians(pixel_degrees / 2));
