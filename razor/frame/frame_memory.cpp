@@ -128,6 +128,7 @@ void Frame::Impl::place_scene(const Scene& scene) {
 
 void Frame::Impl::place_materials(const Scene& scene) {
     plan.look = materials.look;
+    header->cutouts = materials.cutouts ? 1 : 0;
     header->slot_floats = slot_floats(meshes.size() > scene_meshes);
     if (plan.look == look_matte)
         return;
@@ -145,9 +146,9 @@ void Frame::Impl::place_materials(const Scene& scene) {
     if (materials.texels > 0) {
         auto* texel = region<std::int32_t>("textures", -1, materials.texels);
         header->texels.set(texel);
-        for (const TextureLevel* level : materials.levels) {
-            std::memcpy(texel, level->texels.data(), level->texels.size() * sizeof(std::int32_t));
-            texel += level->texels.size();
+        for (const std::vector<std::uint32_t>* words : materials.words) {
+            std::memcpy(texel, words->data(), words->size() * sizeof(std::int32_t));
+            texel += words->size();
         }
     }
     const auto by_face = [](const Instance& i) { return i.material < 0; };

@@ -198,7 +198,8 @@ struct alignas(line_bytes) MaterialRecord {
     float emission[3];
     float normal_scale;
     std::int32_t map[5]; // of each MaterialMap: a MapRecord, or -1
-    std::int32_t padding[12];
+    float alpha_cutoff;  // 0: nothing is cut out
+    std::int32_t padding[11];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
@@ -224,8 +225,9 @@ enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
 /// Where the texels of each level lie, as razor/scene/texture.h says, counted from FrameHeader::texels.
 struct alignas(line_bytes) TextureRecord {
     std::int32_t levels, wrap_u, wrap_v;
-    float size; // sqrt(width * height) of the finest level
-    std::int32_t padding[12];
+    float size;           // sqrt(width * height) of the finest level
+    std::int32_t opacity; // words from each level's texels to its opacity; 0: all is opaque
+    std::int32_t padding[11];
     std::int32_t first[16], width[16], height[16];
 };
 static_assert(sizeof(TextureRecord) == 4 * line_bytes);
@@ -578,7 +580,8 @@ struct FrameHeader {
     isa::ref<TextureRecord> textures;
     isa::ref<std::int32_t> texels;         // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
-    std::int32_t slot_floats;              // of a blended block: see razor/frame/scratch.h
+    std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
+    std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

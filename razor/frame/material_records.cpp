@@ -66,6 +66,11 @@ public:
                 t.maps.push_back(map_record(*maps[k], texture(maps[k]->texture)));
                 any = true;
             }
+        if (r.map[map_albedo] >= 0 && m.alpha_cutoff > 0) {
+            const std::int32_t number = t.maps[static_cast<std::size_t>(r.map[map_albedo])].texture;
+            add_opacity(m.albedo_map.texture, t.textures[static_cast<std::size_t>(number)]);
+            r.alpha_cutoff = m.alpha_cutoff;
+        }
         t.mapped.push_back(any);
         t.materials.push_back(r);
     }
@@ -89,15 +94,30 @@ private:
             r.width[l] = levels[l].width;
             r.height[l] = levels[l].height;
             r.first[l] = static_cast<std::int32_t>(t.texels);
-            t.texels += levels[l].texels.size();
-            t.levels.push_back(&levels[l]);
-            if (t.texels > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-                throw UserError(fmt::format(
-                    "{}: the textures have more than 2^31 texels together; make some of them smaller",
-                    scene_.name));
+            add_words(levels[l].texels);
         }
         t.textures.push_back(r);
         return number;
+    }
+
+    void add_words(const std::vector<std::uint32_t>& words) {
+        t.texels += words.size();
+        t.words.push_back(&words);
+        if (t.texels > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+            throw UserError(
+                fmt::format("{}: the textures have more than 2^31 texels together; make some of them smaller",
+                            scene_.name));
+    }
+    /// Behind everything: levels follow each other as their texels do, so one distance serves them all.
+    void add_opacity(int texture, TextureRecord& r) {
+        const std::vector<TextureLevel>& levels =
+            scene_.textures[static_cast<std::size_t>(texture)].pyramid->levels;
+        if (r.opacity != 0 || levels[0].opacity.empty())
+            return;
+        t.cutouts = true;
+        r.opacity = static_cast<std::int32_t>(t.texels) - r.first[0];
+        for (const TextureLevel& level : levels)
+            add_words(level.opacity);
     }
 
     const Scene& scene_;

@@ -16,8 +16,9 @@ struct MaterialTables {
     std::vector<MaterialRecord> materials;
     std::vector<MapRecord> maps;
     std::vector<TextureRecord> textures;
-    std::vector<const TextureLevel*> levels; // of all textures, one after the other
-    std::size_t texels = 0;                  // of all levels
+    bool cutouts = false;
+    std::vector<const std::vector<std::uint32_t>*> words; // of all textures' levels, one after the other
+    std::size_t texels = 0;                               // of all
 };
 
 /// `used`: of each material, whether anything drawn has it; `by_face`: some mesh has several. Throws

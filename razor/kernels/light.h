@@ -2,6 +2,7 @@
 // hits x 4 samples.
 #pragma once
 
+#include "razor/kernels/cutout.h"
 #include "razor/kernels/glossy.h"
 
 namespace razor::ISA_TARGET {
@@ -67,7 +68,7 @@ template <class Response> inline pointer<float> lobe_sums(const Context& c, int 
 }
 
 /// Sums over `samples` shadow rays a hit of what the surface makes of the weights of those that arrive.
-template <Features F, class Towards, class Response>
+template <Features F, bool Mapped, class Towards, class Response>
 [[gnu::noinline]] inline Gathered<Response> gather_light(const Context& c, const Surface& s,
                                                          const Towards& towards, const Response& response,
                                                          sint samples) {
@@ -97,7 +98,7 @@ template <Features F, class Towards, class Response>
             LightRays l = towards.sample(c, here, number + first_sample);
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
-                Hits blocked = trace_packet<F, Towards::kind>(c, l.rays);
+                Hits blocked = trace_seen<F, Towards::kind, Mapped>(c, l.rays);
                 vmask arrives = l.rays.active & (blocked.patch < vint(0));
                 vfloat part[lobes];
                 towards.reflect(responds, here, l, samples, part);
@@ -122,13 +123,13 @@ template <Features F, class Towards, class Response>
 }
 
 /// The same of a light. Rectangles, the usual ones, have a loop of their own.
-template <Features F, class Response>
+template <Features F, bool Mapped, class Response>
 inline Gathered<Response> gather_light(const Context& c, const Surface& s, pointer<LightRecord> light,
                                        const Response& response, sint samples) {
     sint shape = load(field(light, &LightRecord::shape));
     if (branch(shape == light_rectangle))
-        return gather_light<F>(c, s, TowardsRectangle{light}, response, samples);
-    return gather_light<F>(c, s, TowardsShape{light}, response, samples);
+        return gather_light<F, Mapped>(c, s, TowardsRectangle{light}, response, samples);
+    return gather_light<F, Mapped>(c, s, TowardsShape{light}, response, samples);
 }
 
 } // namespace light_kernel

@@ -18,7 +18,7 @@ template <bool Mapped>
 template <Features F>
 inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vint& pixel, const vint& sample,
                                       PixelSums& sums) {
-    Hits h = trace_packet<F, kind_camera>(c, r);
+    Hits h = trace_seen<F, kind_camera, Mapped>(c, r);
     vfloat zero(0.0F);
     vmask hit = h.patch >= vint(0);
     tally(c.counters->camera_hits, count(hit));
@@ -50,13 +50,13 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
     for (sint n = 0; branch(n < lights); ++n) {
         sint samples = load(field(light, &LightRecord::samples));
-        Gathered<Matte> gathered = gather_light<F>(c, s, light, Matte{}, samples);
+        Gathered<Matte> gathered = gather_light<F, Mapped>(c, s, light, Matte{}, samples);
         reflect(load_broadcast_vec(field(light, &LightRecord::radiance)), gathered);
         light = light + 1;
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
-        Gathered<Matte> gathered = gather_light<F>(c, s, TowardsSky{}, Matte{}, sky_samples);
+        Gathered<Matte> gathered = gather_light<F, Mapped>(c, s, TowardsSky{}, Matte{}, sky_samples);
         reflect(load_broadcast_vec(field(c.frame, &FrameHeader::sky)), gathered);
     }
 }

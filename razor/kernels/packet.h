@@ -17,5 +17,15 @@ template <Features F, RayKind Kind> inline Hits trace_packet(const Context& c, c
     return trace < F, Kind == kind_light || Kind == kind_sky > (own, r);
 }
 
+/// Always to closest hits.
+template <Features F, RayKind Kind> inline Hits trace_nearest(const Context& c, const Rays& r) {
+    Context own = c;
+    own.counters = c.counters + Kind;
+    tally(own.counters->packets, 1);
+    tally(own.counters->rays, count(r.active));
+    kind_scope kind(Kind);
+    return trace<F, false>(own, r);
+}
+
 } // namespace traverse_kernel
 } // namespace razor::ISA_TARGET

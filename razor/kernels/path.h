@@ -22,7 +22,7 @@ inline vvec coloured(const Gathered<Glossy>& light, const vvec& radiance, const 
 
 /// Adds all light that reaches the hit and is reflected towards the viewer, who gets `carried` of it.
 /// `fewer`: one shadow ray to each light.
-template <Features F>
+template <Features F, bool Mapped>
 inline void add_light(const Context& c, const Surface& s, const Glossy& g, const Colours& colours,
                       const vvec& carried, sbool fewer, vvec& beauty) {
     vfloat zero(0.0F);
@@ -37,14 +37,14 @@ inline void add_light(const Context& c, const Surface& s, const Glossy& g, const
     for (sint n = 0; branch(n < lights); ++n) {
         sint stated = load(field(light, &LightRecord::samples));
         sint taken = select(fewer, sint(1), stated);
-        Gathered<Glossy> gathered = gather_light<F>(c, s, light, g, taken);
+        Gathered<Glossy> gathered = gather_light<F, Mapped>(c, s, light, g, taken);
         add(gathered, load_broadcast_vec(field(light, &LightRecord::radiance)), stated, taken);
         light = light + 1;
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
         sint taken = select(fewer, sint(1), sky_samples);
-        Gathered<Glossy> gathered = gather_light<F>(c, s, TowardsSky{}, g, taken);
+        Gathered<Glossy> gathered = gather_light<F, Mapped>(c, s, TowardsSky{}, g, taken);
         add(gathered, load_broadcast_vec(field(c.frame, &FrameHeader::sky)), sky_samples, taken);
     }
 }
@@ -85,10 +85,10 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         Hits h;
         vvec found = background;
         if (branch(n == 0)) {
-            h = trace_packet<F, kind_camera>(c, r);
+            h = trace_seen<F, kind_camera, Mapped>(c, r);
             tally(c.counters->camera_hits, count(h.patch >= vint(0)));
         } else {
-            h = trace_packet<F, kind_bounce>(c, r);
+            h = trace_seen<F, kind_bounce, Mapped>(c, r);
             found = select(bounce.diffuse, black, background);
         }
         vmask hit = r.active & (h.patch >= vint(0));
@@ -116,7 +116,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             note_first(s, h, colours.albedo, sums);
         vvec emitted = times(colours.emission, carried);
         sums.beauty = sums.beauty + select(hit, emitted, black);
-        add_light<F>(c, s, g, colours, carried, n > 0, sums.beauty);
+        add_light<F, Mapped>(c, s, g, colours, carried, n > 0, sums.beauty);
         if (branch(n == bounces))
             return;
         bounce = sample_bounce(c, s, beyond, g, colours, onward);

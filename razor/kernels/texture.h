@@ -91,6 +91,8 @@ inline vvec bilinear(const Sampled& t, const vint& level, const vmask& m) {
     return madd(y.weight, lower - upper, upper);
 }
 
+/// Opacity: that of its texels, in all three, instead of their colour.
+template <bool Opacity>
 [[gnu::noinline]] inline vvec sample_map(const Context& c, pointer<MapRecord> map, const Mapping& hit,
                                          const vmask& m) {
     vvec row_u = load_broadcast_vec(field(map, &MapRecord::row_u));
@@ -99,6 +101,13 @@ inline vvec bilinear(const Sampled& t, const vint& level, const vmask& m) {
     sint number = load(field(map, &MapRecord::texture));
     t.record = load(field(c.frame, &FrameHeader::textures)) + number;
     t.texels = load(field(c.frame, &FrameHeader::texels));
+    if constexpr (Opacity) {
+        sint opacity = load(field(t.record, &TextureRecord::opacity));
+        vfloat one(1.0F);
+        if (branch(opacity == 0))
+            return {one, one, one};
+        t.texels = t.texels + opacity;
+    }
     t.wrap_u = load(field(t.record, &TextureRecord::wrap_u));
     t.wrap_v = load(field(t.record, &TextureRecord::wrap_v));
     vfloat u = fma(row_u.x, hit.at.u, fma(row_u.y, hit.at.v, row_u.z));
@@ -126,6 +135,7 @@ inline vvec bilinear(const Sampled& t, const vint& level, const vmask& m) {
 }
 
 /// By the number of each lane's map, -1: none, which is white; map after map.
+template <bool Opacity = false>
 inline vvec mapped_colour(const Context& c, const vint& map, const Mapping& hit, const vmask& m) {
     vfloat one(1.0F);
     vvec colour{one, one, one};
@@ -135,7 +145,7 @@ inline vvec mapped_colour(const Context& c, const vint& map, const Mapping& hit,
         vmask here = left & (map == vint(number));
         left = left & !here;
         pointer<MapRecord> maps = load(field(c.frame, &FrameHeader::maps));
-        colour = select(here, sample_map(c, maps + number, hit, here), colour);
+        colour = select(here, sample_map<Opacity>(c, maps + number, hit, here), colour);
     }
     return colour;
 }

@@ -179,7 +179,7 @@ Tone RenderCommand::tone() const {
     Tone tone;
     tone.curve = parse_choice("--tone", tone_, curves) == 0 ? ToneCurve::srgb : ToneCurve::aces;
     if (!exposure_.empty())
-        tone.exposure = static_cast<float>(parse_number("--exposure", exposure_, exposure_range));
+        tone.exposure = static_cast<float>(parse_number("--exposure", exposure_, stops_range));
     return tone;
 }
 
