@@ -1,6 +1,7 @@
 // razor render: a scene or a model to pictures and statistics.
 #pragma once
 
+#include "razor/image/tone.h"
 #include "razor/native/render.h"
 #include "razor/program/progress.h"
 #include "razor/program/scene_options.h"

@@ -106,17 +106,19 @@ std::string frame_text(const razor::Settings& s, int workers, const Counted& cou
     const std::string& share = r.config.kdtree.share;
     const razor::CountersByKind c = counted.of(f);
     auto rays = [&](razor::RayKind kind) { return c.kind[kind].rays; };
+    const std::string bounces =
+        rays(razor::kind_bounce) > 0 ? fmt::format(", {} bounce", rays(razor::kind_bounce)) : "";
     return fmt::format(
                "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
                "screen tiles           {} ({} to {}), {:.1f} a worker{}\n"
-               "rays                   {} camera, {} light, {} sky; {:.3f} million a second of simulated "
+               "rays                   {} camera, {} light, {} sky{}; {:.3f} million a second of simulated "
                "time\n"
                "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
                "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
                s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s",
                "kdtree.share = " + share, screen_tiles, counted.first_tile, counted.last_tile,
                static_cast<double>(screen_tiles) / workers, few, rays(razor::kind_camera),
-               rays(razor::kind_light), rays(razor::kind_sky),
+               rays(razor::kind_light), rays(razor::kind_sky), bounces,
                static_cast<double>(c.sum().rays) / r.seconds() * 1e-6, opened, f.patches,
                f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - opened, f.unsplit_nodes,
                f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made) +
