@@ -57,8 +57,12 @@ double lobe_cosine(const Lobe& lobe) {
 }
 
 struct Arrays {
-    explicit Arrays(int n, const Lobe& lobe)
-        : u(n), v(n), light(3 * n), reflected(3 * n), density(n), one(n), other(n) {
+    Arrays(int n, const Lobe& lobe) {
+        const auto count = static_cast<std::size_t>(n);
+        for (std::vector<float>* values : {&u, &v, &density, &one, &other})
+            values->resize(count);
+        for (std::vector<float>* values : {&light, &reflected})
+            values->resize(3 * count);
         a.count = n;
         a.alpha = lobe.alpha;
         a.view[0] = static_cast<float>(std::sin(glm::radians(lobe.degrees)));
