@@ -149,6 +149,7 @@ TEST(Cutouts, NeedACutoff) {
 // As many as there are, up to a bound; then what is left is there, and the frame ends.
 TEST(Cutouts, MayBeMany) {
     Scene scene = boards(1, false, Scheme::bilinear);
+    scene.settings.width = scene.settings.height = 16;
     scene.meshes.resize(1);
     for (int n = 0; n < 80; ++n) {
         scene.meshes.push_back(board(1, -0.01 * n, Scheme::bilinear));
