@@ -33,14 +33,14 @@ template <Features F, RayKind Kind, bool Mapped> inline Hits trace_seen(const Co
         sint cutouts = load(field(c.frame, &FrameHeader::cutouts));
         if (branch(cutouts != 0)) {
             Rays left = r;
-            Hits h = trace_nearest<F, Kind>(c, left);
+            Hits h = trace_packet<F, Kind, false>(c, left);
             for (sint n = 0; branch(n < most_holes); ++n) {
                 vmask holes = left.active & find_holes(c, left, h);
                 if (branch(none(holes)))
                     return h;
                 left.active = holes;
                 left.t_min = h.t * vfloat(1.0F + hole_step);
-                Hits next = trace_nearest<F, Kind>(c, left);
+                Hits next = trace_packet<F, Kind, false>(c, left);
                 h.t = select(holes, next.t, h.t);
                 h.u = select(holes, next.u, h.u);
                 h.v = select(holes, next.v, h.v);
