@@ -90,6 +90,7 @@ void RenderCommand::add_to(CLI::App& app) {
                     "how PNG files show light: srgb (as it is, cut off at 1; the default) or aces (as film "
                     "does)")
         ->type_name("NAME");
+    layers_.add_to(render);
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
     render
@@ -127,6 +128,14 @@ int RenderCommand::run() const {
         throw UserError("--trace is of one frame, rendered once, by kernels of its own; leave out --frames, "
                         "--repeat, --eager and --isa");
     }
+    if (layers_.given() && !trace_.empty()) {
+        throw UserError(
+            "--trace is of kernels that keep no time of tiles; leave out --layers and --false-colour");
+    }
+    if (layers_.shows() && (!exposure_.empty() || tone_ != "srgb")) {
+        throw UserError("--false-colour shows no light; leave out --exposure and --tone");
+    }
+    layers_.ask(options, outputs_);
     tone(); // a wrong one is found before any file is read
     options.cancel = &watch_interrupts();
     if (print_config_) {
@@ -218,8 +227,10 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
     const ImageAttributes attributes{{"razor.version", std::string(version())},
                                      {"razor.scene", config},
                                      {"razor.isa", result.statistics.isa}};
+    const Film colours = layers_.shows() ? layers_.shown(result.film) : Film();
     for (const std::string& output : outputs_) {
-        write_image(numbered(output, frame), result.film, attributes, tone());
+        const Film& film = layers_.shows() && is_png(output) ? colours : result.film;
+        write_image(numbered(output, frame), film, attributes, tone());
     }
     if (!statistics_.empty()) {
         const nlohmann::ordered_json report{{"program", "razor"},
@@ -251,6 +262,9 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
         fmt::print(
             stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
             result.film.width, result.film.height, seconds, built.first_packet_seconds, built.refit_seconds);
+    }
+    if (!quiet_) {
+        fmt::print("{}", layers_.legend(result.film));
     }
     if (explain_) {
         fmt::print("{}", explain(moving.scene(), result.statistics));
