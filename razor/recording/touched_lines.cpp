@@ -6,9 +6,7 @@ namespace razor {
 
 constinit thread_local TouchedLines* measured_lines = nullptr;
 
-void TouchedLines::note(const void* p, std::uint32_t bytes) {
-    if (kind == kind_none)
-        return;
+void LineSet::add(const void* p, std::uint32_t bytes) {
     const auto first = reinterpret_cast<std::uintptr_t>(p);
     for (std::uintptr_t line = first / line_bytes; line <= (first + bytes - 1) / line_bytes; ++line) {
         std::uintptr_t& recent = recent_[line % recent_lines];
@@ -19,9 +17,13 @@ void TouchedLines::note(const void* p, std::uint32_t bytes) {
     }
 }
 
-TouchedBytes TouchedLines::measure(Frame& frame, const SeeArguments& packet) {
+void LineSet::clear() {
     lines_.clear();
     recent_.fill(0);
+}
+
+TouchedBytes TouchedLines::measure(Frame& frame, const SeeArguments& packet) {
+    lines_.clear();
     kind = kind_none;
     struct Watch { // also where tracing throws
         explicit Watch(TouchedLines* lines) { measured_lines = lines; }
@@ -35,7 +37,7 @@ TouchedBytes TouchedLines::measure(Frame& frame, const SeeArguments& packet) {
     }
     TouchedBytes touched;
     const isa::address_space& memory = frame.memory();
-    for (const std::uintptr_t line : lines_) {
+    for (const std::uintptr_t line : lines_.lines()) {
         const isa::region* region =
             memory.find(memory.offset(reinterpret_cast<const void*>(line * line_bytes)));
         if (region == nullptr)

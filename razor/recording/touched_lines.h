@@ -3,6 +3,7 @@
 // kernels, whose vectors are as long.
 #pragma once
 
+#include "razor/frame/ray_kinds.h"
 #include "razor/survey/survey.h"
 
 #include <array>
@@ -10,6 +11,22 @@
 #include <unordered_set>
 
 namespace razor {
+
+/// Lines of memory, each once.
+class LineSet {
+public:
+    void add(const void* p, std::uint32_t bytes);
+    void clear();
+    /// By address / 64.
+    const std::unordered_set<std::uintptr_t>& lines() const { return lines_; }
+
+private:
+    /// Lines seen lately, one for each value of their lowest bits: most references are to these.
+    static constexpr std::size_t recent_lines = 4096;
+
+    std::unordered_set<std::uintptr_t> lines_;
+    std::array<std::uintptr_t, recent_lines> recent_{};
+};
 
 /// Of one thread at a time.
 class TouchedLines {
@@ -19,15 +36,14 @@ public:
     TouchedBytes measure(Frame& frame, const SeeArguments& packet);
 
     // By the port, in the thread that measures.
-    void note(const void* p, std::uint32_t bytes);
-    std::int32_t kind = 0;
+    void note(const void* p, std::uint32_t bytes) {
+        if (kind != kind_none)
+            lines_.add(p, bytes);
+    }
+    std::int32_t kind = kind_none;
 
 private:
-    /// Lines seen lately, one for each value of their lowest bits: most references are to these.
-    static constexpr std::size_t recent_lines = 4096;
-
-    std::unordered_set<std::uintptr_t> lines_; // by address / 64
-    std::array<std::uintptr_t, recent_lines> recent_{};
+    LineSet lines_;
 };
 
 /// The one that this thread measures with; null else.

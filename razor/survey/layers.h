@@ -34,6 +34,9 @@ struct Layer {
 std::span<const Layer> all_layers();
 /// Whether it says that nothing is hit.
 bool is_missing(const Layer& layer, float value);
+/// The number as planes hold it. Throws UserError where it names something and is larger than those that a
+/// float tells apart (2^24).
+float layer_value(const Layer& layer, double number);
 /// The layer of that name, or null.
 const Layer* find_layer(std::string_view name);
 

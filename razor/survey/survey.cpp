@@ -1,11 +1,9 @@
 #include "razor/survey/survey.h"
 
-#include "razor/scene/error.h"
 #include "razor/survey/kd_leaf_at.h"
 #include "razor/survey/sight.h"
 #include "razor/survey/tile_layers.h"
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -19,7 +17,6 @@ namespace {
 
 constexpr int most_lanes = 64;
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr double most_names = 16777216; // that floats tell apart
 
 glm::dvec3 vec(const float* p) {
     return {p[0], p[1], p[2]};
@@ -108,14 +105,8 @@ private:
         if (values == nullptr)
             return;
         for (std::size_t lane = 0; lane < pixels_.size(); ++lane) {
-            if (pixels_[lane] < 0)
-                continue;
-            const double value = of(lane);
-            if (layer->names && value > most_names)
-                throw UserError(fmt::format("layer {}: number {} is more than a picture's floats tell apart "
-                                            "({}); leave the layers `{}` out",
-                                            name, value, most_names, group_name(layer->group)));
-            values[pixels_[lane]] = static_cast<float>(value);
+            if (pixels_[lane] >= 0)
+                values[pixels_[lane]] = layer_value(*layer, of(lane));
         }
     }
 

@@ -36,8 +36,9 @@ struct Tally {
 Tally expect_levels(const Scene& scene) {
     const RenderResult r = surveyed(scene, layers({LayerGroup::lod, LayerGroup::pick}));
     const Pixels at(r.film, scene.settings);
-    const CameraField field = camera_field(scene.camera, scene.settings);
-    const View view = view_of(scene.camera);
+    const Camera& dicing = dicing_camera(scene);
+    const CameraField field = camera_field(dicing, scene.settings);
+    const View view = view_of(dicing);
     Tally tally;
     for (int y = 0; y < scene.settings.height; ++y)
         for (int x = 0; x < scene.settings.width; ++x) {
@@ -50,9 +51,10 @@ Tally expect_levels(const Scene& scene) {
                 continue;
             }
             // Levels are the nearest in the logarithm: edges from 2^(k - 1/2) to 2^(k + 1/2).
-            const double forward = glm::dot(view.forward, way_through(scene, x, y)) * distance;
-            const double asked = std::log2(
-                std::sqrt(2) * (std::abs(field.base + field.slope * forward) + field.growth * distance));
+            const glm::dvec3 way =
+                scene.camera.position + way_through(scene, x, y) * distance - dicing.position;
+            const double blur = field.base + field.slope * glm::dot(view.forward, way);
+            const double asked = std::log2(std::sqrt(2) * (std::abs(blur) + field.growth * glm::length(way)));
             EXPECT_NEAR(at("lod.asked", x, y), asked, 1e-4);
             if (depth > 0) {
                 EXPECT_LE(level, std::floor(asked + 1e-4));
@@ -81,6 +83,15 @@ TEST(Levels, FollowTheCircleOfConfusionOfALens) {
     scene.camera.focus_distance = 10;
     const Tally tally = expect_levels(scene);
     EXPECT_GE(tally.hits, 150);
+}
+
+TEST(Levels, AreMeasuredFromTheDicingCamera) {
+    Scene scene = long_torus(Lod::recursive);
+    scene.dicing_camera = scene.camera;
+    scene.dicing_camera->position = {3, 1, -20};
+    const Tally tally = expect_levels(scene);
+    EXPECT_GE(tally.hits, 150);
+    EXPECT_GE(tally.as_asked, tally.hits / 3);
 }
 
 TEST(Levels, AreTheFinestWhereAllRaysAskForIt) {

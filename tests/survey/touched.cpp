@@ -67,7 +67,24 @@ TEST(Touched, AreTheSameEachTimeAndGrowWithTheScene) {
 }
 
 TEST(Touched, LinesCountOnce) {
-    // Where nothing is traced, nothing counts.
+    LineSet set;
+    const auto at = [](std::uintptr_t address) { return reinterpret_cast<const void*>(address); };
+    set.add(at(0x10000), 4);
+    set.add(at(0x1003c), 4);
+    EXPECT_EQ(set.lines().size(), 1U);
+    set.add(at(0x1003c), 8); // and the next
+    EXPECT_EQ(set.lines().size(), 2U);
+    set.add(at(0x10080), 129); // three lines
+    EXPECT_EQ(set.lines().size(), 5U);
+    set.add(at(0x10000 + 4096 * 64), 4); // of the same lowest bits
+    set.add(at(0x10000), 4);
+    EXPECT_EQ(set.lines().size(), 6U);
+    set.clear();
+    set.add(at(0x10000), 4);
+    EXPECT_EQ(set.lines().size(), 1U);
+}
+
+TEST(Touched, NothingByNoRay) {
     const Scene scene = small_scene();
     Frame frame(scene, {});
     TouchedLines lines;
