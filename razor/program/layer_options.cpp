@@ -39,7 +39,7 @@ void LayerOptions::add_to(CLI::App& render) {
         .add_option("--range", range_,
                     "of --false-colour, what is darkest and brightest; without it, least and most")
         ->type_name("LOW:HIGH");
-    render.footer("Layers:\n" + describe_layers());
+    render.footer([] { return "Layers:\n" + describe_layers(); });
 }
 
 void LayerOptions::ask(RenderOptions& options, const std::vector<std::string>& outputs) const {
