@@ -26,8 +26,8 @@ public:
         const ItemList* list =
             node.link < 0 ? nullptr : reinterpret_cast<const ItemList*>(frame_.lists.get() + node.link);
         const bool right = list != nullptr && lists(*list);
-        if (!right && list != nullptr && list->finer >= 0)
-            return below(list->finer, {at.depth, at.finer + 1});
+        if (!right && list != nullptr && list->finer >= 0 && below(list->finer, {at.depth, at.finer + 1}))
+            return true;
         if (right || found.depth < 0)
             found = at;
         return right;

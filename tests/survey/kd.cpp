@@ -110,6 +110,12 @@ TEST_F(SmallTree, HasTheLeafThatListsTheBlock) {
     EXPECT_EQ(at({0, 0, 1}, 70).depth, -1) << "no leaf at all";
 }
 
+TEST_F(SmallTree, EndsWhereNoRayWentOnToFinerBlocks) {
+    nodes_[5].state.word = node_unsplit;
+    EXPECT_EQ(at({5, 0, 1}, 71).depth, 2);
+    EXPECT_EQ(at({5, 0, 1}, 71).finer, 0);
+}
+
 TEST_F(SmallTree, LooksBesideAPlaneThatThePointLiesOn) {
     EXPECT_EQ(at({1 - 2e-7F, 0, 1}, 71).finer, 1);
     EXPECT_EQ(at({5, 0, 2}, 71).finer, 1);
