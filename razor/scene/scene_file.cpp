@@ -214,14 +214,6 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     return scene;
 }
 
-/// In lower case.
-std::string extension_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return extension;
-}
-
 } // namespace
 
 SceneDescription read_scene_file(const std::filesystem::path& path) {
@@ -240,11 +232,11 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
 }
 
 bool is_model_file(const std::filesystem::path& path) {
-    return model_file(path) != ModelFile::none || extension_of(path) == ".instances";
+    return model_file(path) != ModelFile::none || lower_extension(path) == ".instances";
 }
 
 SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing) {
-    if (extension_of(path) == ".toml") {
+    if (lower_extension(path) == ".toml") {
         return read_scene_file(path);
     }
     if (is_model_file(path)) {
@@ -252,13 +244,11 @@ SceneDescription describe(const std::filesystem::path& path, const FramingOption
                                                    : frame_instances(path, framing);
     }
     if (std::filesystem::is_directory(path)) {
-        throw UserError(fmt::format(
-            "{}: is a directory; give a file ending in .toml, .obj, .md3, .gltf, .glb or .instances",
-            printable(path.string(), 1000)));
+        throw UserError(fmt::format("{}: is a directory; give a file ending in {}",
+                                    printable(path.string(), 1000), scene_extensions));
     }
-    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in .toml, .obj, "
-                                ".md3, .gltf, .glb or .instances",
-                                printable(path.string(), 1000)));
+    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in {}",
+                                printable(path.string(), 1000), scene_extensions));
 }
 
 Scene load_scene(const std::filesystem::path& path) {

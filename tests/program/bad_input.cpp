@@ -28,6 +28,11 @@ protected:
         }
         folder_.file("random.obj", noise);
         folder_.file("random.toml", noise);
+        folder_.file("random.ply", noise);
+        folder_.file("cut.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+                                "property float y\nproperty float z\nelement face 1\n"
+                                "property list uchar int vertex_indices\nend_header\n" +
+                                    std::string(36, '\0'));
         folder_.file("random.exr", noise);
         folder_.file("key.toml", "[settings]\nsamlpes = 3\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("type.toml", "[settings]\nsamples = \"3\"\n[[mesh]]\nfile = \"good.obj\"\n");
@@ -87,6 +92,8 @@ TEST_F(Razor, RefusesBadInput) {
         {"empty.toml", "empty.toml: is empty"},
         {"random.obj", "random.obj:1: "},
         {"random.toml", "random.toml:1:"},
+        {"random.ply", "random.ply:1: begins with"},
+        {"cut.ply", "cut.ply:7: element face 1 does not fit into the 0 bytes that are left of the file"},
         {"random.exr", "neither a scene file nor a model"},
         {"key.toml", "key.toml:2:1: unknown key 'settings.samlpes'; did you mean 'samples'?"},
         {"type.toml", "type.toml:2:11: settings.samples is text"},

@@ -27,7 +27,7 @@ struct PlaybackKeys {
 
 PlaybackKeys keys_of(const MeshDescription& mesh) {
     const ModelFile kind = mesh.file.empty() ? ModelFile::none : model_file(mesh.file);
-    return {kind == ModelFile::obj_sequence || kind == ModelFile::md3, kind == ModelFile::gltf};
+    return {kind == ModelFile::sequence || kind == ModelFile::md3, kind == ModelFile::gltf};
 }
 
 Deformer read_deformer(TomlTable table) {
@@ -72,9 +72,8 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
         }
     };
     only({"frames", "frame_rate", "interpolation"}, keys.frames,
-         "whose file has no frames; give an .md3 model, or write %d in the name of .obj files, where the "
-         "number "
-         "of the frame comes");
+         "whose file has no frames; give an .md3 model, or write %d in the name of .obj or .ply files, "
+         "where the number of the frame comes");
     only({"clip"}, keys.clip, "whose file has no clips; give a .gltf or .glb model");
     only({"cycle"}, keys.frames || keys.clip, "whose file does not move; leave it out");
     only({"start", "speed", "moment"}, keys.frames || keys.clip || !mesh.deformers.empty(),
