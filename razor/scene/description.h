@@ -27,8 +27,9 @@ struct MeshDescription {
     std::string shape;                                      // see razor/scene/shapes/shapes.h
     std::vector<std::pair<std::string, double>> parameters; // of the shape, all of them
     Scheme scheme = Scheme::catmull_clark;
-    std::string material;            // of all faces; empty: those that the file itself states
-    glm::dvec3 scale{1, 1, 1};       // positive
+    std::string material; // of all faces; empty: those that the file itself states, but for
+    std::vector<std::pair<std::string, std::string>> materials; // names of these, each with what replaces it
+    glm::dvec3 scale{1, 1, 1};                                  // positive
     glm::dvec3 rotate{0, 0, 0};      // degrees, about x, then y, then z; quarter turns are exact
     glm::dvec3 translate{0, 0, 0};   // world units
     double edge_length = 0;          // see Mesh::edge_length

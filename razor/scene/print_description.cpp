@@ -137,6 +137,13 @@ std::string to_toml(const SceneDescription& description) {
         if (!mesh.material.empty()) {
             fmt::format_to(out, "material = {}\n", toml_text(mesh.material));
         }
+        if (!mesh.materials.empty()) {
+            std::vector<std::string> pairs;
+            for (const auto& [name, replacement] : mesh.materials) {
+                pairs.push_back(fmt::format("{} = {}", toml_text(name), toml_text(replacement)));
+            }
+            fmt::format_to(out, "materials = {{ {} }}\n", fmt::join(pairs, ", "));
+        }
         fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
                        toml_value(mesh.scale), toml_value(mesh.rotate), toml_value(mesh.translate),
                        toml_number(mesh.edge_length));

@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace razor {
 namespace {
@@ -107,6 +108,38 @@ void read_shape(TomlTable& table, MeshDescription& mesh) {
     parameters.finish();
 }
 
+/// `materials = { "of the file" = "of the scene" }`, the scene's being called `names`.
+TomlTable read_materials(TomlTable& table, std::span<const std::string_view> names, MeshDescription& mesh) {
+    if (table.has("material")) {
+        table.fail("materials", "material replaces all of a file's, materials some; leave one out");
+    }
+    TomlTable pairs = table.table("materials");
+    for (const std::string& name : pairs.keys()) {
+        mesh.materials.emplace_back(name, names[pairs.choice(name, 0, names)]);
+    }
+    return pairs;
+}
+
+/// Whether what is to be replaced is there.
+void check_materials(const TomlTable& pairs, const MeshDescription& mesh) {
+    std::vector<std::string_view> known;
+    if (mesh.source->own_materials) {
+        for (const Material& material : mesh.source->own_materials->materials) {
+            known.push_back(material.name);
+        }
+    }
+    for (const auto& [name, replacement] : mesh.materials) {
+        if (known.empty()) {
+            pairs.fail(name, "the model brings no materials that could be replaced; write material instead");
+        }
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            pairs.fail(name, fmt::format("the model has no material '{}'; did you mean '{}'? It has: {}",
+                                         printable(name), printable(nearest(name, known)),
+                                         printable(fmt::format("{}", fmt::join(known, ", ")), 1000)));
+        }
+    }
+}
+
 MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
                           const std::filesystem::path& folder, double frame_rate, CageCache& cages) {
     MeshDescription mesh;
@@ -135,6 +168,11 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         mesh.material = std::string(names[table.choice("material", 0, names)]);
     }
     table.may_have("material");
+    std::optional<TomlTable> replaced;
+    if (table.has("materials")) {
+        replaced = read_materials(table, names, mesh);
+    }
+    table.may_have("materials");
     read_playback(table, mesh, frame_rate);
     table.finish();
     try {
@@ -144,6 +182,9 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         load_cage(mesh, cages);
     } catch (const UserError& error) {
         table.fail(table.has("file") ? "file" : "shape", error.what());
+    }
+    if (replaced) {
+        check_materials(*replaced, mesh);
     }
     if (mesh.material.empty() && !mesh.source->own_materials) {
         mesh.material = materials.front().name;
