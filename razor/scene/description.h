@@ -7,6 +7,7 @@
 #include "razor/scene/animation/keys.h"
 #include "razor/scene/animation/moving_cage.h"
 #include "razor/scene/animation/playback.h"
+#include "razor/scene/from_model.h"
 #include "razor/scene/graph/flatten.h"
 #include "razor/scene/instance_table.h"
 #include "razor/scene/scene.h"
@@ -40,6 +41,12 @@ struct MeshDescription {
     std::shared_ptr<const Mesh> source;
     std::shared_ptr<const MovingCage> motion;
     std::shared_ptr<const Mesh> cage; // when the scene begins, or at playback.moment; before scale and so on
+};
+
+/// Lights [first, first + count) of a scene are these.
+struct LightsFromModel {
+    FromModel from;
+    std::size_t first = 0, count = 0;
 };
 
 /// Whether the cage has other shapes at other moments.
@@ -78,6 +85,9 @@ struct SceneDescription {
     double frame_rate = 24; // frames a second
     CameraKeys camera_keys;
     std::vector<LightKeys> light_keys; // of each light, or none
+    // What models bring; camera and lights are then as when the scene begins, in a picture of its size.
+    std::optional<FromModel> camera_from;
+    std::vector<LightsFromModel> lights_from; // in order
     std::vector<Texture> textures;
     std::vector<Material> materials; // their maps name these textures
     std::vector<MeshDescription> meshes;

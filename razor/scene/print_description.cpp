@@ -4,6 +4,7 @@
 #include "razor/scene/description.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/print_materials.h"
+#include "razor/scene/read_from_model.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/words.h"
@@ -22,6 +23,12 @@ bool is_whole(std::string_view shape, std::string_view parameter) {
         }
     }
     return false;
+}
+
+void print_camera(std::string& text, const Camera& camera, const FromModel& from) {
+    fmt::format_to(std::back_inserter(text), "\n[camera]\n{}aperture_radius = {}\nfocus_distance = {}\n",
+                   to_toml(from, true), toml_number(camera.aperture_radius),
+                   toml_number(camera.focus_distance));
 }
 
 void print_camera(std::string& text, const Camera& camera, const CameraKeys& keys, std::string_view header) {
@@ -99,7 +106,11 @@ std::string to_toml(const SceneDescription& description) {
     }
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
-    print_camera(text, description.camera, description.camera_keys, "camera");
+    if (description.camera_from) {
+        print_camera(text, description.camera, *description.camera_from);
+    } else {
+        print_camera(text, description.camera, description.camera_keys, "camera");
+    }
     if (description.dicing_camera) {
         print_camera(text, *description.dicing_camera, {}, "dicing_camera");
     }
@@ -107,7 +118,14 @@ std::string to_toml(const SceneDescription& description) {
     if (is_animated(description)) {
         fmt::format_to(out, "\n[animation]\nrate = {}\n", toml_number(description.frame_rate));
     }
+    auto run = description.lights_from.begin();
     for (std::size_t l = 0; l < description.lights.size(); ++l) {
+        if (run != description.lights_from.end() && run->first == l) {
+            fmt::format_to(out, "\n[[light]]\n{}", to_toml(run->from, false));
+            l += run->count - 1;
+            ++run;
+            continue;
+        }
         const Light& light = description.lights[l];
         fmt::format_to(out, "\n[[light]]\nkind = {}\n", toml_text(word_of(light_words, light.kind)));
         visit_light_fields(

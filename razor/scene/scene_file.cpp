@@ -10,6 +10,7 @@
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/read_from_model.h"
 #include "razor/scene/read_materials.h"
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/shapes/shapes.h"
@@ -62,15 +63,20 @@ void check(const TomlTable& table, const std::optional<Mistake>& mistake) {
     }
 }
 
+/// What the lens adds to a camera that a model brings.
+Camera read_lens(TomlTable& table, Camera camera) {
+    camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
+    camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
+    return camera;
+}
+
 Camera read_camera(TomlTable& table) {
     Camera camera;
     camera.position = table.vector("position", camera.position, coordinate_range);
     camera.target = table.vector("target", camera.target, coordinate_range);
     camera.up = table.vector("up", camera.up, coordinate_range);
     camera.fov_degrees = table.number("fov", camera.fov_degrees, fov_range);
-    camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
-    camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
-    return camera;
+    return read_lens(table, camera);
 }
 
 Light read_light(TomlTable& table) {
@@ -88,6 +94,40 @@ Light read_light(TomlTable& table) {
     };
     visit_light_fields(light.kind, read, light);
     return light;
+}
+
+void read_lights_from(TomlTable& table, SceneDescription& scene, const std::filesystem::path& folder) {
+    LightsFromModel run{read_from_model(table, folder, false), scene.lights.size(), 0};
+    table.finish();
+    try {
+        const std::vector<Light> lights = lights_of(run.from, 0);
+        run.count = lights.size();
+        scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
+    } catch (const UserError& error) {
+        table.fail("from", error.what());
+    }
+    scene.light_keys.resize(scene.lights.size());
+    scene.lights_from.push_back(std::move(run));
+}
+
+/// [camera], which is stated.
+void read_camera(TomlTable& table, SceneDescription& scene, const std::filesystem::path& folder) {
+    if (!table.has("from")) {
+        table.may_have("from");
+        scene.camera = read_camera(table);
+        scene.camera_keys = read_camera_keys(table);
+        table.finish();
+        check(table, mistake_of(scene.camera, table.name()));
+        return;
+    }
+    scene.camera_from = read_from_model(table, folder, true);
+    try {
+        scene.camera = camera_of(*scene.camera_from, scene.settings, 0);
+    } catch (const UserError& error) {
+        table.fail("from", error.what());
+    }
+    scene.camera = read_lens(table, scene.camera);
+    table.finish();
 }
 
 void read_shape(TomlTable& table, MeshDescription& mesh) {
@@ -208,6 +248,11 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     scene.frame_rate = animation.number("rate", scene.frame_rate, frame_rate_range);
     animation.finish();
     for (TomlTable& light : root.tables("light")) {
+        if (light.has("from")) {
+            read_lights_from(light, scene, folder);
+            continue;
+        }
+        light.may_have("from");
         scene.lights.push_back(read_light(light));
         scene.light_keys.push_back(read_light_keys(light, scene.lights.back().kind));
         light.finish();
@@ -237,10 +282,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         root.fail("mesh", "no meshes; write at least one [[mesh]]");
     }
     if (camera.stated()) {
-        scene.camera = read_camera(camera);
-        scene.camera_keys = read_camera_keys(camera);
-        camera.finish();
-        check(camera, mistake_of(scene.camera, camera.name()));
+        read_camera(camera, scene, folder);
     } else {
         place_camera(scene);
     }

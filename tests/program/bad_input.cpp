@@ -33,6 +33,7 @@ protected:
                                 "property float y\nproperty float z\nelement face 1\n"
                                 "property list uchar int vertex_indices\nend_header\n" +
                                     std::string(36, '\0'));
+        folder_.file("view.toml", "[camera]\nfrom = \"good.obj\"\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("random.exr", noise);
         folder_.file("key.toml", "[settings]\nsamlpes = 3\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("type.toml", "[settings]\nsamples = \"3\"\n[[mesh]]\nfile = \"good.obj\"\n");
@@ -94,6 +95,7 @@ TEST_F(Razor, RefusesBadInput) {
         {"random.toml", "random.toml:1:"},
         {"random.ply", "random.ply:1: begins with"},
         {"cut.ply", "cut.ply:7: element face 1 does not fit into the 0 bytes that are left of the file"},
+        {"view.toml", "view.toml:2:8: 'good.obj' brings no camera; give a .gltf or .glb file"},
         {"random.exr", "neither a scene file nor a model"},
         {"key.toml", "key.toml:2:1: unknown key 'settings.samlpes'; did you mean 'samples'?"},
         {"type.toml", "type.toml:2:11: settings.samples is text"},

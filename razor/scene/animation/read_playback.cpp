@@ -56,6 +56,23 @@ Deformer read_deformer(TomlTable table) {
     return d;
 }
 
+/// What a motion's own seconds are.
+void read_seconds(TomlTable& table, Playback& p) {
+    for (const std::string_view name : {"start", "speed"})
+        if (table.has(name) && table.has("moment"))
+            table.fail(name, fmt::format("{} and moment, at which all stands still; leave one out", name));
+    p.start = table.number("start", p.start, moment_range);
+    p.speed = table.number("speed", p.speed, speed_range);
+    if (table.has("moment"))
+        p.moment = table.number("moment", 0, moment_range);
+    table.may_have("moment");
+}
+
+std::string seconds_to_toml(const Playback& p) {
+    return p.moment ? fmt::format("moment = {}\n", toml_number(*p.moment))
+                    : fmt::format("start = {}\nspeed = {}\n", toml_number(p.start), toml_number(p.speed));
+}
+
 } // namespace
 
 void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
@@ -92,13 +109,18 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
         p.timing.cycle = table.number("cycle", 0, time_range);
     if (keys.clip)
         p.clip = table.text("clip", "");
-    for (const std::string_view name : {"start", "speed"})
-        if (table.has(name) && table.has("moment"))
-            table.fail(name, fmt::format("{} and moment, at which all stands still; leave one out", name));
-    p.start = table.number("start", p.start, moment_range);
-    p.speed = table.number("speed", p.speed, speed_range);
-    if (table.has("moment"))
-        p.moment = table.number("moment", 0, moment_range);
+    read_seconds(table, p);
+}
+
+void read_clip_playback(TomlTable& table, Playback& playback) {
+    playback.clip = table.text("clip", "");
+    playback.timing.cycle = table.number("cycle", 0, time_range);
+    read_seconds(table, playback);
+}
+
+std::string clip_playback_to_toml(const Playback& p) {
+    return (p.clip.empty() ? "" : fmt::format("clip = {}\n", toml_text(p.clip))) +
+           fmt::format("cycle = {}\n", toml_number(p.timing.cycle)) + seconds_to_toml(p);
 }
 
 std::string playback_to_toml(const MeshDescription& mesh) {
@@ -114,9 +136,7 @@ std::string playback_to_toml(const MeshDescription& mesh) {
     if (keys.frames || keys.clip)
         text += fmt::format("cycle = {}\n", toml_number(p.timing.cycle));
     if (keys.frames || keys.clip || !mesh.deformers.empty())
-        text += p.moment
-                    ? fmt::format("moment = {}\n", toml_number(*p.moment))
-                    : fmt::format("start = {}\nspeed = {}\n", toml_number(p.start), toml_number(p.speed));
+        text += seconds_to_toml(p);
     return text;
 }
 

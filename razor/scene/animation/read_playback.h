@@ -1,4 +1,4 @@
-// Moving cages in scene files: what [[mesh]] says of how its file is played, and [[mesh.deform]].
+// Motion of files in scene files: what [[mesh]] says of how its file is played, and [[mesh.deform]].
 #pragma once
 
 #include "razor/scene/description.h"
@@ -9,6 +9,10 @@ namespace razor {
 /// Sets playback and deformers of a mesh whose file is set. `frame_rate` where none is stated. Throws
 /// UserError naming the place.
 void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate);
+
+/// Those keys that say how a clip of a glTF file is played.
+void read_clip_playback(TomlTable& table, Playback& playback);
+std::string clip_playback_to_toml(const Playback& playback);
 
 /// As they are read; nothing of a mesh that neither moves nor is deformed.
 std::string playback_to_toml(const MeshDescription& mesh);

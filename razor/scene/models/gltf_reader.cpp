@@ -98,19 +98,6 @@ void check_cage(const Document& document, const Mesh& cage) {
         document.fail("texture coordinate beyond single precision; mend it");
 }
 
-std::size_t find_clip(const Document& document, const std::vector<std::string>& clips,
-                      const std::string& name) {
-    const auto found = std::find(clips.begin(), clips.end(), name);
-    if (found == clips.end()) {
-        std::string list;
-        for (const std::string& clip : clips)
-            list += fmt::format("{}{}", list.empty() ? "" : ", ", printable(clip));
-        document.fail(fmt::format("no animation is named '{}'; {}", printable(name),
-                                  list.empty() ? "the file has none" : "there are: " + list));
-    }
-    return static_cast<std::size_t>(found - clips.begin());
-}
-
 /// Whether any point follows a node, or has a morph target, that the clip moves.
 bool moves(const Clip& clip, const Skeleton& skeleton, const std::vector<Skin>& skins) {
     const std::vector<bool> moved = moved_nodes(skeleton, clip);

@@ -3,8 +3,8 @@
 // Read: triangles (lists, strips, fans), nodes, skins, morph targets, animations of nodes and of morph
 // weights, sparse accessors, quantised meshes. Points that a file keeps apart only for their normals or
 // texture coordinates are joined, so that the surface is closed there; texture coordinates become
-// face-varying. Materials: gltf/materials.h. Passed over: points, lines, normals, cameras, lights. Refused:
-// compressed geometry and other required extensions that could change shapes.
+// face-varying. Materials: gltf/materials.h; cameras and lights: gltf_stage.h. Passed over: points, lines,
+// normals. Refused: compressed geometry and other required extensions that could change shapes.
 #pragma once
 
 #include "razor/scene/animation/moving_cage.h"
