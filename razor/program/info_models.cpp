@@ -36,8 +36,10 @@ std::vector<GltfContents> contents_of(const SceneDescription& description) {
         if (model_file(file) == ModelFile::gltf && std::find(files.begin(), files.end(), file) == files.end())
             files.push_back(file);
     };
-    for (const MeshDescription& mesh : description.meshes)
+    for (const MeshDescription& mesh : description.meshes) {
         add(mesh.file);
+        add(mesh.playback.clip_file);
+    }
     if (description.camera_from)
         add(description.camera_from->file);
     for (const LightsFromModel& lights : description.lights_from)

@@ -213,7 +213,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         replaced = read_materials(table, names, mesh);
     }
     table.may_have("materials");
-    read_playback(table, mesh, frame_rate);
+    read_playback(table, mesh, folder, frame_rate);
     table.finish();
     try {
         if (table.has("file") && file.empty()) {

@@ -3,6 +3,7 @@
 #include "razor/scene/animation/read_keys.h"
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/text_file.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/toml_words.h"
 
@@ -75,7 +76,8 @@ std::string seconds_to_toml(const Playback& p) {
 
 } // namespace
 
-void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
+void read_playback(TomlTable& table, MeshDescription& mesh, const std::filesystem::path& folder,
+                   double frame_rate) {
     for (TomlTable& deformer : table.tables("deform"))
         mesh.deformers.push_back(read_deformer(std::move(deformer)));
     const PlaybackKeys keys = keys_of(mesh);
@@ -91,7 +93,7 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
     only({"frames", "frame_rate", "interpolation"}, keys.frames,
          "whose file has no frames; give an .md3 model, or write %d in the name of .obj or .ply files, "
          "where the number of the frame comes");
-    only({"clip"}, keys.clip, "whose file has no clips; give a .gltf or .glb model");
+    only({"clip", "clip_file"}, keys.clip, "whose file has no clips; give a .gltf or .glb model");
     only({"cycle"}, keys.frames || keys.clip, "whose file does not move; leave it out");
     only({"start", "speed", "moment"}, keys.frames || keys.clip || !mesh.deformers.empty(),
          "that does not change its shape; leave it out");
@@ -109,6 +111,13 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
         p.timing.cycle = table.number("cycle", 0, time_range);
     if (keys.clip)
         p.clip = table.text("clip", "");
+    if (keys.clip && table.has("clip_file")) {
+        const std::string file = table.text("clip_file", "");
+        if (model_file(file) != ModelFile::gltf)
+            table.fail("clip_file",
+                       fmt::format("'{}' has no clips; give a .gltf or .glb file", printable(file, 1000)));
+        p.clip_file = std::filesystem::absolute(folder / file).lexically_normal().string();
+    }
     read_seconds(table, p);
 }
 
@@ -131,6 +140,8 @@ std::string playback_to_toml(const MeshDescription& mesh) {
         text += fmt::format("frames = [{}, {}]\nframe_rate = {}\ninterpolation = {}\n", p.frames->first,
                             p.frames->second, toml_number(p.frame_rate),
                             toml_text(word_of(interpolation_words, p.timing.interpolation)));
+    if (!p.clip_file.empty())
+        text += fmt::format("clip_file = {}\n", toml_text(p.clip_file));
     if (!p.clip.empty())
         text += fmt::format("clip = {}\n", toml_text(p.clip));
     if (keys.frames || keys.clip)

@@ -4,11 +4,14 @@
 #include "razor/scene/description.h"
 #include "razor/scene/toml_table.h"
 
+#include <filesystem>
+
 namespace razor {
 
-/// Sets playback and deformers of a mesh whose file is set. `frame_rate` where none is stated. Throws
-/// UserError naming the place.
-void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate);
+/// Sets playback and deformers of a mesh whose file is set. `frame_rate` where none is stated; file names are
+/// relative to `folder`. Throws UserError naming the place.
+void read_playback(TomlTable& table, MeshDescription& mesh, const std::filesystem::path& folder,
+                   double frame_rate);
 
 /// Those keys that say how a clip of a glTF file is played.
 void read_clip_playback(TomlTable& table, Playback& playback);

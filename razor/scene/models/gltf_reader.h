@@ -27,9 +27,10 @@ struct GltfModel {
 
 /// The cage is named by the file's stem. `clip`: name of an animation; empty: the first. `cycle`: seconds
 /// after which the motion begins again; 0: it holds its last keys. Materials are read if there is a place to
-/// keep their pictures. Throws UserError: one line
-/// `file: cause; mend`.
+/// keep their pictures. `clip_file`: where the animations are, instead of in the file itself: joints move as
+/// those of the same name there (animation/retarget.h; of a file without skins, nodes). Throws UserError: one
+/// line `file: cause; mend`.
 GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle,
-                    TextureCache* textures = nullptr);
+                    TextureCache* textures = nullptr, const std::filesystem::path& clip_file = {});
 
 } // namespace razor
