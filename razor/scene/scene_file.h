@@ -1,5 +1,6 @@
 // Scene files in TOML. All keys and their defaults: configs/scenes/default.toml, or --print-config; those of
-// materials and textures: razor/scene/material_fields.h and read_materials.h.
+// materials and textures: razor/scene/material_fields.h and read_materials.h; cameras and lights of models:
+// read_from_model.h.
 //
 // Where a file states no camera, one is placed to see all meshes; where it states neither light nor sky, both
 // are chosen (razor/scene/framing.h).
