@@ -36,9 +36,8 @@ LevelOfDetail parse_lod(std::string_view word) {
 
 void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option(scene_name, scene_,
-                   "a scene file (.toml), a model (.obj, .ply, .md3, .gltf, .glb) or a table of them (.instances); "
-                   "without one, the built-in "
-                   "scene")
+                   "a scene file (.toml), a model (.obj, .ply, .md3, .gltf, .glb) or a table of them "
+                   "(.instances); without one, the built-in scene")
         ->type_name("FILE");
     app.add_option("--size", size_, "the picture's size in pixels")->type_name("WxH");
     app.add_option("--crop", crop_,
