@@ -406,7 +406,10 @@ void Frame::Impl::fill_view(const Scene& scene) {
     const FilmExtent film = film_extent(scene.camera, s);
     const double pixel = 2 * film.half_height / s.height;
     put(h.camera, scene.camera.position - geometry.origin);
-    put(h.film_corner, v.forward - v.right * film.half_width + v.up * film.half_height);
+    h.orthographic = scene.camera.projection == Projection::orthographic ? 1 : 0;
+    put(h.film_corner, (h.orthographic != 0 ? glm::dvec3(0) : v.forward) - v.right * film.half_width +
+                           v.up * film.half_height);
+    put(h.line_of_sight, v.forward);
     put(h.film_x, v.right * pixel);
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
@@ -426,7 +429,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.camera_base = static_cast<float>(asked.base);
     h.camera_growth = static_cast<float>(asked.growth);
     put(h.camera_slope, view_of(dicing).forward * asked.slope);
-    if (scene.camera.aperture_radius > 0) {
+    if (has_lens(scene.camera)) {
         h.focus = static_cast<float>(focus_distance(scene.camera));
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);

@@ -530,10 +530,12 @@ struct FrameHeader {
     std::int32_t refit_count;   // clusters listed in refit_list
     float camera[3];            // scene coordinates
     float film_corner[3], film_x[3],
-        film_y[3];       // direction of the film's top left corner, and a pixel's steps
-    float sky[3];        // radiance / samples
-    float background[3]; // what a camera ray that hits nothing sees
-    float reach;         // no two points of scene and camera are further apart
+        film_y[3];             // direction of the film's top left corner, and a pixel's steps
+    float line_of_sight[3];    // unit
+    std::int32_t orthographic; // not 0: all rays go along it, and the film's corner is where it is
+    float sky[3];              // radiance / samples
+    float background[3];       // what a camera ray that hits nothing sees
+    float reach;               // no two points of scene and camera are further apart
     isa::ref<GraphNodeRecord> graph;
     isa::ref<InstanceRecord> instances;
     isa::ref<LightRecord> lights;

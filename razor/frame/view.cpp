@@ -26,12 +26,23 @@ View view_of(const Camera& camera) {
 }
 
 FilmExtent film_extent(const Camera& camera, const Settings& settings) {
-    const double tangent = std::tan(camera.fov_degrees * (3.14159265358979323846 / 360));
-    return {tangent * settings.width / settings.height, tangent};
+    const double half_height = camera.projection == Projection::orthographic
+                                   ? camera.height / 2
+                                   : std::tan(camera.fov_degrees * (3.14159265358979323846 / 360));
+    return {half_height * settings.width / settings.height, half_height};
+}
+
+double film_reach(const Camera& camera, const Settings& settings) {
+    if (camera.projection != Projection::orthographic)
+        return 0;
+    const auto [a, b] = film_extent(camera, settings);
+    return std::hypot(a, b);
 }
 
 double pixel_footprint(const Camera& camera, const Settings& settings) {
     const auto [a, b] = film_extent(camera, settings);
+    if (camera.projection == Projection::orthographic)
+        return 2 * std::sqrt(a * b / settings.width / settings.height);
     // Of a rectangle seen from above its middle.
     const double solid_angle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
     return std::sqrt(solid_angle / settings.width / settings.height);
@@ -39,6 +50,8 @@ double pixel_footprint(const Camera& camera, const Settings& settings) {
 
 CameraField camera_field(const Camera& camera, const Settings& settings) {
     constexpr double cap = gradation_cap;
+    if (camera.projection == Projection::orthographic)
+        return {settings.edge_pixels * pixel_footprint(camera, settings), 0, 0};
     const double growth = std::min(settings.edge_pixels * pixel_footprint(camera, settings), cap);
     const double radius = camera.aperture_radius;
     if (!(radius > 0))

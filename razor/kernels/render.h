@@ -35,6 +35,7 @@ struct Camera {
     vvec lens_x, lens_y; // radii of the lens
     vfloat focus;        // the depth in focus
     sbool lens;
+    sbool parallel; // rays go along the line of sight
 };
 
 inline Camera load_camera(const Context& c) {
@@ -48,6 +49,8 @@ inline Camera load_camera(const Context& c) {
     sfloat focus = load(field(c.frame, &FrameHeader::focus));
     k.focus = vfloat(focus);
     k.lens = focus > 0.0F;
+    sint orthographic = load(field(c.frame, &FrameHeader::orthographic));
+    k.parallel = orthographic != 0;
     return k;
 }
 
@@ -60,6 +63,10 @@ inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, c
     vvec d = madd(y, k.y, madd(x, k.x, k.corner));
     Rays r;
     r.origin = k.position;
+    if (branch(k.parallel)) {
+        r.origin = r.origin + d;
+        d = load_broadcast_vec(field(c.frame, &FrameHeader::line_of_sight));
+    }
     if (branch(k.lens)) {
         vpoint on = concentric_disk(sample_square(pixel, sample, dimension_lens));
         vvec from = madd(on.v, k.lens_y, k.lens_x * on.u);

@@ -26,12 +26,18 @@ bool is_whole(std::string_view shape, std::string_view parameter) {
 
 void print_camera(std::string& text, const Camera& camera, const CameraKeys& keys, std::string_view header) {
     const auto out = std::back_inserter(text);
-    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n", header,
+    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nprojection = {}\n", header,
                    toml_value(camera.position), toml_value(camera.target), toml_value(camera.up),
-                   toml_number(camera.fov_degrees));
-    fmt::format_to(
-        out, "aperture_radius = {}\nfocus_distance = {}\n", toml_number(camera.aperture_radius),
-        toml_number(keys.any() ? camera.focus_distance : focus_distance(camera))); // follows the target
+                   toml_text(word_of(projection_words, camera.projection)));
+    if (camera.projection == Projection::orthographic) {
+        fmt::format_to(out, "height = {}\n", toml_number(camera.height));
+    } else {
+        const double focus =
+            keys.any() ? camera.focus_distance : focus_distance(camera); // follows the target
+        fmt::format_to(out, "fov = {}\naperture_radius = {}\nfocus_distance = {}\n",
+                       toml_number(camera.fov_degrees), toml_number(camera.aperture_radius),
+                       toml_number(focus));
+    }
     text += to_toml(keys, header);
 }
 

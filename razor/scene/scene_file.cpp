@@ -66,6 +66,25 @@ Camera read_camera(TomlTable& table) {
     camera.position = table.vector("position", camera.position, coordinate_range);
     camera.target = table.vector("target", camera.target, coordinate_range);
     camera.up = table.vector("up", camera.up, coordinate_range);
+    camera.projection = choose(table, "projection", camera.projection, projection_words);
+    if (camera.projection == Projection::orthographic) {
+        for (const std::string_view key : {"fov", "aperture_radius", "focus_distance"})
+            if (table.has(key))
+                table.fail(key, fmt::format("{}.{} is of a perspective camera, and this one is orthographic; "
+                                            "leave it out",
+                                            table.name(), key));
+        if (!table.has("height"))
+            table.fail("height",
+                       "an orthographic camera needs a height; write how much of the scene it shows, "
+                       "in world units");
+        camera.height = table.number("height", camera.height, height_range);
+        return camera;
+    }
+    if (table.has("height"))
+        table.fail("height",
+                   fmt::format("{}.height is of a camera with projection = \"orthographic\", and this "
+                               "one is perspective; leave it out",
+                               table.name()));
     camera.fov_degrees = table.number("fov", camera.fov_degrees, fov_range);
     camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
     camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
@@ -197,7 +216,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     }
     if (camera.stated()) {
         scene.camera = read_camera(camera);
-        scene.camera_keys = read_camera_keys(camera);
+        scene.camera_keys = read_camera_keys(camera, scene.camera.projection);
         camera.finish();
         check(camera, mistake_of(scene.camera, camera.name()));
     } else {
