@@ -87,8 +87,8 @@ void RenderCommand::add_to(CLI::App& app) {
     render.add_option("--exposure", exposure_, "of PNG files, in stops; without it, 0")->type_name("X");
     render
         .add_option("--tone", tone_,
-                    "how PNG files show light: srgb (as it is, cut off at 1; the default) or aces (as film "
-                    "does)")
+                    "how PNG files show light: srgb (as it is, cut off at 1; the default), aces (as film "
+                    "does) or agx (likewise, bright colours fading to white)")
         ->type_name("NAME");
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
@@ -175,9 +175,10 @@ int RenderCommand::run() const {
 }
 
 Tone RenderCommand::tone() const {
-    constexpr std::array<std::string_view, 2> curves{"srgb", "aces"};
+    constexpr std::array<std::string_view, 3> names{"srgb", "aces", "agx"};
+    constexpr std::array<ToneCurve, 3> curves{ToneCurve::srgb, ToneCurve::aces, ToneCurve::agx};
     Tone tone;
-    tone.curve = parse_choice("--tone", tone_, curves) == 0 ? ToneCurve::srgb : ToneCurve::aces;
+    tone.curve = curves[parse_choice("--tone", tone_, names)];
     if (!exposure_.empty())
         tone.exposure = static_cast<float>(parse_number("--exposure", exposure_, stops_range));
     return tone;

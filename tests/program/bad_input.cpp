@@ -107,6 +107,7 @@ TEST_F(Razor, RefusesBadInput) {
         {"good.obj --spp 0", "--spp '0'"},
         {"good.obj --spp 1e3", "--spp '1e3'"},
         {"good.obj --threads 0", "--threads '0'"},
+        {"good.obj --tone agxx", "--tone 'agxx' is unknown; give one of: srgb, aces, agx"},
         {"good.obj --threads many", "--threads 'many'"},
         {"good.obj --isa mmx", "--isa 'mmx' is unknown; give one of: auto, plain, sse4, avx2, avx512"},
         {"good.obj --share core", "--share 'core'"},
