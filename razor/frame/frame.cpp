@@ -59,7 +59,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
         (total.faces + total.points + total.curves + total.face_curves) * 64 +
         geometry.instances.size() * sizeof(InstanceRecord) + materials.texels * 4 +
-        materials.materials.size() * 1024 +
+        materials.materials.size() * 1024 + 2 * sizeof(FilterBin) * filter_bins +
         Hierarchy::node_limit(geometry.instances.size()) * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);

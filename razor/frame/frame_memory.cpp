@@ -1,6 +1,7 @@
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/blend_table.h"
+#include "razor/frame/filter_table.h"
 #include "razor/frame/light_records.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
@@ -377,9 +378,24 @@ void Frame::Impl::place_view(const Scene& scene) {
     const Settings& s = scene.settings;
     const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
+    place_filter(scene);
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
     fill_view(scene);
+}
+
+void Frame::Impl::place_filter(const Scene& scene) {
+    if (is_pixel(scene.settings.filter))
+        return;
+    try {
+        const FilterTable table = tabulate(scene.settings.filter);
+        auto* bins = region<FilterBin>("frame buffer", -1, table.bins.size());
+        std::copy(table.bins.begin(), table.bins.end(), bins);
+        header->filter_table.set(bins);
+        header->filter_use = table.weighted ? filter_weighted : filter_even;
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("{}: {}", scene.name, error.what()));
+    }
 }
 
 void Frame::Impl::fill_view(const Scene& scene) {

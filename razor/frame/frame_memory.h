@@ -143,6 +143,7 @@ struct Frame::Impl {
     void list_clusters(const std::vector<int>& of_meshes);
     void fill_view(const Scene& scene);
     void fill_lights(const Scene& scene);
+    void place_filter(const Scene& scene);
     /// In the frame's unit, which `unit` is to be. False: with another number of instances, or more lights.
     bool pose(const Scene& scene);
     /// Of a scene in units of 1, as is the frame. False: everything is to be posed.

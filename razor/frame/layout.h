@@ -489,6 +489,17 @@ enum FilmPlane : std::int32_t {
     film_planes = 10
 };
 
+/// Where samples lie, and what they count: evenly in their pixel; as a FilterBin says, all alike; or some of
+/// them less than nothing.
+enum FilterUse : std::int32_t { filter_pixel = 0, filter_even = 1, filter_weighted = 2 };
+/// Of what is drawn along one axis, a part that is drawn once in filter_bins times.
+struct FilterBin {
+    float from, width; // pixels, from the pixel's corner
+    float weight;
+    float padding;
+};
+inline constexpr int filter_bins = 512;
+
 // --- in which order the vertices of a block are blended
 // A block of 2^a x 2^b quads: pass 0 blends the vertices at steps of 4 quads that are no corners, pass 1
 // those of 2, pass 2 the rest. A pass lists `count`, then arrays of pass_vertices numbers: vertices, their
@@ -560,6 +571,7 @@ struct FrameHeader {
     isa::ref<QueueRecord> queues;
     isa::ref<StretchRecord> stretches; // one a place
     isa::ref<float> film;
+    isa::ref<FilterBin> filter_table; // filter_bins of x, then of y
     isa::ref<std::int32_t> blend_table;
     float field_origin[3];            // of the field of all camera rays (razor/kernels/morph.h): where the
                                       // dicing camera is
@@ -572,6 +584,7 @@ struct FrameHeader {
     std::int32_t one_field;     // not 0: rays that leave surfaces ask for what camera rays do
     float fixed_target;         // not 0: what all rays ask for, everywhere
     std::int32_t level_choice;  // a LevelChoice
+    std::int32_t filter_use;    // a FilterUse
     std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
     std::int32_t discards;      // not 0: see razor/kernels/dead.h
     std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends

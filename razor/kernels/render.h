@@ -3,6 +3,7 @@
 #pragma once
 
 #include "razor/kernels/budget_tiles.h"
+#include "razor/kernels/film_filter.h"
 #include "razor/kernels/leave.h"
 #include "razor/kernels/packet.h"
 #include "razor/kernels/pixel_sums.h"
@@ -54,10 +55,9 @@ inline Camera load_camera(const Context& c) {
     return k;
 }
 
-/// Rays through the pixels (column, row), one lane each, at the sample's place in the pixel.
+/// Rays through the pixels (column, row), one lane each, `at` from the pixel's corner.
 inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, const vint& row,
-                        const vint& pixel, const vint& sample, const vmask& active) {
-    vpoint at = sample_square(pixel, sample, dimension_film);
+                        const vpoint& at, const vint& pixel, const vint& sample, const vmask& active) {
     vfloat x = to_float(column) + at.u;
     vfloat y = to_float(row) + at.v;
     vvec d = madd(y, k.y, madd(x, k.x, k.corner));
@@ -93,10 +93,29 @@ inline void add_lanes(const PacketShape& shape, PixelSums& sums) {
         sums.hits = sums.hits + permute(sums.hits, other);
     }
 }
+/// The same of what weighted sums have besides.
+inline void add_weighted_lanes(const PacketShape& shape, WeightedSums& sums) {
+    sint lanes = sint(1) << shape.samples_log2;
+    for (sint k = 1; branch(k < lanes); k = k + k) {
+        vint other = lane_index() ^ vint(k);
+        sums.beauty = sums.beauty + permute(sums.beauty, other);
+        sums.albedo = sums.albedo + permute(sums.albedo, other);
+        sums.weight = sums.weight + permute(sums.weight, other);
+    }
+}
 
 } // namespace shade_kernel
 
 inline namespace resolve_kernel {
+
+/// What stands for the pixels' sums, `sums` being those of samples that all count alike.
+[[gnu::noinline]] inline void finish_weighted(const PacketShape& shape, sint samples, WeightedSums& weighted,
+                                              PixelSums& sums) {
+    phase_scope phase(phase_resolve);
+    weighted.even = sums;
+    add_weighted_lanes(shape, weighted);
+    sums = sums_of(weighted, samples);
+}
 
 /// Means of the samples into the film. Pixels without a hit have infinite depth and a zero normal.
 [[gnu::noinline]] inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel,
@@ -153,6 +172,9 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
+    sint filter = load(field(c.frame, &FrameHeader::filter_use));
+    sbool filtered = filter != filter_pixel;
+    sbool weighted = filter == filter_weighted;
     PacketShape shape = packet_shape(c);
     sint packet_samples = sint(1) << shape.samples_log2;
     sint columns = sint(1) << shape.columns_log2;
@@ -170,15 +192,27 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
             vint pixel = row * vint(width);
             pixel = pixel + column;
             vint place = pixel + vint(seed);
-            vfloat zero(0.0F);
-            PixelSums sums{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero};
+            PixelSums sums = no_sums();
+            WeightedSums weighted_sums;
+            if (branch(weighted))
+                weighted_sums = no_weighted_sums();
             for (sint s = 0; branch(s < samples); s += packet_samples) {
                 vint sample = member + vint(s);
-                Rays r = camera_rays(c, camera, column, row, place, sample, inside);
+                vpoint square = sample_square(place, sample, dimension_film);
+                vpoint at = square;
+                if (branch(filtered))
+                    at = draw_filtered(c, square, inside);
+                Rays r = camera_rays(c, camera, column, row, at, place, sample, inside);
                 Sampler::template add<F>(c, r, place, sample, sums);
+                if (branch(weighted))
+                    add_weighted(c, square, inside, sums, weighted_sums);
                 note_time(*c.watch, moment_first_packet);
             }
+            if (branch(weighted))
+                sums = weighted_sums.even;
             add_lanes(shape, sums);
+            if (branch(weighted))
+                finish_weighted(shape, samples, weighted_sums, sums);
             resolve(c, sums, pixel, samples, inside & (member == vint(0)));
         }
     }

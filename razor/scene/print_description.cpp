@@ -4,6 +4,7 @@
 #include "razor/scene/description.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/print_materials.h"
+#include "razor/scene/read_film.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/words.h"
@@ -105,6 +106,7 @@ std::string to_toml(const SceneDescription& description) {
     }
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
+    text += to_toml(settings.filter);
     print_camera(text, description.camera, description.camera_keys, "camera");
     if (description.dicing_camera) {
         print_camera(text, *description.dicing_camera, {}, "dicing_camera");

@@ -3,6 +3,7 @@
 // double-precision origin is subtracted from each mesh before anything becomes single precision.
 #pragma once
 
+#include "razor/scene/filter.h"
 #include "razor/scene/graph/graph.h"
 #include "razor/scene/light.h"
 #include "razor/scene/material.h"
@@ -153,6 +154,7 @@ struct Settings {
     LevelOfDetail lod{};
     int width = 512, height = 512; // pixels
     Crop crop{};                   // what is rendered of them; without width and height: all
+    Filter filter{};               // what pixels are of the light about them
     int samples = 4;               // camera samples a pixel
     int light_samples = 4;         // shadow rays a hit to each light; 0: lights are left out
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing

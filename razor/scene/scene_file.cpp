@@ -10,6 +10,7 @@
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/read_film.h"
 #include "razor/scene/read_materials.h"
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/shapes/shapes.h"
@@ -177,6 +178,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     SceneDescription scene;
     scene.name = root.text("name", std::filesystem::path(file_name).stem().string());
     scene.settings = read_settings(root.table("settings"));
+    scene.settings.filter = read_filter(root.table("film"));
     TomlTable camera = root.table("camera");
     TomlTable dicing_camera = root.table("dicing_camera");
     TomlTable sky = root.table("sky");

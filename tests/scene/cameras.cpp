@@ -1,4 +1,4 @@
-// Cameras of both projections in scene files: read, printed, moved, and mistakes told.
+// Cameras of both projections and the film's filter in scene files: read, printed, moved, and mistakes told.
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/error.h"
 #include "razor/scene/scene_file.h"
@@ -47,6 +47,22 @@ TEST(Cameras, OrthographicOnesMove) {
     expect_printed_again(scene);
 }
 
+TEST(Film, FiltersAreReadAndPrinted) {
+    EXPECT_TRUE(is_pixel(read("").settings.filter));
+    EXPECT_EQ(read("[film]\nfilter = \"lanczos\"\n").settings.filter, preset_filter(FilterKind::lanczos));
+    const std::vector<std::pair<std::string, double Filter::*>> parameters{
+        {"gaussian\"\nsigma = 0.75", &Filter::sigma},
+        {"mitchell\"\nb = 0.75", &Filter::b},
+        {"mitchell\"\nc = 0.75", &Filter::c},
+        {"lanczos\"\ntau = 0.75", &Filter::tau}};
+    for (const auto& [text, member] : parameters) {
+        const SceneDescription scene = read("[film]\nradius = [1.25, 2]\nfilter = \"" + text + "\n");
+        EXPECT_EQ(scene.settings.filter.radius, glm::dvec2(1.25, 2)) << text;
+        EXPECT_EQ(scene.settings.filter.*member, 0.75) << text;
+        expect_printed_again(scene);
+    }
+}
+
 TEST(Cameras, MistakesAreTold) {
     const std::vector<std::pair<std::string, std::string>> cases{
         {"[camera]\nprojection = \"ortographic\"\n",
@@ -60,6 +76,10 @@ TEST(Cameras, MistakesAreTold) {
         {"[dicing_camera]\nheight = 3\n", "dicing_camera.height is of a camera with"},
         {orthographic + "height = 1\n[[camera.key]]\ntime = 0\nfov = 30\n", "unknown key 'camera.key.fov'"},
         {"[camera]\n[[camera.key]]\ntime = 0\nheight = 30\n", "unknown key 'camera.key.height'"},
+        {"[film]\nfilter = \"gauss\"\n", "s.toml:2:10: film.filter 'gauss' is unknown"},
+        {"[film]\nradius = 2\n", "film.radius is a whole number; write two numbers"},
+        {"[film]\nradius = [0, 2]\n", "film.radius = 0 is out of range"},
+        {"[film]\nsigma = 2\n", "unknown key 'film.sigma'"},
     };
     for (const auto& [text, expected] : cases) {
         try {

@@ -54,6 +54,7 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.width, b.settings.width);
     EXPECT_EQ(a.settings.height, b.settings.height);
     EXPECT_EQ(a.settings.crop, b.settings.crop);
+    EXPECT_EQ(a.settings.filter, b.settings.filter);
     EXPECT_EQ(a.settings.samples, b.settings.samples);
     EXPECT_EQ(a.settings.light_samples, b.settings.light_samples);
     EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
