@@ -3,6 +3,7 @@
 #include "razor/frame/frame_memory.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
+#include "razor/frame/view.h"
 #include "razor/scene/error.h"
 
 #include <fmt/core.h>
@@ -385,6 +386,9 @@ Film Frame::film() const {
     const FrameHeader& h = *impl_->header;
     const Crop& part = impl_->part;
     Film film(part.width, part.height);
+    if (part != Crop{0, 0, h.width, h.height})
+        film.window = PictureWindow{part.x, part.y, h.width, h.height};
+    film.camera = picture_camera(scaled(impl_->camera, impl_->unit), impl_->settings);
     const float* values = h.film.get();
     for (const char* name : film_names) {
         float* to = film.add(name).values.data();

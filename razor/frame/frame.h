@@ -145,8 +145,8 @@ public:
     int instances() const;
     /// Fraction of the tiles that workers have taken.
     double progress() const;
-    /// The film as it stands, of the part of the picture that the settings crop it to; depth is in world
-    /// units.
+    /// The film as it stands, of the part of the picture that the settings crop it to; depth and camera are
+    /// in world units.
     Film film() const;
     /// What lies in frame memory is in a unit of its own, so many world units long (razor/frame/unit.h), and
     /// scene coordinates begin here in the world: world = origin + unit * scene.

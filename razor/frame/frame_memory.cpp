@@ -407,6 +407,8 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.lens_y, glm::dvec3(0));
     h.width = s.width;
     h.height = s.height;
+    camera = scene.camera;
+    settings = s;
     h.samples = s.samples;
     h.packet_samples_log2 = packet_samples_log2(s.samples);
     part = shown_part(s);

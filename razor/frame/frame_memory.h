@@ -44,7 +44,9 @@ struct Frame::Impl {
     /// Of valid meshes, in the frame's unit.
     Impl(const Scene& scene, const FrameOptions& options);
 
-    Crop part;                // of the picture: what is rendered
+    Crop part;     // of the picture: what is rendered
+    Camera camera; // in the frame's unit
+    Settings settings;
     double unit = 1;          // see frame_unit()
     double topology_unit = 1; // that of `meshes`
     /// Those of the scene, then the texture cages (razor/surface/texture_cage.h) of those that need them.

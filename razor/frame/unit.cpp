@@ -74,6 +74,11 @@ double frame_unit(const Scene& scene, const Box& all) {
     return std::ldexp(1.0, std::max(exponent, -1000)); // its inverse must be finite
 }
 
+Camera scaled(Camera camera, double factor) {
+    scale(camera, factor);
+    return camera;
+}
+
 Scene scaled(Scene scene, double factor) {
     for (Mesh& mesh : scene.meshes) {
         for (glm::dvec3& p : mesh.points)

@@ -1,6 +1,7 @@
 // The camera's axes, and how far apart its rays are.
 #pragma once
 
+#include "razor/image/image.h"
 #include "razor/scene/scene.h"
 
 #include <glm/vec3.hpp>
@@ -20,6 +21,9 @@ struct FilmExtent {
 FilmExtent film_extent(const Camera& camera, const Settings& settings);
 /// From the camera's position rays begin so far away at most, a lens left out.
 double film_reach(const Camera& camera, const Settings& settings);
+
+/// What files say of it.
+PictureCamera picture_camera(const Camera& camera, const Settings& settings);
 
 /// Footprint of a pixel (razor/kernels/differentials.h) at distance 1 from a pinhole, one for the whole film,
 /// so that all rays of a frame see one surface: the film's solid angle is shared evenly among its pixels. A
