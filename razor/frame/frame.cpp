@@ -66,7 +66,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(
         pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + arena_bytes() +
-        2 * scene_bytes + pixels * 64 + 4 * gibibyte +
+        2 * scene_bytes + pixels * (options.passes ? 64 + 8 * weighted_sum_planes : 64) + 4 * gibibyte +
         static_cast<std::uint64_t>(options.workers + trees) * 64 * isa::address_space::granule);
     place_scene(scene);
     place_graph();
@@ -81,6 +81,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
 
 void Frame::Impl::reset() {
     *header->queues.get() = QueueRecord{};
+    choose_samples(0, settings.samples);
     deal_tiles(0, header->tiles_x * header->tiles_y);
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
@@ -240,6 +241,14 @@ void Frame::set_reach(double distance) {
 
 void Frame::take_tiles(int first, int end) {
     impl_->deal_tiles(first, end);
+}
+
+void Frame::take_samples(int first, int count) {
+    Impl& f = *impl_;
+    if (!f.options.passes || (first != 0 && first != f.header->first_sample + f.header->samples))
+        throw std::invalid_argument("a frame's passes must follow each other");
+    f.choose_samples(first, count);
+    f.deal_tiles(0, f.header->tiles_x * f.header->tiles_y);
 }
 
 void Frame::stop() {

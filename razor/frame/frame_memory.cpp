@@ -379,6 +379,11 @@ void Frame::Impl::place_view(const Scene& scene) {
     const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
     place_filter(scene);
+    if (options.passes) {
+        const int planes = header->filter_use == filter_weighted ? weighted_sum_planes : sum_planes;
+        for (isa::ref<float>* sums : {&header->sums_before, &header->sums_after})
+            sums->set(region<float>("frame buffer", -1, pixels * static_cast<std::size_t>(planes)));
+    }
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
     fill_view(scene);
@@ -398,6 +403,17 @@ void Frame::Impl::place_filter(const Scene& scene) {
     }
 }
 
+void Frame::Impl::choose_samples(int first, int count) {
+    header->first_sample = first;
+    header->samples = count;
+    header->packet_samples_log2 = packet_samples_log2(count);
+    if (options.passes) {
+        float* const before = header->sums_before.get();
+        header->sums_before.set(header->sums_after.get());
+        header->sums_after.set(before);
+    }
+}
+
 void Frame::Impl::fill_view(const Scene& scene) {
     const Settings& s = scene.settings;
     FrameHeader& h = *header;
@@ -409,8 +425,6 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.height = s.height;
     camera = scene.camera;
     settings = s;
-    h.samples = s.samples;
-    h.packet_samples_log2 = packet_samples_log2(s.samples);
     part = shown_part(s);
     h.first_column = part.x / tile_side;
     h.first_row = part.y / tile_side;

@@ -146,6 +146,8 @@ struct Frame::Impl {
     void fill_view(const Scene& scene);
     void fill_lights(const Scene& scene);
     void place_filter(const Scene& scene);
+    /// Which of a pixel's camera samples workers take.
+    void choose_samples(int first, int count);
     /// In the frame's unit, which `unit` is to be. False: with another number of instances, or more lights.
     bool pose(const Scene& scene);
     /// Of a scene in units of 1, as is the frame. False: everything is to be posed.

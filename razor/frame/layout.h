@@ -489,6 +489,11 @@ enum FilmPlane : std::int32_t {
     film_planes = 10
 };
 
+/// What a film holds beside its planes where passes add to it: sums over each pixel's samples, planes of one
+/// float a pixel. Of a filter with negative parts there are more: razor/kernels/film_filter.h.
+inline constexpr int sum_planes = 11;          // beauty, normal, albedo, depth, how many hit something
+inline constexpr int weighted_sum_planes = 18; // these, then weighted beauty and albedo, weights
+
 /// Where samples lie, and what they count: evenly in their pixel; as a FilterBin says, all alike; or some of
 /// them less than nothing.
 enum FilterUse : std::int32_t { filter_pixel = 0, filter_even = 1, filter_weighted = 2 };
@@ -524,7 +529,9 @@ inline constexpr int blend_table_words = blend_rows(block_log2 + 1, 0, 0);
 enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 
 struct FrameHeader {
-    std::int32_t width, height, samples;
+    std::int32_t width, height;
+    std::int32_t samples;             // of each pixel that are taken now ...
+    std::int32_t first_sample;        // ... of these numbers
     std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
     std::int32_t tiles_x, tiles_y;
     std::int32_t first_column, first_row; // of the tiles of the part that is rendered, in the whole picture
@@ -571,6 +578,9 @@ struct FrameHeader {
     isa::ref<QueueRecord> queues;
     isa::ref<StretchRecord> stretches; // one a place
     isa::ref<float> film;
+    /// Planes of sums over the samples before first_sample, and those to be left for the next pass. Two sets,
+    /// since what is begun again must find the first as it was. Null: there is no next pass.
+    isa::ref<float> sums_before, sums_after;
     isa::ref<FilterBin> filter_table; // filter_bins of x, then of y
     isa::ref<std::int32_t> blend_table;
     float field_origin[3];            // of the field of all camera rays (razor/kernels/morph.h): where the

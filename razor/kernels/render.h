@@ -108,12 +108,73 @@ inline void add_weighted_lanes(const PacketShape& shape, WeightedSums& sums) {
 
 inline namespace resolve_kernel {
 
+/// Adds what earlier passes left, and leaves the sum for the next; planes begin at `before` and `after`.
+class KeptSums {
+public:
+    KeptSums(const Context& c, const vint& pixel, const vmask& m)
+        : before_(load(field(c.frame, &FrameHeader::sums_before))),
+          after_(load(field(c.frame, &FrameHeader::sums_after))), pixel_(pixel), m_(m) {
+        sint width = load(field(c.frame, &FrameHeader::width));
+        sint height = load(field(c.frame, &FrameHeader::height));
+        sint first = load(field(c.frame, &FrameHeader::first_sample));
+        plane_ = width * height;
+        later_ = first > 0;
+    }
+    void keep(PixelSums& sums) {
+        keep_vector(sums.beauty);
+        keep_vector(sums.normal);
+        keep_vector(sums.albedo);
+        keep_plane(sums.depth);
+        keep_plane(sums.hits);
+    }
+    void keep_weighted(WeightedSums& sums) {
+        keep(sums.even);
+        keep_vector(sums.beauty);
+        keep_vector(sums.albedo);
+        keep_plane(sums.weight);
+    }
+
+private:
+    [[gnu::noinline]] void keep_plane(vfloat& sum) {
+        if (branch(later_)) {
+            vfloat before = gather(before_, pixel_, m_);
+            sum = sum + before;
+        }
+        scatter(after_, pixel_, sum, m_);
+        before_ = before_ + plane_;
+        after_ = after_ + plane_;
+    }
+    void keep_vector(vvec& sum) {
+        keep_plane(sum.x);
+        keep_plane(sum.y);
+        keep_plane(sum.z);
+    }
+
+    pointer<float> before_, after_;
+    vint pixel_;
+    vmask m_;
+    sint plane_ = 0;
+    sbool later_;
+};
+
+[[gnu::noinline]] inline void keep_sums(const Context& c, const vint& pixel, const vmask& m,
+                                        PixelSums& sums) {
+    phase_scope phase(phase_resolve);
+    KeptSums kept(c, pixel, m);
+    kept.keep(sums);
+}
 /// What stands for the pixels' sums, `sums` being those of samples that all count alike.
-[[gnu::noinline]] inline void finish_weighted(const PacketShape& shape, sint samples, WeightedSums& weighted,
+[[gnu::noinline]] inline void finish_weighted(const Context& c, const PacketShape& shape, const vint& pixel,
+                                              sint samples, const vmask& m, WeightedSums& weighted,
                                               PixelSums& sums) {
     phase_scope phase(phase_resolve);
     weighted.even = sums;
     add_weighted_lanes(shape, weighted);
+    pointer<float> after = load(field(c.frame, &FrameHeader::sums_after));
+    if (branch(!is_null(after))) {
+        KeptSums kept(c, pixel, m);
+        kept.keep_weighted(weighted);
+    }
     sums = sums_of(weighted, samples);
 }
 
@@ -172,9 +233,13 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
+    sint first = load(field(c.frame, &FrameHeader::first_sample));
+    sint end = first + samples;
     sint filter = load(field(c.frame, &FrameHeader::filter_use));
     sbool filtered = filter != filter_pixel;
     sbool weighted = filter == filter_weighted;
+    pointer<float> sums_after = load(field(c.frame, &FrameHeader::sums_after));
+    sbool passes = !is_null(sums_after);
     PacketShape shape = packet_shape(c);
     sint packet_samples = sint(1) << shape.samples_log2;
     sint columns = sint(1) << shape.columns_log2;
@@ -196,7 +261,7 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
             WeightedSums weighted_sums;
             if (branch(weighted))
                 weighted_sums = no_weighted_sums();
-            for (sint s = 0; branch(s < samples); s += packet_samples) {
+            for (sint s = first; branch(s < end); s += packet_samples) {
                 vint sample = member + vint(s);
                 vpoint square = sample_square(place, sample, dimension_film);
                 vpoint at = square;
@@ -208,12 +273,15 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
                     add_weighted(c, square, inside, sums, weighted_sums);
                 note_time(*c.watch, moment_first_packet);
             }
+            vmask one = inside & (member == vint(0));
             if (branch(weighted))
                 sums = weighted_sums.even;
             add_lanes(shape, sums);
             if (branch(weighted))
-                finish_weighted(shape, samples, weighted_sums, sums);
-            resolve(c, sums, pixel, samples, inside & (member == vint(0)));
+                finish_weighted(c, shape, pixel, end, one, weighted_sums, sums);
+            else if (branch(passes))
+                keep_sums(c, pixel, one, sums);
+            resolve(c, sums, pixel, end, one);
         }
     }
 }
