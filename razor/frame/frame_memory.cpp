@@ -1,6 +1,7 @@
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/blend_table.h"
+#include "razor/frame/filter_table.h"
 #include "razor/frame/light_records.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
@@ -377,9 +378,40 @@ void Frame::Impl::place_view(const Scene& scene) {
     const Settings& s = scene.settings;
     const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
+    place_filter(scene);
+    if (options.passes) {
+        const int planes = header->filter_use == filter_weighted ? weighted_sum_planes : sum_planes;
+        for (isa::ref<float>* sums : {&header->sums_before, &header->sums_after})
+            sums->set(region<float>("frame buffer", -1, pixels * static_cast<std::size_t>(planes)));
+    }
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
     fill_view(scene);
+}
+
+void Frame::Impl::place_filter(const Scene& scene) {
+    if (is_pixel(scene.settings.filter))
+        return;
+    try {
+        const FilterTable table = tabulate(scene.settings.filter);
+        auto* bins = region<FilterBin>("frame buffer", -1, table.bins.size());
+        std::copy(table.bins.begin(), table.bins.end(), bins);
+        header->filter_table.set(bins);
+        header->filter_use = table.weighted ? filter_weighted : filter_even;
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("{}: {}", scene.name, error.what()));
+    }
+}
+
+void Frame::Impl::choose_samples(int first, int count) {
+    header->first_sample = first;
+    header->samples = count;
+    header->packet_samples_log2 = packet_samples_log2(count);
+    if (options.passes) {
+        float* const before = header->sums_before.get();
+        header->sums_before.set(header->sums_after.get());
+        header->sums_after.set(before);
+    }
 }
 
 void Frame::Impl::fill_view(const Scene& scene) {
@@ -391,8 +423,8 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.lens_y, glm::dvec3(0));
     h.width = s.width;
     h.height = s.height;
-    h.samples = s.samples;
-    h.packet_samples_log2 = packet_samples_log2(s.samples);
+    camera = scene.camera;
+    settings = s;
     part = shown_part(s);
     h.first_column = part.x / tile_side;
     h.first_row = part.y / tile_side;
@@ -406,7 +438,10 @@ void Frame::Impl::fill_view(const Scene& scene) {
     const FilmExtent film = film_extent(scene.camera, s);
     const double pixel = 2 * film.half_height / s.height;
     put(h.camera, scene.camera.position - geometry.origin);
-    put(h.film_corner, v.forward - v.right * film.half_width + v.up * film.half_height);
+    h.orthographic = scene.camera.projection == Projection::orthographic ? 1 : 0;
+    put(h.film_corner, (h.orthographic != 0 ? glm::dvec3(0) : v.forward) - v.right * film.half_width +
+                           v.up * film.half_height);
+    put(h.line_of_sight, v.forward);
     put(h.film_x, v.right * pixel);
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
@@ -426,7 +461,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.camera_base = static_cast<float>(asked.base);
     h.camera_growth = static_cast<float>(asked.growth);
     put(h.camera_slope, view_of(dicing).forward * asked.slope);
-    if (scene.camera.aperture_radius > 0) {
+    if (has_lens(scene.camera)) {
         h.focus = static_cast<float>(focus_distance(scene.camera));
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);

@@ -3,6 +3,7 @@
 
 #include "razor/frame/frame.h"
 #include "razor/image/image.h"
+#include "razor/native/passes.h"
 #include "razor/native/visible.h"
 #include "razor/scene/scene.h"
 
@@ -30,6 +31,7 @@ struct RenderOptions {
     std::uint64_t memory_bytes = 0;
     int tiles = 0;              // screen tiles rendered, along the curve; pixels of others stay 0. 0: all
     bool tiles_in_rows = false; // their order
+    PassOptions passes{};       // in which camera samples are taken
     /// Instead of those of `isa`; and what runs all workers of a frame with them, instead of run_workers().
     const KernelTable* kernels = nullptr;
     std::function<void(Frame& frame, const std::function<void(double)>& progress)> run;
@@ -45,6 +47,7 @@ struct FrameTime {
     double render_processor_seconds = 0; // the same: processor time of all threads
     double eager_seconds = 0;            // of that: what was built before the first ray
     double topology_page_seconds = 0;    // of that: topology pages made, which later frames find
+    PassFigures passes{};                // where there were any
 };
 
 struct RenderStatistics {

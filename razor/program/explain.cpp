@@ -30,7 +30,7 @@ std::vector<Feature> features_of(const Scene& scene, const FrameStatistics& fram
     return {{"grids with hanging vertices", frame.grids == grids_hanging},
             {"blending between levels of detail",
              s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper},
-            {"lens", scene.camera.aperture_radius > 0},
+            {"lens", has_lens(scene.camera)},
             {"rectangle lights", has_light(rectangle)},
             {"disk lights", has_light(disk)},
             {"sphere lights", has_light(sphere)},

@@ -142,15 +142,24 @@ Json to_json(const Texture& texture, bool used) {
 }
 
 Json to_json(const Camera& camera) {
-    return {{"position", to_json(camera.position)},
-            {"target", to_json(camera.target)},
-            {"up", to_json(camera.up)},
-            {"fov", camera.fov_degrees},
-            {"aperture_radius", camera.aperture_radius},
-            {"focus_distance", focus_distance(camera)}};
+    Json json{{"position", to_json(camera.position)},
+              {"target", to_json(camera.target)},
+              {"up", to_json(camera.up)},
+              {"projection", word_of(projection_words, camera.projection)}};
+    if (camera.projection == Projection::orthographic) {
+        json["height"] = camera.height;
+        return json;
+    }
+    json["fov"] = camera.fov_degrees;
+    json["aperture_radius"] = camera.aperture_radius;
+    json["focus_distance"] = focus_distance(camera);
+    return json;
 }
 
 std::string text_of(const Camera& camera) {
+    if (camera.projection == Projection::orthographic)
+        return fmt::format("at {}, to {}, orthographic, height {:g}\n", shown(camera.position),
+                           shown(camera.target), camera.height);
     return fmt::format("at {}, to {}, {:g} degrees, aperture radius {:g}\n", shown(camera.position),
                        shown(camera.target), camera.fov_degrees, camera.aperture_radius);
 }

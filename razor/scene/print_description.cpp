@@ -4,6 +4,7 @@
 #include "razor/scene/description.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/print_materials.h"
+#include "razor/scene/read_film.h"
 #include "razor/scene/read_from_model.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
@@ -33,12 +34,18 @@ void print_camera(std::string& text, const Camera& camera, const FromModel& from
 
 void print_camera(std::string& text, const Camera& camera, const CameraKeys& keys, std::string_view header) {
     const auto out = std::back_inserter(text);
-    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n", header,
+    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nprojection = {}\n", header,
                    toml_value(camera.position), toml_value(camera.target), toml_value(camera.up),
-                   toml_number(camera.fov_degrees));
-    fmt::format_to(
-        out, "aperture_radius = {}\nfocus_distance = {}\n", toml_number(camera.aperture_radius),
-        toml_number(keys.any() ? camera.focus_distance : focus_distance(camera))); // follows the target
+                   toml_text(word_of(projection_words, camera.projection)));
+    if (camera.projection == Projection::orthographic) {
+        fmt::format_to(out, "height = {}\n", toml_number(camera.height));
+    } else {
+        const double focus =
+            keys.any() ? camera.focus_distance : focus_distance(camera); // follows the target
+        fmt::format_to(out, "fov = {}\naperture_radius = {}\nfocus_distance = {}\n",
+                       toml_number(camera.fov_degrees), toml_number(camera.aperture_radius),
+                       toml_number(focus));
+    }
     text += to_toml(keys, header);
 }
 
@@ -106,6 +113,7 @@ std::string to_toml(const SceneDescription& description) {
     }
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
+    text += to_toml(settings.filter);
     if (description.camera_from) {
         print_camera(text, description.camera, *description.camera_from);
     } else {

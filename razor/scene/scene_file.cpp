@@ -10,6 +10,7 @@
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/read_film.h"
 #include "razor/scene/read_from_model.h"
 #include "razor/scene/read_materials.h"
 #include "razor/scene/scene_objects.h"
@@ -75,6 +76,25 @@ Camera read_camera(TomlTable& table) {
     camera.position = table.vector("position", camera.position, coordinate_range);
     camera.target = table.vector("target", camera.target, coordinate_range);
     camera.up = table.vector("up", camera.up, coordinate_range);
+    camera.projection = choose(table, "projection", camera.projection, projection_words);
+    if (camera.projection == Projection::orthographic) {
+        for (const std::string_view key : {"fov", "aperture_radius", "focus_distance"})
+            if (table.has(key))
+                table.fail(key, fmt::format("{}.{} is of a perspective camera, and this one is orthographic; "
+                                            "leave it out",
+                                            table.name(), key));
+        if (!table.has("height"))
+            table.fail("height",
+                       "an orthographic camera needs a height; write how much of the scene it shows, "
+                       "in world units");
+        camera.height = table.number("height", camera.height, height_range);
+        return camera;
+    }
+    if (table.has("height"))
+        table.fail("height",
+                   fmt::format("{}.height is of a camera with projection = \"orthographic\", and this "
+                               "one is perspective; leave it out",
+                               table.name()));
     camera.fov_degrees = table.number("fov", camera.fov_degrees, fov_range);
     return read_lens(table, camera);
 }
@@ -115,7 +135,7 @@ void read_camera(TomlTable& table, SceneDescription& scene, const std::filesyste
     if (!table.has("from")) {
         table.may_have("from");
         scene.camera = read_camera(table);
-        scene.camera_keys = read_camera_keys(table);
+        scene.camera_keys = read_camera_keys(table, scene.camera.projection);
         table.finish();
         check(table, mistake_of(scene.camera, table.name()));
         return;
@@ -239,6 +259,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     SceneDescription scene;
     scene.name = root.text("name", std::filesystem::path(file_name).stem().string());
     scene.settings = read_settings(root.table("settings"));
+    scene.settings.filter = read_filter(root.table("film"));
     TomlTable camera = root.table("camera");
     TomlTable dicing_camera = root.table("dicing_camera");
     TomlTable sky = root.table("sky");

@@ -32,8 +32,10 @@ void pose(Camera& camera, const CameraKeys& keys, double t) {
     follow(camera.fov_degrees, keys.fov, keys.timing, t);
     follow(camera.aperture_radius, keys.aperture_radius, keys.timing, t);
     follow(camera.focus_distance, keys.focus_distance, keys.timing, t);
+    follow(camera.height, keys.height, keys.timing, t);
     // Cubics pass beyond their keys.
     camera.fov_degrees = std::clamp(camera.fov_degrees, fov_range.least, fov_range.most);
+    camera.height = std::clamp(camera.height, height_range.least, height_range.most);
     camera.aperture_radius = std::max(camera.aperture_radius, 0.0);
     camera.focus_distance = std::max(camera.focus_distance, 0.0);
 }
