@@ -285,9 +285,11 @@ template <real_value F> inline F atan2(const F& y, const F& x) {
     F cube = square * q;
     F angle = fma(p, cube, q);
     F rest = angle + F(4.37113883e-08F); // pi/2 = 1.57079637 - 4.37113883e-08
-    angle = select(height > width, F(1.57079637F) - rest, angle);
+    F from_y = F(1.57079637F) - rest;
+    angle = select(height > width, from_y, angle);
     rest = angle + F(8.74227766e-08F);
-    angle = select(as_int(x) < 0, F(3.14159274F) - rest, angle);
+    F from_back = F(3.14159274F) - rest;
+    angle = select(as_int(x) < 0, from_back, angle);
     auto sign = as_int(y) & std::int32_t(0x80000000U);
     angle = as_float(as_int(angle) | sign);
     auto numbers = x == x;
