@@ -4,6 +4,8 @@
 #include "razor/frame/filter_table.h"
 #include "razor/frame/light_records.h"
 #include "razor/frame/scratch.h"
+#include "razor/frame/sky_distribution.h"
+#include "razor/frame/sky_record.h"
 #include "razor/frame/unit.h"
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
@@ -15,6 +17,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -152,6 +155,7 @@ void Frame::Impl::place_materials(const Scene& scene) {
             texel += words->size();
         }
     }
+    place_sky(scene);
     const auto by_face = [](const Instance& i) { return i.material < 0; };
     if (std::any_of(geometry.instances.begin(), geometry.instances.end(), by_face)) {
         auto* of_faces = region<std::int32_t>("materials", -1, total.faces);
@@ -160,6 +164,32 @@ void Frame::Impl::place_materials(const Scene& scene) {
             std::copy(scene.meshes[m].face_materials.begin(), scene.meshes[m].face_materials.end(),
                       of_faces + first_face[m]);
     }
+}
+
+void Frame::Impl::place_sky(const Scene& scene) {
+    if (materials.sky_map < 0)
+        return;
+    const Texture& texture = scene.textures[static_cast<std::size_t>(scene.sky_map.texture)];
+    const SkyDistribution d = sky_distribution(*texture.pyramid);
+    const auto copy = [&](const std::vector<float>& sums, isa::ref<float>& to) {
+        auto* words = region<float>("textures", -1, sums.size());
+        std::copy(sums.begin(), sums.end(), words);
+        to.set(words);
+    };
+    const auto step = [](int count) {
+        return count < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(static_cast<unsigned>(count - 1)));
+    };
+    auto* sky = new (region<SkyRecord>("textures", -1, 1)) SkyRecord{};
+    sky->map = materials.sky_map;
+    sky->columns = d.columns;
+    sky->rows = d.rows;
+    sky->column_step = step(d.columns);
+    sky->row_step = step(d.rows);
+    copy(d.heights, sky->heights);
+    copy(d.row_sums, sky->row_sums);
+    copy(d.cell_sums, sky->cell_sums);
+    copy(d.row_density, sky->row_density);
+    header->sky_map.set(sky);
 }
 
 void Frame::Impl::fill_instances(const Scene& scene) {
@@ -446,10 +476,16 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
     fill_lights(scene);
-    if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0) {
+    SkyRecord* map = h.sky_map.get();
+    const bool dark = map != nullptr && map->rows == 0;
+    if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0 && !dark) {
         h.sky_samples = s.sky_samples;
-        put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
+        const double samples = std::max(s.sky_samples, 1);
+        put(h.sky, glm::dvec3(scene.sky) / (map != nullptr ? std::numbers::pi * samples : samples));
     }
+    if (map != nullptr)
+        map->turn =
+            static_cast<float>(scene.sky_map.rotation / 360 - std::floor(scene.sky_map.rotation / 360));
     h.sample_seed = hashed(s.seed);
     h.fixed_target = one_level(s.lod.lod) ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper ? 1 : 0;
@@ -466,7 +502,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);
     }
-    h.sky_spacing = sample_spacing(s, std::numbers::pi, s.sky_samples);
+    h.sky_spacing = sample_spacing(s, map != nullptr ? 1 : std::numbers::pi, s.sky_samples);
     h.bounces = s.bounces;
     h.diffuse_bounces = s.diffuse_bounces;
     h.lobe_spacing = sample_spacing(s, 1, 1);

@@ -120,6 +120,7 @@ struct Frame::Impl {
     // Each takes room, and has what a pose changes filled in.
     void place_scene(const Scene& scene);
     void place_materials(const Scene& scene);
+    void place_sky(const Scene& scene);
     void place_graph();
     void place_points(const Scene& scene);
     void place_topology();

@@ -455,6 +455,7 @@ struct alignas(line_bytes) TreeRecord {
 };
 
 struct WorkerBudget; // razor/frame/budget.h
+struct SkyRecord;    // razor/frame/sky_record.h
 /// What one worker allocates from: lines or nodes, counted from the base of the family.
 struct alignas(line_bytes) WorkerRecord {
     std::int32_t grid_next, grid_end;
@@ -551,8 +552,8 @@ struct FrameHeader {
         film_y[3];             // direction of the film's top left corner, and a pixel's steps
     float line_of_sight[3];    // unit
     std::int32_t orthographic; // not 0: all rays go along it, and the film's corner is where it is
-    float sky[3];              // radiance / samples
-    float background[3];       // what a camera ray that hits nothing sees
+    float sky[3];              // radiance / samples; of a map, what multiplies it, / (pi samples)
+    float background[3];       // what a camera ray that hits nothing sees, or what multiplies the sky's map
     float reach;               // no two points of scene and camera are further apart
     isa::ref<GraphNodeRecord> graph;
     isa::ref<InstanceRecord> instances;
@@ -589,7 +590,7 @@ struct FrameHeader {
     float camera_slope[3];
     float lens_x[3], lens_y[3]; // radii of the lens
     float focus;                // depth in focus; 0: a pinhole
-    float sky_spacing;          // see growth_to_sky(), times edge_pixels
+    float sky_spacing;          // see growth_to_sky(), times edge_pixels; of a map, as of density 1
     std::int32_t morphs;        // 0: vertices stay at their anchors
     std::int32_t one_field;     // not 0: rays that leave surfaces ask for what camera rays do
     float fixed_target;         // not 0: what all rays ask for, everywhere
@@ -603,6 +604,7 @@ struct FrameHeader {
     isa::ref<MaterialRecord> materials; // where the plan needs them; likewise:
     isa::ref<MapRecord> maps;
     isa::ref<TextureRecord> textures;
+    isa::ref<SkyRecord> sky_map;           // null: the sky is the same everywhere
     isa::ref<std::int32_t> texels;         // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
     std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture

@@ -37,6 +37,7 @@ std::vector<Feature> features_of(const Scene& scene, const FrameStatistics& fram
             {"point lights and spots", has_light(point) || has_light(spot)},
             {"directional lights", has_light(directional)},
             {"light of the sky", sky},
+            {"map of the sky", scene.sky_map.texture >= 0},
             {"reflection, transmission and emission", glossy},
             {"diffuse interreflection", s.diffuse_bounces > 0},
             {"textures or materials of faces", mapped}};

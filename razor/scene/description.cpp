@@ -289,6 +289,7 @@ Scene build_scene(const SceneDescription& description) {
     scene.camera = description.camera;
     scene.dicing_camera = description.dicing_camera;
     scene.sky = description.sky;
+    scene.sky_map = description.sky_map;
     scene.lights = description.lights;
     scene.textures = description.textures;
     scene.materials = description.materials;

@@ -81,6 +81,7 @@ struct SceneDescription {
     Camera camera;
     std::optional<Camera> dicing_camera;
     glm::vec3 sky{0};
+    SkyMap sky_map; // names one of these textures
     std::vector<Light> lights;
     double frame_rate = 24; // frames a second
     CameraKeys camera_keys;

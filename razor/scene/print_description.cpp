@@ -123,6 +123,11 @@ std::string to_toml(const SceneDescription& description) {
         print_camera(text, *description.dicing_camera, {}, "dicing_camera");
     }
     fmt::format_to(out, "\n[sky]\nradiance = {}\n", toml_value(description.sky));
+    if (const SkyMap& map = description.sky_map; map.texture >= 0) {
+        fmt::format_to(out, "map = {}\nrotation = {}\n",
+                       toml_text(description.textures[static_cast<std::size_t>(map.texture)].name),
+                       toml_number(map.rotation));
+    }
     if (is_animated(description)) {
         fmt::format_to(out, "\n[animation]\nrate = {}\n", toml_number(description.frame_rate));
     }

@@ -117,6 +117,15 @@ inline double focus_distance(const Camera& camera) {
     return camera.focus_distance > 0 ? camera.focus_distance : glm::length(camera.target - camera.position);
 }
 
+/// A picture of all directions, by longitude and latitude: its top row is straight up (y), its middle column
+/// where -z is, and what lies to the right of that (x) is right of the middle.
+struct SkyMap {
+    int texture = -1;    // index into Scene::textures; -1: none
+    double rotation = 0; // degrees about y, counter-clockwise seen from above
+
+    bool operator==(const SkyMap&) const = default;
+};
+
 /// Which level of detail rays see.
 enum class Lod : std::uint8_t {
     recursive, // every ray its own, continuously (razor/kernels/morph.h)
@@ -177,7 +186,8 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<Light> lights;
-    glm::vec3 sky{0}; // constant radiance
+    glm::vec3 sky{0}; // radiance from infinitely far away; with a map, times what that shows
+    SkyMap sky_map;
     Camera camera;
     std::optional<Camera> dicing_camera; // from which levels of detail are measured; else `camera`
     Settings settings;

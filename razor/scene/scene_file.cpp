@@ -150,6 +150,17 @@ void read_camera(TomlTable& table, SceneDescription& scene, const std::filesyste
     table.finish();
 }
 
+void read_sky(TomlTable& table, std::span<const std::string> textures, SceneDescription& scene) {
+    table.may_have("map");
+    if (table.has("map")) {
+        scene.sky_map.texture = read_texture_name(table, "map", textures);
+        scene.sky_map.rotation = table.number("rotation", scene.sky_map.rotation, angle_range);
+        scene.sky = glm::vec3(1);
+    }
+    scene.sky = glm::vec3(table.vector_or_number("radiance", glm::dvec3(scene.sky), radiance_range));
+    table.finish();
+}
+
 void read_shape(TomlTable& table, MeshDescription& mesh) {
     std::vector<std::string_view> names;
     for (const ShapeKind& kind : shape_kinds()) {
@@ -263,8 +274,6 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     TomlTable camera = root.table("camera");
     TomlTable dicing_camera = root.table("dicing_camera");
     TomlTable sky = root.table("sky");
-    scene.sky = glm::vec3(sky.vector_or_number("radiance", glm::dvec3(scene.sky), radiance_range));
-    sky.finish();
     TomlTable animation = root.table("animation");
     scene.frame_rate = animation.number("rate", scene.frame_rate, frame_rate_range);
     animation.finish();
@@ -286,6 +295,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         check_names(texture_names, scene.textures.back().name, table);
         texture_names.push_back(scene.textures.back().name);
     }
+    read_sky(sky, texture_names, scene);
     for (TomlTable& table : root.tables("material")) {
         scene.materials.push_back(read_material(table, texture_names));
         check_names(names, scene.materials.back().name, table);

@@ -61,6 +61,7 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.bounces, b.settings.bounces);
     EXPECT_EQ(a.settings.diffuse_bounces, b.settings.diffuse_bounces);
     EXPECT_EQ(a.settings.seed, b.settings.seed);
+    EXPECT_EQ(a.sky_map, b.sky_map);
     EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);
     EXPECT_EQ(a.settings.lod, b.settings.lod);
     expect_same(a.camera, b.camera);
