@@ -58,7 +58,11 @@ double stopwatch::seconds(int event) const {
     return static_cast<double>(first_[static_cast<std::size_t>(event)].load(std::memory_order_relaxed)) * 1e-9;
 }
 
-void lap_timer::begin() { begun_.push_back(std::chrono::steady_clock::now()); }
+void lap_timer::begin() {
+    if (listener_ != nullptr)
+        listener_->begun();
+    begun_.push_back(std::chrono::steady_clock::now());
+}
 
 void lap_timer::end(std::int64_t lap) {
     const auto passed = std::chrono::steady_clock::now() - begun_.back();
@@ -72,6 +76,8 @@ void lap_timer::end(std::int64_t lap) {
         laps_.slowest_seconds = seconds;
         laps_.slowest = lap;
     }
+    if (listener_ != nullptr)
+        listener_->ended(lap, seconds);
 }
 
 } // namespace isa

@@ -49,6 +49,17 @@ private:
     std::vector<std::atomic<std::int64_t>> first_; // nanoseconds, at least 1
 };
 
+/// Is told of laps, by their thread.
+class lap_listener {
+public:
+    virtual void begun() = 0;
+    /// The last one that was begun and has not ended, and the time that it took.
+    virtual void ended(std::int64_t lap, double seconds) = 0;
+
+protected:
+    ~lap_listener() = default;
+};
+
 /// The host's time of each lap, of one thread.
 class lap_timer {
 public:
@@ -62,8 +73,11 @@ public:
     void begin();
     void end(std::int64_t lap);
     const figures& laps() const { return laps_; }
+    /// Null: nobody is told.
+    void tell(lap_listener* listener) { listener_ = listener; }
 
 private:
+    lap_listener* listener_ = nullptr;
     std::vector<std::chrono::steady_clock::time_point> begun_;
     figures laps_;
 };

@@ -10,6 +10,7 @@ namespace razor {
 struct Counters {
     std::int64_t rays = 0;
     std::int64_t camera_hits = 0;
+    std::int64_t bounce_hits = 0; // these and the camera's are shaded, once each
     std::int64_t packets = 0; // rays / (packets x width) is their utilisation
     std::int64_t groups = 0;  // of rays alike in direction, traversed one after the other
     std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
@@ -44,6 +45,7 @@ struct CountersByKind {
 template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("rays", c.rays);
     visit("camera_hits", c.camera_hits);
+    visit("bounce_hits", c.bounce_hits);
     visit("packets", c.packets);
     visit("groups", c.groups);
     visit("node_visits", c.node_visits);

@@ -51,6 +51,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
     count_records(scene);
     pages = std::make_unique<PageStore>(meshes, topologies, options.page_bytes);
     counters.resize(static_cast<std::size_t>(options.workers));
+    for (std::size_t w = 0; options.tile_costs && w < counters.size(); ++w)
+        tile_logs.emplace_back(counters[w]);
     size_arenas();
     // OpenPatch entries and curve lengths, tables a tree, take memory only where a patch is opened.
     const std::uint64_t scene_bytes =
@@ -95,6 +97,10 @@ void Frame::Impl::reset() {
     watch.restart();
     tiles.assign(static_cast<std::size_t>(options.workers), {});
     waits.assign(static_cast<std::size_t>(options.workers), {});
+    for (std::size_t w = 0; w < tile_logs.size(); ++w) {
+        tile_logs[w].clear();
+        tiles[w].tell(&tile_logs[w]);
+    }
     if (log)
         reset_budget();
     for (int w = 0; w < options.workers; ++w) {
@@ -219,6 +225,14 @@ void Frame::trace(const KernelTable& kernels, const TraceArguments& arguments) {
     }
 }
 
+void Frame::see(const KernelTable& kernels, const SeeArguments& arguments) {
+    try {
+        kernels.see[impl_->plan.grids](impl_->arguments(0), arguments);
+    } catch (const isa::trapped& trap) {
+        explain(trap, impl_->options, impl_->trees);
+    }
+}
+
 void Frame::build_all(const KernelTable& kernels) {
     try {
         kernels.build_all(impl_->arguments(0));
@@ -266,6 +280,12 @@ FrameHeader& Frame::header() {
 }
 Plan Frame::plan() const {
     return impl_->plan;
+}
+const CountersByKind& Frame::counters(int worker) const {
+    return impl_->counters[static_cast<std::size_t>(worker)];
+}
+int Frame::first_face(int mesh) const {
+    return static_cast<int>(impl_->first_face[static_cast<std::size_t>(mesh)]);
 }
 int Frame::workers() const {
     return impl_->options.workers;
@@ -385,6 +405,24 @@ FrameStatistics Frame::statistics() const {
     s.textured_meshes = static_cast<std::int64_t>(impl_->meshes.size() - impl_->scene_meshes);
     s.texture_bytes = static_cast<std::int64_t>(impl_->materials.texels) * 4;
     return s;
+}
+
+std::vector<TileCost> Frame::tile_costs(const KernelTable& kernels) {
+    const FrameHeader& h = *impl_->header;
+    std::vector<std::int32_t> places(2 * static_cast<std::size_t>(h.tiles));
+    kernels.place_tiles(impl_->arguments(0), places.data());
+    std::map<std::int64_t, TileLog::Cost> all;
+    for (const TileLog& worker : impl_->tile_logs)
+        for (const auto& [tile, cost] : worker.costs()) {
+            all[tile].counters += cost.counters;
+            all[tile].seconds += cost.seconds;
+        }
+    std::vector<TileCost> costs;
+    for (const auto& [tile, cost] : all) {
+        const std::int32_t* place = &places[2 * static_cast<std::size_t>(tile)];
+        costs.push_back({h.first_column + place[0], h.first_row + place[1], cost.counters, cost.seconds});
+    }
+    return costs;
 }
 
 BudgetStatistics Frame::budget() const {

@@ -9,6 +9,7 @@
 #include "razor/frame/duplicates.h"
 #include "razor/frame/kernel_table.h"
 #include "razor/frame/layout.h"
+#include "razor/frame/tile_costs.h"
 #include "razor/image/image.h"
 #include "razor/scene/scene.h"
 #include "razor/scene/scene_changes.h"
@@ -42,6 +43,8 @@ struct FrameOptions {
     bool passes = false;
     /// Kernels say of memory that is done with that its contents are dead (razor/kernels/dead.h).
     bool discards = false;
+    /// Keep what each screen tile costs: see Frame::tile_costs().
+    bool tile_costs = false;
     /// Room for topology pages; 0: 64 GiB of addresses, which take memory as pages are made.
     std::uint64_t page_bytes = 0;
 };
@@ -124,6 +127,9 @@ public:
     void render(const KernelTable& kernels, int worker);
     /// Traces rays given in frame memory (worker 0 alone; call reset() before a render).
     void trace(const KernelTable& kernels, const TraceArguments& arguments);
+    /// What rays from the middle of the lens see, as the frame's own camera rays do (worker 0 alone). Whether
+    /// or not the frame was rendered before; films stay as they are.
+    void see(const KernelTable& kernels, const SeeArguments& arguments);
     /// Builds the whole tree, so that traces find nothing left to build (worker 0 alone).
     void build_all(const KernelTable& kernels);
     /// Makes all blocks that camera rays may ask for, seen or not (worker 0 alone).
@@ -148,6 +154,13 @@ public:
     /// Of the render so far; call it when no worker runs.
     BudgetStatistics budget() const;
     Plan plan() const;
+    /// One worker's so far.
+    const CountersByKind& counters(int worker) const;
+    /// Of the screen tiles rendered so far, in the order of their numbers, if FrameOptions::tile_costs asked
+    /// for it and the kernels are native ones; call it when no worker runs.
+    std::vector<TileCost> tile_costs(const KernelTable& kernels);
+    /// The number, among PatchRecord::face, of a mesh's first face.
+    int first_face(int mesh) const;
     int workers() const;
     /// How many: header().instances.
     int instances() const;

@@ -81,6 +81,7 @@ struct Frame::Impl {
     isa::stopwatch watch{moment_count};
     std::vector<isa::lap_timer> tiles;   // one a worker
     std::vector<isa::lap_timer> waits;   // likewise
+    std::vector<TileLog> tile_logs;      // likewise, where they are asked for
     std::atomic<std::int64_t> dealt = 0; // strides
 
     const Topology& topology_of(const Instance& instance) const {

@@ -42,6 +42,19 @@ struct TraceArguments {
     std::int32_t* triangle = nullptr;
 };
 
+/// Camera rays as arrays of `count` floats: unit vectors in scene coordinates, from the middle of the lens,
+/// and their closest hits, named as TraceArguments does; `block`: the hit block's line of the grids.
+struct SeeArguments {
+    const float* direction[3] = {};
+    int count = 0;
+    float* t = nullptr;
+    float* u = nullptr;
+    float* v = nullptr;
+    std::int32_t* patch = nullptr;
+    std::int32_t* triangle = nullptr;
+    std::int32_t* block = nullptr;
+};
+
 /// What tracing rays is compiled for: whether some patch has sides coarser than its grid.
 enum Grids : int { grids_flat = 0, grids_hanging = 1, grids_count = 2 };
 /// What shading is compiled for: everything matte, or also what reflects, lets through and emits; one
@@ -67,6 +80,12 @@ struct KernelTable {
     /// Refits and makes, of every patch, the blocks that camera rays may ask for anywhere, seen or not, with
     /// normals. One worker only.
     void (*dice_all)(const WorkerArguments&);
+    /// Traces what camera rays see, as the frame's own do: with their field, past what textures cut out,
+    /// within the memory budget, counted as theirs; in packets of consecutive rays. One worker only.
+    void (*see[grids_count])(const WorkerArguments&, const SeeArguments&);
+    /// Column and row of each screen tile of the part that is rendered, by its number, counted in tiles from
+    /// the part's first: two numbers a tile.
+    void (*place_tiles)(const WorkerArguments&, std::int32_t* places);
 };
 
 // One a target; those that the build left out are not defined.

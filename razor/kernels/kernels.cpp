@@ -130,6 +130,21 @@ void dice_all(const WorkerArguments& w) {
     }
 }
 
+void place_tiles(const WorkerArguments& w, std::int32_t* places) {
+    Context c = begin(w);
+    sint columns = load(field(c.frame, &FrameHeader::tiles_x));
+    sint rows = load(field(c.frame, &FrameHeader::tiles_y));
+    sint in_rows = load(field(c.frame, &FrameHeader::tile_rows));
+    pointer<std::int32_t> at(places);
+    for (sint tile = 0; branch(tile < columns * rows); ++tile) {
+        TilePlace place =
+            branch(in_rows != 0) ? place_in_rows(columns, tile) : place_on_curve(columns, rows, tile);
+        store(at, place.column);
+        store(at + 1, place.row);
+        at = at + 2;
+    }
+}
+
 #define RAZOR_NAME(target) #target
 #define RAZOR_TARGET_NAME(target) RAZOR_NAME(target)
 
@@ -144,6 +159,8 @@ constinit const KernelTable kernels = {
      {render_glossy_mapped<flat>, render_glossy_mapped<hanging>}},
     {trace_all<flat>, trace_all<hanging>},
     build_all,
-    dice_all};
+    dice_all,
+    {see_mapped<flat>, see_mapped<hanging>},
+    place_tiles};
 
 } // namespace razor::ISA_TARGET

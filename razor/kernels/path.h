@@ -114,6 +114,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             tally(c.counters->camera_hits, count(h.patch >= vint(0)));
         } else {
             h = trace_seen<F, kind_bounce, Mapped>(c, r);
+            tally(c.counters->bounce_hits, count(h.patch >= vint(0)));
             found = select(bounce.diffuse, black, background);
         }
         vmask hit = r.active & (h.patch >= vint(0));

@@ -30,6 +30,7 @@ template <Features F, class Sampler> void render(const WorkerArguments& a) {
 
 /// Compiled apart, see apart.h.
 template <Features F> void render_mapped(const WorkerArguments& a);
+template <Features F> void see_mapped(const WorkerArguments& a, const SeeArguments& l);
 template <Features F> void render_glossy(const WorkerArguments& a);
 template <Features F> void render_glossy_mapped(const WorkerArguments& a);
 

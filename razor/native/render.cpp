@@ -134,8 +134,10 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
                                 .tree_of_worker = tree_groups(options_.threads, options_.share),
                                 .tiles_in_rows = options_.tiles_in_rows,
                                 .memory_bytes = options_.memory_bytes,
+                                .apart = options_.layers.has(LayerSource::touch),
                                 .moves = moves_,
-                                .passes = options_.passes.samples > 0});
+                                .passes = options_.passes.samples > 0,
+                                .tile_costs = options_.layers.has(LayerSource::tile)});
     }
     load_seconds_ = seconds_since(begin);
     fresh_ = true;
@@ -163,6 +165,13 @@ RenderResult NativeRenderer::render(const std::function<void(double)>& progress)
     r.statistics.duplicates = frame_->duplicates();
     r.film = frame_->film();
     r.statistics.visible = visible_surface(r.film, camera_, settings_);
+    if (!options_.layers.empty()) {
+        const auto begin = Clock::now();
+        const SurveyOptions asked{options_.layers, &kernels_, options_.touched, options_.cancel};
+        if (!survey(*frame_, shown_part(settings_), asked, r.film))
+            throw Cancelled{};
+        r.statistics.survey_seconds = seconds_since(begin);
+    }
     return r;
 }
 

@@ -6,6 +6,7 @@
 #include "razor/native/passes.h"
 #include "razor/native/visible.h"
 #include "razor/scene/scene.h"
+#include "razor/survey/survey.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -32,6 +33,8 @@ struct RenderOptions {
     int tiles = 0;              // screen tiles rendered, along the curve; pixels of others stay 0. 0: all
     bool tiles_in_rows = false; // their order
     PassOptions passes{};       // in which camera samples are taken
+    LayerSet layers{};          // added to the film, once the frame is rendered
+    TouchMeter touched{};       // for some of them
     /// Instead of those of `isa`; and what runs all workers of a frame with them, instead of run_workers().
     const KernelTable* kernels = nullptr;
     std::function<void(Frame& frame, const std::function<void(double)>& progress)> run;
@@ -59,6 +62,7 @@ struct RenderStatistics {
     double load_seconds = 0; // topology and frame memory
     std::vector<FrameTime> times;
     VisibleSurface visible;
+    double survey_seconds = 0; // host time that layers took, beside the frame's
 };
 
 /// Counters by name; those of a kind of ray under its name.

@@ -112,6 +112,8 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                       {"slowest_seconds", f.slowest_tile_seconds},
                       {"slowest", f.slowest_tile}}},
                     {"wait_seconds", f.wait_seconds}};
+    if (s.survey_seconds > 0)
+        json["host"]["survey_seconds"] = s.survey_seconds;
     for (const FrameTime& t : s.times)
         json["host"]["frames"].push_back({{"render_seconds", t.render_seconds},
                                           {"render_processor_seconds", t.render_processor_seconds},

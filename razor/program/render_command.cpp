@@ -100,6 +100,7 @@ void RenderCommand::add_to(CLI::App& app) {
                     "how PNG files show light: srgb (as it is, cut off at 1; the default), aces (as film "
                     "does) or agx (likewise, bright colours fading to white)")
         ->type_name("NAME");
+    layers_.add_to(render);
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
         ->type_name("FILE.json");
     render
@@ -137,6 +138,14 @@ int RenderCommand::run() const {
         throw UserError("--trace is of one frame, rendered once, by kernels of its own; leave out --frames, "
                         "--repeat, --eager and --isa");
     }
+    if (layers_.given() && !trace_.empty()) {
+        throw UserError(
+            "--trace is of kernels that keep no time of tiles; leave out --layers and --false-colour");
+    }
+    if (layers_.shows() && (!exposure_.empty() || tone_ != "srgb")) {
+        throw UserError("--false-colour shows no light; leave out --exposure and --tone");
+    }
+    layers_.ask(options, outputs_);
     tone(); // a wrong one is found before any file is read
     options.passes = passes();
     if (options.passes.samples > 0 && (options.frames > 1 || !trace_.empty())) {
@@ -148,6 +157,10 @@ int RenderCommand::run() const {
         throw UserError(
             "--progressive writes one frame's pictures again and again; give -o FILE, and leave out "
             "--frames");
+    }
+    if (options.passes.samples > 0 && layers_.given()) {
+        throw UserError("layers are of whole frames; leave out --progressive and --time, or --layers and "
+                        "--false-colour");
     }
     options.cancel = &watch_interrupts();
     if (print_config_) {
@@ -222,8 +235,10 @@ void RenderCommand::write_pictures(int frame, const Film& film, const std::strin
     if (passes.passes > 0) {
         attributes.emplace_back("razor.samples", fmt::format("{}", passes.samples));
     }
+    const Film colours = layers_.shows() ? layers_.shown(film) : Film();
     for (const std::string& output : outputs_) {
-        write_image(numbered(output, frame), film, attributes, tone());
+        write_image(numbered(output, frame), layers_.shows() && is_png(output) ? colours : film, attributes,
+                    tone());
     }
 }
 
@@ -320,6 +335,9 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
                                : fmt::format("; estimated error of luminance {:.2g}, {:.2g} % of its mean",
                                              passes.error, 100 * passes.relative_error));
         std::fflush(stdout);
+    }
+    if (!quiet_) {
+        fmt::print("{}", layers_.legend(result.film));
     }
     if (explain_) {
         fmt::print("{}", explain(moving.scene(), result.statistics));

@@ -3,6 +3,7 @@
 
 #include "razor/image/tone.h"
 #include "razor/native/render.h"
+#include "razor/program/layer_options.h"
 #include "razor/program/progress.h"
 #include "razor/program/scene_options.h"
 #include "razor/scene/animation/moving_scene.h"
@@ -40,6 +41,7 @@ private:
                       int& written) const;
 
     SceneOptions scene_;
+    LayerOptions layers_;
     std::vector<std::string> outputs_;
     std::string threads_, isa_ = "auto", share_ = "chip", memory_, repeat_ = "1", frames_, statistics_,
                           trace_, exposure_, tone_ = "srgb", time_;

@@ -1,8 +1,10 @@
-// The timing port of a frame that is recorded (isa/simulated/port.h): operations pass, loads and stores are
-// noted. What lanes load or store side by side is one reference, what they gather and scatter one each.
+// The timing port of a frame that is recorded (isa/simulated/port.h), or of packets whose memory is measured:
+// operations pass, loads and stores are noted. What lanes load or store side by side is one reference, what
+// they gather and scatter one each.
 #include "isa/simulated/port.h"
 
 #include "isa/services.h"
+#include "razor/recording/touched_lines.h"
 #include "razor/recording/worker.h"
 
 #include <bit>
@@ -11,6 +13,7 @@
 namespace isa::timing {
 namespace {
 
+using razor::measured_lines;
 using razor::recorded_worker;
 using traces::Kind;
 
@@ -26,13 +29,19 @@ void note(site where, Kind kind, const void* p, std::uint32_t bytes) {
         worker->step();
         worker->at(where.file, where.line);
         worker->note(kind, p, bytes);
+    } else if (measured_lines != nullptr && bytes > 0) {
+        measured_lines->note(p, bytes);
     }
 }
 
 void note_lanes(site where, Kind kind, const void* p, std::uint64_t lanes) {
     razor::FrameRecorder::Worker* worker = recorded_worker;
-    if (worker == nullptr)
+    if (worker == nullptr) {
+        if (measured_lines != nullptr)
+            for (std::uint64_t left = lanes; left != 0; left &= left - 1)
+                measured_lines->note(static_cast<const float*>(p) + std::countr_zero(left), 4);
         return;
+    }
     worker->step();
     worker->at(where.file, where.line);
     const auto* bytes = static_cast<const std::byte*>(p);
@@ -47,8 +56,12 @@ void note_lanes(site where, Kind kind, const void* p, std::uint64_t lanes) {
 
 void note_indexed(site where, Kind kind, const void* p, const std::int32_t* index, std::uint64_t lanes) {
     razor::FrameRecorder::Worker* worker = recorded_worker;
-    if (worker == nullptr)
+    if (worker == nullptr) {
+        if (measured_lines != nullptr)
+            for (std::uint64_t left = lanes; left != 0; left &= left - 1)
+                measured_lines->note(static_cast<const std::int32_t*>(p) + index[std::countr_zero(left)], 4);
         return;
+    }
     worker->step();
     worker->at(where.file, where.line);
     for (; lanes != 0; lanes &= lanes - 1)
@@ -145,6 +158,8 @@ std::int32_t set_phase(std::int32_t phase) {
     return worker == nullptr ? 0 : std::exchange(worker->phase, phase);
 }
 std::int32_t set_kind(std::int32_t kind) {
+    if (measured_lines != nullptr)
+        return std::exchange(measured_lines->kind, kind);
     razor::FrameRecorder::Worker* worker = recorded_worker;
     return worker == nullptr ? 0 : std::exchange(worker->kind, kind);
 }

@@ -1,0 +1,121 @@
+#include "razor/program/layer_options.h"
+
+#include "razor/image/output.h"
+#include "razor/program/arguments.h"
+#include "razor/program/touch_meter.h"
+#include "razor/scene/error.h"
+#include "razor/scene/nearest.h"
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace razor {
+namespace {
+
+constexpr Range values_range{-1e30, 1e30};
+
+/// Layers that every picture has are missing where they are infinite.
+bool is_missing_in(const Layer* layer, float value) {
+    return layer != nullptr && is_missing(*layer, value);
+}
+
+} // namespace
+
+void LayerOptions::add_to(CLI::App& render) {
+    render
+        .add_option("--layers", layers_,
+                    "add layers to EXR files, for example pick,lod: pick (mesh, face, place on it), lod, "
+                    "patch, kd (depth), steps (of traversal), bytes (touched), packet (utilisation), shading "
+                    "(hits, shadow rays), time; all: these without time")
+        ->type_name("LIST");
+    render
+        .add_option("--false-colour", shown_,
+                    "PNG files show a layer in colours: one of a group of --layers, such as lod.level or "
+                    "steps.nodes (lod: its first), or depth.Z; numbers that are names have a colour each")
+        ->type_name("LAYER");
+    render
+        .add_option("--range", range_,
+                    "of --false-colour, what is darkest and brightest; without it, least and most")
+        ->type_name("LOW:HIGH");
+    render.footer("Layers:\n" + describe_layers());
+}
+
+void LayerOptions::ask(RenderOptions& options, const std::vector<std::string>& outputs) const {
+    const auto is_picture = [](const std::string& output) { return is_png(output); };
+    if (!layers_.empty()) {
+        options.layers = parse_layers("--layers", layers_, can_measure_touch());
+        if (std::all_of(outputs.begin(), outputs.end(), is_picture))
+            throw UserError("--layers go into EXR files; add -o FILE.exr");
+    }
+    if (!range_.empty() && shown_.empty())
+        throw UserError("--range without --false-colour; leave it out");
+    if (!shown_.empty()) {
+        const Layer* const layer = find_layer(shown_name());
+        if (layer != nullptr && layer->group == LayerGroup::bytes)
+            parse_layers("--false-colour", "bytes", can_measure_touch());
+        if (layer != nullptr)
+            options.layers.add(layer->group);
+        stated_range();
+        if (std::none_of(outputs.begin(), outputs.end(), is_picture))
+            throw UserError("--false-colour is of PNG files; add -o FILE.png");
+    }
+    if (options.layers.has(LayerSource::touch))
+        options.touched = touch_meter();
+}
+
+std::string LayerOptions::shown_name() const {
+    std::vector<std::string> names;
+    for (const Layer& layer : all_layers()) {
+        if (shown_ == group_name(layer.group) || shown_ == layer.name)
+            return std::string(layer.name);
+        names.emplace_back(layer.name);
+    }
+    for (const Plane& plane : make_film(1, 1).planes) {
+        if (shown_ == plane.name)
+            return plane.name;
+        names.push_back(plane.name);
+    }
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    throw UserError(fmt::format("--false-colour '{}' is no layer; did you mean {}? There are: {}",
+                                printable(shown_), nearest(shown_, known), fmt::join(names, ", ")));
+}
+
+std::optional<ValueRange> LayerOptions::stated_range() const {
+    if (range_.empty())
+        return {};
+    const std::size_t colon = range_.find(':');
+    if (colon == std::string::npos)
+        throw UserError(
+            fmt::format("--range '{}' is not possible; give LOW:HIGH, for example 0:40", printable(range_)));
+    const std::string_view text = range_;
+    const ValueRange range{parse_number("the low end of --range", text.substr(0, colon), values_range),
+                           parse_number("the high end of --range", text.substr(colon + 1), values_range)};
+    if (!(range.low < range.high))
+        throw UserError(fmt::format("--range '{}' ends before it begins; give LOW:HIGH", printable(range_)));
+    return range;
+}
+
+Film LayerOptions::shown(const Film& film) const {
+    const std::string name = shown_name();
+    const Layer* const layer = find_layer(name);
+    const Plane& plane = *film.find(name);
+    const auto missing = [layer](float value) { return is_missing_in(layer, value); };
+    const ValueRange range = stated_range().value_or(range_of(plane, missing));
+    return false_coloured(film, plane, layer != nullptr && layer->names, range, missing);
+}
+
+std::string LayerOptions::legend(const Film& film) const {
+    if (!shows())
+        return "";
+    const std::string name = shown_name();
+    const Layer* const layer = find_layer(name);
+    if (layer != nullptr && layer->names)
+        return fmt::format("{}: a colour for each number; black: nothing\n", name);
+    const auto missing = [layer](float value) { return is_missing_in(layer, value); };
+    const ValueRange range = stated_range().value_or(range_of(*film.find(name), missing));
+    return fmt::format("{}: {:.6g} (dark) to {:.6g} (bright); black: nothing\n", name, range.low, range.high);
+}
+
+} // namespace razor

@@ -1,0 +1,119 @@
+// razor render --layers and --false-colour: what is in files, and mistakes.
+#include "tests/program/pictures.h"
+#include "tests/program/run.h"
+
+#include <set>
+
+namespace razor {
+namespace {
+
+constexpr std::string_view scene = R"(
+    [settings]
+    size = [40, 24]
+    samples = 2
+    [camera]
+    position = [0, 2, 6]
+    [[light]]
+    corner = [-1, 4, -1]
+    edge_u = [2, 0, 0]
+    edge_v = [0, 0, 2]
+    radiance = 8
+    [[mesh]]
+    name = "floor"
+    shape = "plane"
+    scale = 6
+    translate = [0, -1, 0]
+    [[mesh]]
+    name = "gear"
+    shape = "gear"
+    [[object]]
+    mesh = "gear"
+    [[object]]
+    mesh = "floor"
+)";
+
+class Layers : public ::testing::Test {
+protected:
+    Layers() { folder_.file("scene.toml", scene); }
+
+    Outcome render(const std::string& arguments) const {
+        return run(quoted_argument(RAZOR_PROGRAM) + " render scene.toml --threads 1 " + arguments,
+                   folder_.path());
+    }
+    void expect_rendered(const std::string& arguments) const {
+        const Outcome result = render(arguments);
+        EXPECT_EQ(result.code, 0) << result.err;
+    }
+    void expect_refused(const std::string& arguments, const std::string& cause) const {
+        SCOPED_TRACE(arguments);
+        const std::size_t before = folder_.count();
+        const Outcome result = render(arguments);
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(folder_.count(), before) << "a file was left";
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Layers, AreInTheFileBesideAllElse) {
+    expect_rendered("-o plain.exr");
+    expect_rendered("--layers pick,steps,shading -o more.exr");
+    const Film plain = read_exr(folder_ / "plain.exr"), more = read_exr(folder_ / "more.exr");
+    for (const Plane& plane : plain.planes)
+        EXPECT_EQ(more.find(plane.name)->values, plane.values) << plane.name;
+    std::set<std::string> groups;
+    for (const Plane& plane : more.planes)
+        if (plain.find(plane.name) == nullptr)
+            groups.insert(plane.name.substr(0, plane.name.find('.')));
+    EXPECT_EQ(groups, (std::set<std::string>{"pick", "shading", "steps"}));
+    std::set<float> meshes;
+    for (const float mesh : more.find("pick.mesh")->values)
+        meshes.insert(mesh);
+    EXPECT_EQ(meshes, (std::set<float>{-1, 0, 1}));
+}
+
+TEST_F(Layers, OfASequenceAreThoseOfItsFrames) {
+    expect_rendered("--layers pick,lod --frames 0:1 -o s%d.exr");
+    expect_rendered("--layers pick,lod --frame 1 -o one.exr");
+    expect_same_picture(folder_ / "one.exr", folder_ / "s1.exr");
+}
+
+TEST_F(Layers, AreShownInFalseColours) {
+    const Outcome all = render("--false-colour lod.depth --range 0:4 -o lod.png -o lod.exr");
+    EXPECT_EQ(all.out, "lod.depth: 0 (dark) to 4 (bright); black: nothing\n");
+    EXPECT_NE(read_exr(folder_ / "lod.exr").find("lod.depth"), nullptr);
+    const Outcome first = render("--false-colour kd -o kd.png");
+    EXPECT_TRUE(first.out.starts_with("kd.depth: ")) << first.out;
+    EXPECT_EQ(render("--false-colour pick.mesh -o mesh.png").out,
+              "pick.mesh: a colour for each number; black: nothing\n");
+    EXPECT_EQ(render("--false-colour depth.Z --quiet -o depth.png").out, "");
+    const auto bytes = [&](const char* name) {
+        std::ifstream file(folder_ / name, std::ios::binary);
+        return std::string((std::istreambuf_iterator<char>(file)), {});
+    };
+    std::set<std::string> pictures{bytes("lod.png"), bytes("kd.png"), bytes("mesh.png"), bytes("depth.png")};
+    EXPECT_EQ(pictures.size(), 4U);
+    render("--false-colour lod.depth --range 0:1 -o lod1.png");
+    EXPECT_NE(bytes("lod.png"), bytes("lod1.png"));
+}
+
+TEST_F(Layers, AreRefusedInOneLine) {
+    expect_refused("--layers pick,kdd -o a.exr", "--layers 'kdd' is unknown; did you mean kd?");
+    expect_refused("--layers pick -o a.png", "--layers go into EXR files");
+    expect_refused("--layers pick --stats a.json", "--layers go into EXR files");
+    expect_refused("--false-colour lod.lvel -o a.png",
+                   "--false-colour 'lod.lvel' is no layer; did you mean lod.level?");
+    expect_refused("--false-colour lod -o a.exr", "--false-colour is of PNG files");
+    expect_refused("--range 0:1 -o a.png", "--range without --false-colour");
+    expect_refused("--false-colour lod --range 0 -o a.png", "--range '0' is not possible");
+    expect_refused("--false-colour lod --range 4:1 -o a.png", "--range '4:1' ends before it begins");
+    expect_refused("--false-colour lod --range a:1 -o a.png", "the low end of --range 'a' is not possible");
+    expect_refused("--false-colour lod --tone aces -o a.png", "--false-colour shows no light");
+    expect_refused("--layers pick --trace t.rzt -o a.exr", "leave out --layers");
+}
+
+} // namespace
+} // namespace razor
