@@ -7,9 +7,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 usage='usage: ./test.sh [--all]
   Builds build/release with g++ for every kernel target and runs its tests.
-  --all   also: code style; the benchmarks start; simulated reports, pictures and events of clang equal those of g++;
-          two fuzzers for some seconds; all but the longest tests by clang under address and undefined-behaviour
-          sanitizers; shared trees under the thread sanitizer; the picture at widths 8, 16 and 64.'
+  --all   also: code style; the benchmarks start; by clang, under address and undefined-behaviour sanitizers: reports,
+          pictures and events of the simulator equal those of g++, fuzzers for some seconds, all but the longest tests;
+          shared trees under the thread sanitizer; the picture at widths 8, 16 and 64.'
 all=false
 for argument in "$@"; do
     case $argument in
@@ -39,10 +39,9 @@ step "g++: tests" run_tests release
 if $all; then
     step "code style" check_style
     step "benchmarks start" start_benchmarks
-    step "clang: build" build_by_clang
+    step "clang, address and undefined-behaviour sanitizers: build" build asan-ubsan -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON -DRAZOR_PRECOMPILE=ON
     step "clang: reports and pictures equal those of g++" compare_compilers
-    step "two fuzzers, $fuzz_seconds s each" fuzz
-    step "address and undefined-behaviour sanitizers: build" build asan-ubsan -DRAZOR_TESTS=ON -DRAZOR_PRECOMPILE=ON
+    step "fuzzers, $fuzz_seconds s each" fuzz
     step "address and undefined-behaviour sanitizers: tests" run_sanitized_tests
     step "thread sanitizer: build" build_for_threads
     step "thread sanitizer: shared trees" render_shared_trees

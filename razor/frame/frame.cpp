@@ -3,6 +3,7 @@
 #include "razor/frame/frame_memory.h"
 #include "razor/frame/scratch.h"
 #include "razor/frame/unit.h"
+#include "razor/frame/view.h"
 #include "razor/scene/error.h"
 
 #include <fmt/core.h>
@@ -61,13 +62,13 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
         total.clusters * (refit_patches * sizeof(PatchRecord) + 64) + total.controls * 4 +
         (total.faces + total.points + total.curves + total.face_curves) * 64 +
         geometry.instances.size() * sizeof(InstanceRecord) + materials.texels * 4 +
-        materials.materials.size() * 1024 +
+        materials.materials.size() * 1024 + 2 * sizeof(FilterBin) * filter_bins +
         Hierarchy::node_limit(geometry.instances.size()) * sizeof(GraphNodeRecord);
     auto pixels =
         static_cast<std::uint64_t>(scene.settings.width) * static_cast<std::uint64_t>(scene.settings.height);
     memory = std::make_unique<isa::address_space>(
         pages->entry_count() * sizeof(PageEntry) + pages->line_count() * line_bytes + arena_bytes() +
-        2 * scene_bytes + pixels * 64 + 4 * gibibyte +
+        2 * scene_bytes + pixels * (options.passes ? 64 + 8 * weighted_sum_planes : 64) + 4 * gibibyte +
         static_cast<std::uint64_t>(options.workers + trees) * 64 * isa::address_space::granule);
     place_scene(scene);
     place_graph();
@@ -82,6 +83,7 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
 
 void Frame::Impl::reset() {
     *header->queues.get() = QueueRecord{};
+    choose_samples(0, settings.samples);
     deal_tiles(0, header->tiles_x * header->tiles_y);
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
@@ -255,6 +257,14 @@ void Frame::take_tiles(int first, int end) {
     impl_->deal_tiles(first, end);
 }
 
+void Frame::take_samples(int first, int count) {
+    Impl& f = *impl_;
+    if (!f.options.passes || (first != 0 && first != f.header->first_sample + f.header->samples))
+        throw std::invalid_argument("a frame's passes must follow each other");
+    f.choose_samples(first, count);
+    f.deal_tiles(0, f.header->tiles_x * f.header->tiles_y);
+}
+
 void Frame::stop() {
     std::atomic_ref(impl_->header->queues.get()->stopped.word).store(1, std::memory_order_relaxed);
 }
@@ -423,6 +433,9 @@ Film Frame::film() const {
     const FrameHeader& h = *impl_->header;
     const Crop& part = impl_->part;
     Film film(part.width, part.height);
+    if (part != Crop{0, 0, h.width, h.height})
+        film.window = PictureWindow{part.x, part.y, h.width, h.height};
+    film.camera = picture_camera(scaled(impl_->camera, impl_->unit), impl_->settings);
     const float* values = h.film.get();
     for (const char* name : film_names) {
         float* to = film.add(name).values.data();

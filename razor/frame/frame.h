@@ -39,6 +39,8 @@ struct FrameOptions {
     bool apart = false;
     /// The frame may be posed anew.
     bool moves = false;
+    /// Samples may be taken in passes: take_samples().
+    bool passes = false;
     /// Kernels say of memory that is done with that its contents are dead (razor/kernels/dead.h).
     bool discards = false;
     /// Keep what each screen tile costs: see Frame::tile_costs().
@@ -114,6 +116,12 @@ public:
     /// They are numbered along the screen's curve (razor/kernels/screen_curve.h). After the workers have
     /// returned they may run again on other tiles, and find what is built; the statistics go on.
     void take_tiles(int first, int end);
+    /// Until the next reset() workers take so many camera samples of each pixel, from number `first` on:
+    /// where the last ones ended, or 0. The film is then of all samples so far. Of the samples that they take
+    /// in one go, its values differ by roundings and, with Lod::recursive, by which rays that leave the
+    /// surfaces of a tile share what they ask for (razor/kernels/leave.h): those come in the order of samples
+    /// then. Else as take_tiles(), of all tiles. Only with FrameOptions::passes.
+    void take_samples(int first, int count);
     /// Runs one worker's share; every worker of options.workers must run, each in its own thread or fibre.
     /// Throws UserError if an arena is exhausted, or a memory budget too small for one screen tile.
     void render(const KernelTable& kernels, int worker);
@@ -158,8 +166,8 @@ public:
     int instances() const;
     /// Fraction of the tiles that workers have taken.
     double progress() const;
-    /// The film as it stands, of the part of the picture that the settings crop it to; depth is in world
-    /// units.
+    /// The film as it stands, of the part of the picture that the settings crop it to; depth and camera are
+    /// in world units.
     Film film() const;
     /// What lies in frame memory is in a unit of its own, so many world units long (razor/frame/unit.h), and
     /// scene coordinates begin here in the world: world = origin + unit * scene.

@@ -1,8 +1,11 @@
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/blend_table.h"
+#include "razor/frame/filter_table.h"
 #include "razor/frame/light_records.h"
 #include "razor/frame/scratch.h"
+#include "razor/frame/sky_distribution.h"
+#include "razor/frame/sky_record.h"
 #include "razor/frame/unit.h"
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
@@ -14,6 +17,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -151,6 +155,7 @@ void Frame::Impl::place_materials(const Scene& scene) {
             texel += words->size();
         }
     }
+    place_sky(scene);
     const auto by_face = [](const Instance& i) { return i.material < 0; };
     if (std::any_of(geometry.instances.begin(), geometry.instances.end(), by_face)) {
         auto* of_faces = region<std::int32_t>("materials", -1, total.faces);
@@ -159,6 +164,32 @@ void Frame::Impl::place_materials(const Scene& scene) {
             std::copy(scene.meshes[m].face_materials.begin(), scene.meshes[m].face_materials.end(),
                       of_faces + first_face[m]);
     }
+}
+
+void Frame::Impl::place_sky(const Scene& scene) {
+    if (materials.sky_map < 0)
+        return;
+    const Texture& texture = scene.textures[static_cast<std::size_t>(scene.sky_map.texture)];
+    const SkyDistribution d = sky_distribution(*texture.pyramid);
+    const auto copy = [&](const std::vector<float>& sums, isa::ref<float>& to) {
+        auto* words = region<float>("textures", -1, sums.size());
+        std::copy(sums.begin(), sums.end(), words);
+        to.set(words);
+    };
+    const auto step = [](int count) {
+        return count < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(static_cast<unsigned>(count - 1)));
+    };
+    auto* sky = new (region<SkyRecord>("textures", -1, 1)) SkyRecord{};
+    sky->map = materials.sky_map;
+    sky->columns = d.columns;
+    sky->rows = d.rows;
+    sky->column_step = step(d.columns);
+    sky->row_step = step(d.rows);
+    copy(d.heights, sky->heights);
+    copy(d.row_sums, sky->row_sums);
+    copy(d.cell_sums, sky->cell_sums);
+    copy(d.row_density, sky->row_density);
+    header->sky_map.set(sky);
 }
 
 void Frame::Impl::fill_instances(const Scene& scene) {
@@ -377,9 +408,40 @@ void Frame::Impl::place_view(const Scene& scene) {
     const Settings& s = scene.settings;
     const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
     header->film.set(region<float>("frame buffer", -1, pixels * film_planes));
+    place_filter(scene);
+    if (options.passes) {
+        const int planes = header->filter_use == filter_weighted ? weighted_sum_planes : sum_planes;
+        for (isa::ref<float>* sums : {&header->sums_before, &header->sums_after})
+            sums->set(region<float>("frame buffer", -1, pixels * static_cast<std::size_t>(planes)));
+    }
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
     fill_view(scene);
+}
+
+void Frame::Impl::place_filter(const Scene& scene) {
+    if (is_pixel(scene.settings.filter))
+        return;
+    try {
+        const FilterTable table = tabulate(scene.settings.filter);
+        auto* bins = region<FilterBin>("frame buffer", -1, table.bins.size());
+        std::copy(table.bins.begin(), table.bins.end(), bins);
+        header->filter_table.set(bins);
+        header->filter_use = table.weighted ? filter_weighted : filter_even;
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("{}: {}", scene.name, error.what()));
+    }
+}
+
+void Frame::Impl::choose_samples(int first, int count) {
+    header->first_sample = first;
+    header->samples = count;
+    header->packet_samples_log2 = packet_samples_log2(count);
+    if (options.passes) {
+        float* const before = header->sums_before.get();
+        header->sums_before.set(header->sums_after.get());
+        header->sums_after.set(before);
+    }
 }
 
 void Frame::Impl::fill_view(const Scene& scene) {
@@ -391,8 +453,8 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.lens_y, glm::dvec3(0));
     h.width = s.width;
     h.height = s.height;
-    h.samples = s.samples;
-    h.packet_samples_log2 = packet_samples_log2(s.samples);
+    camera = scene.camera;
+    settings = s;
     part = shown_part(s);
     h.first_column = part.x / tile_side;
     h.first_row = part.y / tile_side;
@@ -406,15 +468,24 @@ void Frame::Impl::fill_view(const Scene& scene) {
     const FilmExtent film = film_extent(scene.camera, s);
     const double pixel = 2 * film.half_height / s.height;
     put(h.camera, scene.camera.position - geometry.origin);
-    put(h.film_corner, v.forward - v.right * film.half_width + v.up * film.half_height);
+    h.orthographic = scene.camera.projection == Projection::orthographic ? 1 : 0;
+    put(h.film_corner, (h.orthographic != 0 ? glm::dvec3(0) : v.forward) - v.right * film.half_width +
+                           v.up * film.half_height);
+    put(h.line_of_sight, v.forward);
     put(h.film_x, v.right * pixel);
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
     fill_lights(scene);
-    if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0) {
+    SkyRecord* map = h.sky_map.get();
+    const bool dark = map != nullptr && map->rows == 0;
+    if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0 && !dark) {
         h.sky_samples = s.sky_samples;
-        put(h.sky, glm::dvec3(scene.sky) / static_cast<double>(std::max(s.sky_samples, 1)));
+        const double samples = std::max(s.sky_samples, 1);
+        put(h.sky, glm::dvec3(scene.sky) / (map != nullptr ? std::numbers::pi * samples : samples));
     }
+    if (map != nullptr)
+        map->turn =
+            static_cast<float>(scene.sky_map.rotation / 360 - std::floor(scene.sky_map.rotation / 360));
     h.sample_seed = hashed(s.seed);
     h.fixed_target = one_level(s.lod.lod) ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper ? 1 : 0;
@@ -426,12 +497,12 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.camera_base = static_cast<float>(asked.base);
     h.camera_growth = static_cast<float>(asked.growth);
     put(h.camera_slope, view_of(dicing).forward * asked.slope);
-    if (scene.camera.aperture_radius > 0) {
+    if (has_lens(scene.camera)) {
         h.focus = static_cast<float>(focus_distance(scene.camera));
         put(h.lens_x, v.right * scene.camera.aperture_radius);
         put(h.lens_y, v.up * scene.camera.aperture_radius);
     }
-    h.sky_spacing = sample_spacing(s, std::numbers::pi, s.sky_samples);
+    h.sky_spacing = sample_spacing(s, map != nullptr ? 1 : std::numbers::pi, s.sky_samples);
     h.bounces = s.bounces;
     h.diffuse_bounces = s.diffuse_bounces;
     h.lobe_spacing = sample_spacing(s, 1, 1);

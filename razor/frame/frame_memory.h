@@ -44,7 +44,9 @@ struct Frame::Impl {
     /// Of valid meshes, in the frame's unit.
     Impl(const Scene& scene, const FrameOptions& options);
 
-    Crop part;                // of the picture: what is rendered
+    Crop part;     // of the picture: what is rendered
+    Camera camera; // in the frame's unit
+    Settings settings;
     double unit = 1;          // see frame_unit()
     double topology_unit = 1; // that of `meshes`
     /// Those of the scene, then the texture cages (razor/surface/texture_cage.h) of those that need them.
@@ -119,6 +121,7 @@ struct Frame::Impl {
     // Each takes room, and has what a pose changes filled in.
     void place_scene(const Scene& scene);
     void place_materials(const Scene& scene);
+    void place_sky(const Scene& scene);
     void place_graph();
     void place_points(const Scene& scene);
     void place_topology();
@@ -144,6 +147,9 @@ struct Frame::Impl {
     void list_clusters(const std::vector<int>& of_meshes);
     void fill_view(const Scene& scene);
     void fill_lights(const Scene& scene);
+    void place_filter(const Scene& scene);
+    /// Which of a pixel's camera samples workers take.
+    void choose_samples(int first, int count);
     /// In the frame's unit, which `unit` is to be. False: with another number of instances, or more lights.
     bool pose(const Scene& scene);
     /// Of a scene in units of 1, as is the frame. False: everything is to be posed.

@@ -455,6 +455,7 @@ struct alignas(line_bytes) TreeRecord {
 };
 
 struct WorkerBudget; // razor/frame/budget.h
+struct SkyRecord;    // razor/frame/sky_record.h
 /// What one worker allocates from: lines or nodes, counted from the base of the family.
 struct alignas(line_bytes) WorkerRecord {
     std::int32_t grid_next, grid_end;
@@ -489,6 +490,22 @@ enum FilmPlane : std::int32_t {
     film_planes = 10
 };
 
+/// What a film holds beside its planes where passes add to it: sums over each pixel's samples, planes of one
+/// float a pixel. Of a filter with negative parts there are more: razor/kernels/film_filter.h.
+inline constexpr int sum_planes = 11;          // beauty, normal, albedo, depth, how many hit something
+inline constexpr int weighted_sum_planes = 18; // these, then weighted beauty and albedo, weights
+
+/// Where samples lie, and what they count: evenly in their pixel; as a FilterBin says, all alike; or some of
+/// them less than nothing.
+enum FilterUse : std::int32_t { filter_pixel = 0, filter_even = 1, filter_weighted = 2 };
+/// Of what is drawn along one axis, a part that is drawn once in filter_bins times.
+struct FilterBin {
+    float from, width; // pixels, from the pixel's corner
+    float weight;
+    float padding;
+};
+inline constexpr int filter_bins = 512;
+
 // --- in which order the vertices of a block are blended
 // A block of 2^a x 2^b quads: pass 0 blends the vertices at steps of 4 quads that are no corners, pass 1
 // those of 2, pass 2 the rest. A pass lists `count`, then arrays of pass_vertices numbers: vertices, their
@@ -513,7 +530,9 @@ inline constexpr int blend_table_words = blend_rows(block_log2 + 1, 0, 0);
 enum LevelChoice : std::int32_t { by_leaf = 0, by_patch = 1, by_stretch = 2 };
 
 struct FrameHeader {
-    std::int32_t width, height, samples;
+    std::int32_t width, height;
+    std::int32_t samples;             // of each pixel that are taken now ...
+    std::int32_t first_sample;        // ... of these numbers
     std::int32_t packet_samples_log2; // samples of one pixel that a packet of camera rays takes together
     std::int32_t tiles_x, tiles_y;
     std::int32_t first_column, first_row; // of the tiles of the part that is rendered, in the whole picture
@@ -530,10 +549,12 @@ struct FrameHeader {
     std::int32_t refit_count;   // clusters listed in refit_list
     float camera[3];            // scene coordinates
     float film_corner[3], film_x[3],
-        film_y[3];       // direction of the film's top left corner, and a pixel's steps
-    float sky[3];        // radiance / samples
-    float background[3]; // what a camera ray that hits nothing sees
-    float reach;         // no two points of scene and camera are further apart
+        film_y[3];             // direction of the film's top left corner, and a pixel's steps
+    float line_of_sight[3];    // unit
+    std::int32_t orthographic; // not 0: all rays go along it, and the film's corner is where it is
+    float sky[3];              // radiance / samples; of a map, what multiplies it, / (pi samples)
+    float background[3];       // what a camera ray that hits nothing sees, or what multiplies the sky's map
+    float reach;               // no two points of scene and camera are further apart
     isa::ref<GraphNodeRecord> graph;
     isa::ref<InstanceRecord> instances;
     isa::ref<LightRecord> lights;
@@ -558,6 +579,10 @@ struct FrameHeader {
     isa::ref<QueueRecord> queues;
     isa::ref<StretchRecord> stretches; // one a place
     isa::ref<float> film;
+    /// Planes of sums over the samples before first_sample, and those to be left for the next pass. Two sets,
+    /// since what is begun again must find the first as it was. Null: there is no next pass.
+    isa::ref<float> sums_before, sums_after;
+    isa::ref<FilterBin> filter_table; // filter_bins of x, then of y
     isa::ref<std::int32_t> blend_table;
     float field_origin[3];            // of the field of all camera rays (razor/kernels/morph.h): where the
                                       // dicing camera is
@@ -565,11 +590,12 @@ struct FrameHeader {
     float camera_slope[3];
     float lens_x[3], lens_y[3]; // radii of the lens
     float focus;                // depth in focus; 0: a pinhole
-    float sky_spacing;          // see growth_to_sky(), times edge_pixels
+    float sky_spacing;          // see growth_to_sky(), times edge_pixels; of a map, as of density 1
     std::int32_t morphs;        // 0: vertices stay at their anchors
     std::int32_t one_field;     // not 0: rays that leave surfaces ask for what camera rays do
     float fixed_target;         // not 0: what all rays ask for, everywhere
     std::int32_t level_choice;  // a LevelChoice
+    std::int32_t filter_use;    // a FilterUse
     std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
     std::int32_t discards;      // not 0: see razor/kernels/dead.h
     std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
@@ -578,6 +604,7 @@ struct FrameHeader {
     isa::ref<MaterialRecord> materials; // where the plan needs them; likewise:
     isa::ref<MapRecord> maps;
     isa::ref<TextureRecord> textures;
+    isa::ref<SkyRecord> sky_map;           // null: the sky is the same everywhere
     isa::ref<std::int32_t> texels;         // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
     std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture

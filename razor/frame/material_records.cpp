@@ -75,6 +75,17 @@ public:
         t.materials.push_back(r);
     }
 
+    /// Around the horizon it goes on where it ends, at the poles it does not, whatever its texture has
+    /// elsewhere.
+    void add_sky(const SkyMap& sky) {
+        TextureRecord r = t.textures[static_cast<std::size_t>(texture(sky.texture))];
+        r.wrap_u = wrap_repeat;
+        r.wrap_v = wrap_clamp;
+        t.sky_map = static_cast<std::int32_t>(t.maps.size());
+        t.maps.push_back(map_record(TextureMap{}, static_cast<std::int32_t>(t.textures.size())));
+        t.textures.push_back(r);
+    }
+
     MaterialTables t;
 
 private:
@@ -135,6 +146,10 @@ MaterialTables tabulate_materials(const Scene& scene, const std::vector<bool>& u
         tables.add(m, used[i]);
         glossy = glossy || (used[i] && !(is_matte(m) && m.emission == glm::vec3(0)));
         mapped = mapped || tables.t.mapped.back();
+    }
+    if (scene.sky_map.texture >= 0) {
+        tables.add_sky(scene.sky_map);
+        mapped = true;
     }
     tables.t.look = glossy ? (mapped ? look_glossy_mapped : look_glossy) : mapped ? look_mapped : look_matte;
     return std::move(tables.t);

@@ -28,19 +28,23 @@ class AutomaticLength {
 public:
     explicit AutomaticLength(const Scene& scene)
         : from_(dicing_camera(scene).position),
+          everywhere_(dicing_camera(scene).projection == Projection::orthographic),
           pixels_(scene.settings.edge_pixels * pixel_footprint(dicing_camera(scene), scene.settings)) {}
 
     double operator()(const Box& box) const {
+        const double size = glm::length(box.high - box.low);
+        const double least = std::max(size * 1e-6, 1e-30);
+        if (everywhere_)
+            return std::clamp(pixels_, least, 1e30);
         double centre = glm::length(box.centre() - from_);
         double distance = std::max(distance_to(box, from_), centre / 8);
-        double size = glm::length(box.high - box.low);
-        double least = std::max(size * 1e-6, 1e-30);
         return std::clamp(pixels_ * distance, least, 1e30);
     }
 
 private:
     glm::dvec3 from_;
-    double pixels_; // at distance 1
+    bool everywhere_; // at any distance
+    double pixels_;   // at distance 1
 };
 
 } // namespace
@@ -143,7 +147,8 @@ void locate_instance(SceneGeometry& g, const Scene& scene, const AutomaticLength
 void measure_reach(SceneGeometry& g, const Scene& scene) {
     const Box& all = g.graph.bounds();
     const double extent = glm::length(all.high - all.low);
-    g.reach = std::max({extent + glm::length(scene.camera.position - g.origin) + scene.camera.aperture_radius,
+    g.reach = std::max({extent + glm::length(scene.camera.position - g.origin) +
+                            scene.camera.aperture_radius + film_reach(scene.camera, scene.settings),
                         extent + glm::length(dicing_camera(scene).position - g.origin), 1e-30});
 }
 
@@ -157,7 +162,8 @@ const Affine& world_of(const SceneGeometry& g, std::size_t instance) {
 }
 
 bool same_view(const Camera& a, const Camera& b) {
-    return a.position == b.position && a.target == b.target && a.up == b.up && a.fov_degrees == b.fov_degrees;
+    return a.position == b.position && a.target == b.target && a.up == b.up &&
+           a.fov_degrees == b.fov_degrees && a.projection == b.projection && a.height == b.height;
 }
 
 /// Levels of all instances; appends those that have others now.

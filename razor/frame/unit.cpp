@@ -1,6 +1,7 @@
 #include "razor/frame/unit.h"
 
 #include "razor/frame/scene_geometry.h"
+#include "razor/frame/view.h"
 
 #include <glm/common.hpp>
 
@@ -23,6 +24,7 @@ void scale(Camera& camera, double factor) {
     camera.target *= factor;
     camera.aperture_radius *= factor;
     camera.focus_distance *= factor;
+    camera.height *= factor;
 }
 
 /// As conjugated by the scaling: linear parts stay.
@@ -50,6 +52,7 @@ double frame_unit(const Scene& scene, const Box& all) {
     const auto reaches = [&](const glm::dvec3& p) { reach = std::max(reach, largest(p - all.centre())); };
     for (const Camera& camera : {scene.camera, dicing_camera(scene)}) {
         reaches(camera.position);
+        reach += film_reach(camera, scene.settings);
         reach = std::max({reach, camera.aperture_radius, camera.focus_distance});
     }
     for (const Light& light : scene.lights) {
@@ -69,6 +72,11 @@ double frame_unit(const Scene& scene, const Box& all) {
     const int exponent =
         std::max(std::ilogb(extent) - usual_log2_extent, std::ilogb(reach) - most_log2_reach);
     return std::ldexp(1.0, std::max(exponent, -1000)); // its inverse must be finite
+}
+
+Camera scaled(Camera camera, double factor) {
+    scale(camera, factor);
+    return camera;
 }
 
 Scene scaled(Scene scene, double factor) {

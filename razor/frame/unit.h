@@ -24,6 +24,7 @@ double frame_unit(const Scene& scene);
 double frame_unit(const Scene& scene, const Box& all);
 
 /// The scene with every length times `factor`.
+Camera scaled(Camera camera, double factor);
 Scene scaled(Scene scene, double factor);
 
 } // namespace razor

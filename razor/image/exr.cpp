@@ -11,10 +11,11 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
 
 namespace razor {
 namespace {
@@ -43,18 +44,58 @@ Imf::Slice slice_of(const float* values, int x, int y, std::size_t width) {
                             1, pixel_bytes, row_bytes);
 }
 
+Imath::M44f matrix_of(const std::array<float, 16>& rows) {
+    Imath::M44f m;
+    std::copy(rows.begin(), rows.end(), &m[0][0]);
+    return m;
+}
+std::array<float, 16> rows_of(const Imath::M44f& m) {
+    std::array<float, 16> rows{};
+    std::copy_n(&m[0][0], rows.size(), rows.begin());
+    return rows;
+}
+
+Imath::Box2i box_of(int x, int y, int width, int height) {
+    return {{x, y}, {x + width - 1, y + height - 1}};
+}
+
+Imf::Header header_of(const Film& film) {
+    const PictureWindow window = film.window.value_or(PictureWindow{0, 0, film.width, film.height});
+    Imf::Header header(box_of(0, 0, window.width, window.height),
+                       box_of(window.x, window.y, film.width, film.height), 1, {0, 0},
+                       film.camera ? film.camera->screen_width : 1);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
+    if (film.camera) {
+        Imf::addWorldToCamera(header, matrix_of(film.camera->world_to_camera));
+        Imf::addWorldToNDC(header, matrix_of(film.camera->world_to_ndc));
+    }
+    return header;
+}
+
+/// What the header says of window and camera.
+void describe(const Imf::Header& header, Film& film) {
+    const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
+    if (data != display)
+        film.window = PictureWindow{data.min.x - display.min.x, data.min.y - display.min.y,
+                                    display.max.x - display.min.x + 1, display.max.y - display.min.y + 1};
+    if (Imf::hasWorldToCamera(header) && Imf::hasWorldToNDC(header))
+        film.camera = PictureCamera{rows_of(Imf::worldToCamera(header)), rows_of(Imf::worldToNDC(header)),
+                                    header.screenWindowWidth()};
+}
+
 } // namespace
 
 void write_exr(const std::filesystem::path& path, const Film& film, const ImageAttributes& attributes) {
     OutputFile file(path);
     try {
-        Imf::Header header(film.width, film.height);
-        header.compression() = Imf::ZIP_COMPRESSION;
+        Imf::Header header = header_of(film);
+        const Imath::V2i corner = header.dataWindow().min;
         Imf::FrameBuffer pixels;
         for (const Plane& plane : film.planes) {
             header.channels().insert(plane.name, Imf::Channel(Imf::FLOAT));
-            pixels.insert(plane.name,
-                          slice_of(plane.values.data(), 0, 0, static_cast<std::size_t>(film.width)));
+            pixels.insert(plane.name, slice_of(plane.values.data(), corner.x, corner.y,
+                                               static_cast<std::size_t>(film.width)));
         }
         for (const auto& [name, value] : attributes) {
             header.insert(name, Imf::StringAttribute(value));
@@ -90,6 +131,7 @@ Film read_exr(const std::filesystem::path& path, ImageAttributes* attributes) {
                 fmt::format("{}: {} x {} pixels are too many; give a smaller picture", name, width, height));
         }
         Film film(static_cast<int>(width), static_cast<int>(height));
+        describe(header, film);
         Imf::FrameBuffer pixels;
         for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
             if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {

@@ -1,6 +1,8 @@
 // A rendered picture: named planes of floats, rows from the top.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,9 +17,30 @@ struct Plane {
     std::vector<float> values; // width * height
 };
 
+/// Where a film lies in the whole picture, and that one's size, in pixels from its top left corner.
+struct PictureWindow {
+    int x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(const PictureWindow&) const = default;
+};
+
+/// What a picture was taken by, as OpenEXR files say it: matrices by rows that a row (x, y, z, 1) of world
+/// coordinates is multiplied by from the left. Camera coordinates are left-handed: x to the right, y up, z
+/// along the line of sight. Normalised device coordinates (after division by w) are (0, 0) and (1, 1) in the
+/// whole picture's upper left and lower right corners, z is -1 over the depth (perspective) or the
+/// depth: it rises with it.
+struct PictureCamera {
+    std::array<float, 16> world_to_camera{}, world_to_ndc{};
+    float screen_width = 1; // of the film at distance 1, where the projection is perspective
+
+    bool operator==(const PictureCamera&) const = default;
+};
+
 struct Film {
     int width = 0, height = 0; // pixels
     std::vector<Plane> planes;
+    std::optional<PictureWindow> window; // of a part of a picture
+    std::optional<PictureCamera> camera; // where it is known
 
     Film() = default;
     Film(int width, int height) : width(width), height(height) {}

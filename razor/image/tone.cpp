@@ -1,8 +1,11 @@
 #include "razor/image/tone.h"
 
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace razor {
@@ -20,12 +23,49 @@ glm::vec3 film_curve(const glm::vec3& v) {
     return light / most;
 }
 
+// AgX's inset, a matrix, is 4/5 of each channel and one mean of all three, of these weights, which sum to
+// 1/5: its outset, the inverse, follows.
+const glm::vec3 agx_mean(0.04240107095046854F, 0.07843650156180276F, 0.0791624274877287F);
+constexpr float agx_kept = 0.8F;
+constexpr float agx_least_stops = -12.473931188332413F; // log2(0.18) - 10
+constexpr float agx_stops = 16.5F;
+constexpr float agx_pivot = 10.0F / 16.5F; // middle grey; shown as 1/2
+constexpr float agx_slope = 2;
+
+/// The half of the sigmoid on one side of the pivot: from 0, with agx_slope, to 1/2 at `end`.
+float agx_half(float x, float end, float power) {
+    // f(x) = s x / (1 + (s x / l)^p)^(1/p), with l so that f(end) = 1/2.
+    const float limit = std::pow(std::pow(0.5F, -power) - std::pow(agx_slope * end, -power), -1 / power);
+    const float straight = agx_slope * x;
+    return straight / std::pow(1 + std::pow(straight / limit, power), 1 / power);
+}
+
+float agx_curve(float light) {
+    if (!(light > 0))
+        return 0;
+    const float x = glm::clamp((std::log2(light) - agx_least_stops) / agx_stops, 0.0F, 1.0F);
+    const float shown = x < agx_pivot ? 0.5F - agx_half(agx_pivot - x, agx_pivot, 3)
+                                      : 0.5F + agx_half(x - agx_pivot, 1 - agx_pivot, 3.25F);
+    return glm::clamp(shown, 0.0F, 1.0F);
+}
+
+glm::vec3 agx(glm::vec3 light) {
+    for (int c = 0; c < 3; ++c)
+        light[c] = light[c] > 0 ? std::min(light[c], 1e9F) : 0; // also of what is no number
+    light = light * agx_kept + glm::dot(agx_mean, light);
+    const glm::vec3 drawn(agx_curve(light.x), agx_curve(light.y), agx_curve(light.z));
+    const glm::vec3 shown = (drawn - glm::dot(agx_mean, drawn)) / agx_kept;
+    return glm::pow(glm::clamp(shown, 0.0F, 1.0F), glm::vec3(2.2F)); // what a display makes of it
+}
+
 } // namespace
 
 glm::vec3 display_colour(const glm::vec3& light, const Tone& tone) {
     glm::vec3 colour = light * std::exp2(tone.exposure);
     if (tone.curve == ToneCurve::srgb)
         return colour;
+    if (tone.curve == ToneCurve::agx)
+        return agx(colour);
     colour = glm::min(colour, glm::vec3(1e9F)); // squares stay finite
     return glm::clamp(out_of_curve * film_curve(into_curve * colour), 0.0F, 1.0F);
 }

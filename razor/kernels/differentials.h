@@ -38,6 +38,14 @@ inline RayDifferential pinhole_differential(const vvec& d, const vvec& film_x, c
     return {still, still, unit_derivative(d, film_x), unit_derivative(d, film_y)};
 }
 
+/// Of a ray along the line of sight of an orthographic camera: neighbours begin a pixel's steps away and stay
+/// parallel, so that footprints are the same wherever they are measured.
+inline RayDifferential orthographic_differential(const vvec& film_x, const vvec& film_y) {
+    vfloat zero(0.0F);
+    vvec still{zero, zero, zero};
+    return {film_x, film_y, still, still};
+}
+
 /// Of a ray from a point of a thin lens through `focus` (from that point to where the rays of a pixel meet),
 /// for neighbouring points of the lens, lens_x and lens_y away.
 inline RayDifferential lens_differential(const vvec& focus, const vvec& lens_x, const vvec& lens_y) {

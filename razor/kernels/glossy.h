@@ -17,9 +17,9 @@ inline namespace light_kernel {
 struct Matte {
     static constexpr int lobes = 1;
     Matte permuted(const vint&) const { return {}; }
-    /// Of the light of that record, which `samples` shadow rays a hit go to.
-    void reflect(const Surface&, const LightRays& l, pointer<LightRecord>, sint,
-                 vfloat (&part)[lobes]) const {
+    /// Of light that `samples` shadow rays a hit go to, spread over that domain: see LightRecord.
+    template <class Domain>
+    void reflect(const Surface&, const LightRays& l, const Domain&, sint, vfloat (&part)[lobes]) const {
         part[0] = l.weight;
     }
     void reflect_sky(const Surface&, const LightRays& l, vfloat (&part)[lobes]) const { part[0] = l.weight; }
@@ -28,7 +28,7 @@ struct Matte {
 /// What lobes are multiplied with: diffuse reflection; the base at normal incidence; at grazing incidence;
 /// the coat.
 enum Lobe : int { lobe_diffuse = 0, lobe_normal = 1, lobe_grazing = 2, lobe_coat = 3, lobe_count = 4 };
-static_assert(lobe_count == most_lobes);
+static_assert(3 * lobe_count == most_lobes);
 
 /// Of a hit: all that does not depend on where light comes from.
 struct Glossy {
@@ -62,7 +62,8 @@ struct Glossy {
         p.through = permute(through, from);
         return p;
     }
-    inline void reflect(const Surface& s, const LightRays& l, pointer<LightRecord> light, sint samples,
+    template <class Domain>
+    inline void reflect(const Surface& s, const LightRays& l, const Domain& over, sint samples,
                         vfloat (&part)[lobes]) const;
     inline void reflect_sky(const Surface& s, const LightRays& l, vfloat (&part)[lobes]) const;
 };
@@ -143,7 +144,8 @@ inline vfloat reflection_share(const Glossy& g, const vfloat& graze) {
     return select(opaque, vfloat(1.0F), reflected / all);
 }
 
-inline void Glossy::reflect(const Surface& s, const LightRays& l, pointer<LightRecord> light, sint samples,
+template <class Domain>
+inline void Glossy::reflect(const Surface& s, const LightRays& l, const Domain& over, sint samples,
                             vfloat (&part)[lobes]) const {
     vvec h = half_way(*this, l);
     vfloat cos_half = dot(s.shading, h);
@@ -151,7 +153,7 @@ inline void Glossy::reflect(const Surface& s, const LightRays& l, pointer<LightR
     vfloat sine_square = dot(across, across);
     vfloat cos_light = max(dot(s.shading, l.rays.direction), 1.0e-9F);
     vfloat graze = grazing(dot(toward, h), inner);
-    vfloat domain = load_broadcast(field(light, &LightRecord::domain));
+    vfloat domain = over.load();
     vfloat spread = max(domain * l.weight, 1.0e-30F);
     vfloat light_density = (cos_light * vfloat(to_float(samples))) / spread;
     light_density = select(domain > vfloat(0.0F), light_density, vfloat(delta_density * 1.0e12F));

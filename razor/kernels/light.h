@@ -24,6 +24,12 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
 /// Rays of one hit in a packet, at most: 2^rays_log2.
 inline constexpr int rays_of_hit_log2 = 2;
 
+/// What a light's samples are spread over.
+struct LightDomain {
+    pointer<LightRecord> light;
+    vfloat load() const { return load_broadcast(field(light, &LightRecord::domain)); }
+};
+
 /// Where shadow rays go: to points of one light, or in directions about the normal.
 struct TowardsRectangle {
     static constexpr RayKind kind = kind_light;
@@ -34,7 +40,7 @@ struct TowardsRectangle {
     template <class Response>
     void reflect(const Response& r, const Surface& s, const LightRays& l, sint samples,
                  vfloat (&part)[Response::lobes]) const {
-        r.reflect(s, l, light, samples, part);
+        r.reflect(s, l, LightDomain{light}, samples, part);
     }
 };
 struct TowardsShape {
@@ -46,7 +52,7 @@ struct TowardsShape {
     template <class Response>
     void reflect(const Response& r, const Surface& s, const LightRays& l, sint samples,
                  vfloat (&part)[Response::lobes]) const {
-        r.reflect(s, l, light, samples, part);
+        r.reflect(s, l, LightDomain{light}, samples, part);
     }
 };
 struct TowardsSky {

@@ -4,6 +4,7 @@
 #include "razor/kernels/light.h"
 #include "razor/kernels/mapped.h"
 #include "razor/kernels/pixel_sums.h"
+#include "razor/kernels/sky_map.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -24,6 +25,11 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     tally(c.counters->camera_hits, count(hit));
     vvec sky = load_broadcast_vec(field(c.frame, &FrameHeader::background));
     vmask open = r.active & !hit;
+    if constexpr (Mapped) {
+        pointer<SkyRecord> map = load(field(c.frame, &FrameHeader::sky_map));
+        if (branch(!is_null(map)))
+            sky = see_mapped_sky(c, map, r, vfloat(delta_density), sint(0), open);
+    }
     sums.beauty = sums.beauty + select(open, sky, {zero, zero, zero});
     if (branch(none(hit)))
         return;
@@ -41,8 +47,7 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});
     sums.depth = sums.depth + select(hit, h.t, zero);
     sums.hits = sums.hits + select(hit, vfloat(1.0F), zero);
-    const auto reflect = [&](const vvec& radiance, const Gathered<Matte>& light) {
-        vvec arriving = radiance * light.lobe[0];
+    const auto reflect = [&](const vvec& arriving) {
         vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
         sums.beauty = sums.beauty + select(hit, reflected, {zero, zero, zero});
     };
@@ -51,13 +56,22 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     for (sint n = 0; branch(n < lights); ++n) {
         sint samples = load(field(light, &LightRecord::samples));
         Gathered<Matte> gathered = gather_light<F, Mapped>(c, s, light, Matte{}, samples);
-        reflect(load_broadcast_vec(field(light, &LightRecord::radiance)), gathered);
+        vvec radiance = load_broadcast_vec(field(light, &LightRecord::radiance));
+        reflect(radiance * gathered.lobe[0]);
         light = light + 1;
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
+        vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::sky));
+        if constexpr (Mapped) {
+            pointer<SkyRecord> map = load(field(c.frame, &FrameHeader::sky_map));
+            if (branch(!is_null(map))) {
+                reflect(times(radiance, gather_mapped_sky<F>(c, map, s, Matte{}, sky_samples).of(0)));
+                return;
+            }
+        }
         Gathered<Matte> gathered = gather_light<F, Mapped>(c, s, TowardsSky{}, Matte{}, sky_samples);
-        reflect(load_broadcast_vec(field(c.frame, &FrameHeader::sky)), gathered);
+        reflect(radiance * gathered.lobe[0]);
     }
 }
 

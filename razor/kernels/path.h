@@ -6,6 +6,7 @@
 #include "razor/kernels/light.h"
 #include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/seen_lights.h"
+#include "razor/kernels/sky_map.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -18,6 +19,16 @@ inline vvec coloured(const Gathered<Glossy>& light, const vvec& radiance, const 
     vfloat white = grazing + light.lobe[lobe_coat];
     vvec bright = madd(light.lobe[lobe_normal], colours.normal, {white, white, white});
     return diffuse + times(radiance, bright);
+}
+
+/// The same of light of many colours.
+inline vvec coloured(const GatheredColours<Glossy>& light, const Colours& colours) {
+    vvec diffuse = times(light.of(lobe_diffuse), colours.diffuse);
+    vvec white = light.of(lobe_coat);
+    vvec grazing = light.of(lobe_grazing);
+    white = madd(colours.grazing, grazing, white);
+    vvec normal = times(light.of(lobe_normal), colours.normal);
+    return diffuse + (normal + white);
 }
 
 /// Adds all light that reaches the hit and is reflected towards the viewer, who gets `carried` of it.
@@ -44,6 +55,18 @@ inline void add_light(const Context& c, const Surface& s, const Glossy& g, const
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
         sint taken = select(fewer, sint(1), sky_samples);
+        if constexpr (Mapped) {
+            pointer<SkyRecord> map = load(field(c.frame, &FrameHeader::sky_map));
+            if (branch(!is_null(map))) {
+                GatheredColours<Glossy> gathered = gather_mapped_sky<F>(c, map, s, g, taken);
+                vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::sky));
+                sfloat number = to_float(taken);
+                radiance = radiance * vfloat(to_float(sky_samples) / number);
+                vvec seen = times(times(coloured(gathered, colours), radiance), carried);
+                beauty = beauty + select(s.hit, seen, {zero, zero, zero});
+                return;
+            }
+        }
         Gathered<Glossy> gathered = gather_light<F, Mapped>(c, s, TowardsSky{}, g, taken);
         add(gathered, load_broadcast_vec(field(c.frame, &FrameHeader::sky)), sky_samples, taken);
     }
@@ -80,6 +103,8 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
     vvec carried{one, one, one};
     Bounce bounce;
     bounce.rays = camera;
+    bounce.density = vfloat(delta_density);
+    bounce.diffuse = vmask(false);
     for (sint n = 0; branch(n <= bounces); ++n) {
         const Rays& r = bounce.rays;
         Hits h;
@@ -95,6 +120,16 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         vmask hit = r.active & (h.patch >= vint(0));
         vmask open = r.active & !hit;
         found = select(open, found, black);
+        if constexpr (Mapped) {
+            pointer<SkyRecord> map = load(field(c.frame, &FrameHeader::sky_map));
+            if (branch(!is_null(map))) {
+                sint stated = load(field(c.frame, &FrameHeader::sky_samples));
+                sint fewer = min(stated, sint(1));
+                sint taken = select(n > 1, fewer, stated);
+                vmask sees = open & !bounce.diffuse;
+                found = select(sees, see_mapped_sky(c, map, r, bounce.density, taken, sees), black);
+            }
+        }
         if (branch(n > 0)) {
             vfloat end = select(hit, h.t, vfloat(infinite));
             vvec met = meet_lights(c, r, end, bounce.density, n > 1);

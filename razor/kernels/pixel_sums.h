@@ -12,5 +12,12 @@ struct PixelSums {
     vfloat depth, hits;
 };
 
+/// The same of a filter with negative parts: as if all samples counted alike, and as they count.
+struct WeightedSums {
+    PixelSums even;
+    vvec beauty, albedo;
+    vfloat weight;
+};
+
 } // namespace shade_kernel
 } // namespace razor::ISA_TARGET

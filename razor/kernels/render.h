@@ -3,6 +3,7 @@
 #pragma once
 
 #include "razor/kernels/budget_tiles.h"
+#include "razor/kernels/film_filter.h"
 #include "razor/kernels/leave.h"
 #include "razor/kernels/packet.h"
 #include "razor/kernels/pixel_sums.h"
@@ -35,6 +36,7 @@ struct Camera {
     vvec lens_x, lens_y; // radii of the lens
     vfloat focus;        // the depth in focus
     sbool lens;
+    sbool parallel; // rays go along the line of sight
 };
 
 inline Camera load_camera(const Context& c) {
@@ -48,18 +50,23 @@ inline Camera load_camera(const Context& c) {
     sfloat focus = load(field(c.frame, &FrameHeader::focus));
     k.focus = vfloat(focus);
     k.lens = focus > 0.0F;
+    sint orthographic = load(field(c.frame, &FrameHeader::orthographic));
+    k.parallel = orthographic != 0;
     return k;
 }
 
-/// Rays through the pixels (column, row), one lane each, at the sample's place in the pixel.
+/// Rays through the pixels (column, row), one lane each, `at` from the pixel's corner.
 inline Rays camera_rays(const Context& c, const Camera& k, const vint& column, const vint& row,
-                        const vint& pixel, const vint& sample, const vmask& active) {
-    vpoint at = sample_square(pixel, sample, dimension_film);
+                        const vpoint& at, const vint& pixel, const vint& sample, const vmask& active) {
     vfloat x = to_float(column) + at.u;
     vfloat y = to_float(row) + at.v;
     vvec d = madd(y, k.y, madd(x, k.x, k.corner));
     Rays r;
     r.origin = k.position;
+    if (branch(k.parallel)) {
+        r.origin = r.origin + d;
+        d = load_broadcast_vec(field(c.frame, &FrameHeader::line_of_sight));
+    }
     if (branch(k.lens)) {
         vpoint on = concentric_disk(sample_square(pixel, sample, dimension_lens));
         vvec from = madd(on.v, k.lens_y, k.lens_x * on.u);
@@ -86,10 +93,90 @@ inline void add_lanes(const PacketShape& shape, PixelSums& sums) {
         sums.hits = sums.hits + permute(sums.hits, other);
     }
 }
+/// The same of what weighted sums have besides.
+inline void add_weighted_lanes(const PacketShape& shape, WeightedSums& sums) {
+    sint lanes = sint(1) << shape.samples_log2;
+    for (sint k = 1; branch(k < lanes); k = k + k) {
+        vint other = lane_index() ^ vint(k);
+        sums.beauty = sums.beauty + permute(sums.beauty, other);
+        sums.albedo = sums.albedo + permute(sums.albedo, other);
+        sums.weight = sums.weight + permute(sums.weight, other);
+    }
+}
 
 } // namespace shade_kernel
 
 inline namespace resolve_kernel {
+
+/// Adds what earlier passes left, and leaves the sum for the next; planes begin at `before` and `after`.
+class KeptSums {
+public:
+    KeptSums(const Context& c, const vint& pixel, const vmask& m)
+        : before_(load(field(c.frame, &FrameHeader::sums_before))),
+          after_(load(field(c.frame, &FrameHeader::sums_after))), pixel_(pixel), m_(m) {
+        sint width = load(field(c.frame, &FrameHeader::width));
+        sint height = load(field(c.frame, &FrameHeader::height));
+        sint first = load(field(c.frame, &FrameHeader::first_sample));
+        plane_ = width * height;
+        later_ = first > 0;
+    }
+    void keep(PixelSums& sums) {
+        keep_vector(sums.beauty);
+        keep_vector(sums.normal);
+        keep_vector(sums.albedo);
+        keep_plane(sums.depth);
+        keep_plane(sums.hits);
+    }
+    void keep_weighted(WeightedSums& sums) {
+        keep(sums.even);
+        keep_vector(sums.beauty);
+        keep_vector(sums.albedo);
+        keep_plane(sums.weight);
+    }
+
+private:
+    [[gnu::noinline]] void keep_plane(vfloat& sum) {
+        if (branch(later_)) {
+            vfloat before = gather(before_, pixel_, m_);
+            sum = sum + before;
+        }
+        scatter(after_, pixel_, sum, m_);
+        before_ = before_ + plane_;
+        after_ = after_ + plane_;
+    }
+    void keep_vector(vvec& sum) {
+        keep_plane(sum.x);
+        keep_plane(sum.y);
+        keep_plane(sum.z);
+    }
+
+    pointer<float> before_, after_;
+    vint pixel_;
+    vmask m_;
+    sint plane_ = 0;
+    sbool later_;
+};
+
+[[gnu::noinline]] inline void keep_sums(const Context& c, const vint& pixel, const vmask& m,
+                                        PixelSums& sums) {
+    phase_scope phase(phase_resolve);
+    KeptSums kept(c, pixel, m);
+    kept.keep(sums);
+}
+/// What stands for the pixels' sums, `sums` being those of samples that all count alike.
+[[gnu::noinline]] inline void finish_weighted(const Context& c, const PacketShape& shape, const vint& pixel,
+                                              sint samples, const vmask& m, WeightedSums& weighted,
+                                              PixelSums& sums) {
+    phase_scope phase(phase_resolve);
+    weighted.even = sums;
+    add_weighted_lanes(shape, weighted);
+    pointer<float> after = load(field(c.frame, &FrameHeader::sums_after));
+    if (branch(!is_null(after))) {
+        KeptSums kept(c, pixel, m);
+        kept.keep_weighted(weighted);
+    }
+    sums = sums_of(weighted, samples);
+}
 
 /// Means of the samples into the film. Pixels without a hit have infinite depth and a zero normal.
 [[gnu::noinline]] inline void resolve(const Context& c, const PixelSums& sums, const vint& pixel,
@@ -146,6 +233,13 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
+    sint first = load(field(c.frame, &FrameHeader::first_sample));
+    sint end = first + samples;
+    sint filter = load(field(c.frame, &FrameHeader::filter_use));
+    sbool filtered = filter != filter_pixel;
+    sbool weighted = filter == filter_weighted;
+    pointer<float> sums_after = load(field(c.frame, &FrameHeader::sums_after));
+    sbool passes = !is_null(sums_after);
     PacketShape shape = packet_shape(c);
     sint packet_samples = sint(1) << shape.samples_log2;
     sint columns = sint(1) << shape.columns_log2;
@@ -163,16 +257,31 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
             vint pixel = row * vint(width);
             pixel = pixel + column;
             vint place = pixel + vint(seed);
-            vfloat zero(0.0F);
-            PixelSums sums{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero};
-            for (sint s = 0; branch(s < samples); s += packet_samples) {
+            PixelSums sums = no_sums();
+            WeightedSums weighted_sums;
+            if (branch(weighted))
+                weighted_sums = no_weighted_sums();
+            for (sint s = first; branch(s < end); s += packet_samples) {
                 vint sample = member + vint(s);
-                Rays r = camera_rays(c, camera, column, row, place, sample, inside);
+                vpoint square = sample_square(place, sample, dimension_film);
+                vpoint at = square;
+                if (branch(filtered))
+                    at = draw_filtered(c, square, inside);
+                Rays r = camera_rays(c, camera, column, row, at, place, sample, inside);
                 Sampler::template add<F>(c, r, place, sample, sums);
+                if (branch(weighted))
+                    add_weighted(c, square, inside, sums, weighted_sums);
                 note_time(*c.watch, moment_first_packet);
             }
+            vmask one = inside & (member == vint(0));
+            if (branch(weighted))
+                sums = weighted_sums.even;
             add_lanes(shape, sums);
-            resolve(c, sums, pixel, samples, inside & (member == vint(0)));
+            if (branch(weighted))
+                finish_weighted(c, shape, pixel, end, one, weighted_sums, sums);
+            else if (branch(passes))
+                keep_sums(c, pixel, one, sums);
+            resolve(c, sums, pixel, end, one);
         }
     }
 }

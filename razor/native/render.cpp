@@ -75,7 +75,7 @@ void run_workers(Frame& frame, const std::function<void(int worker)>& work,
 
 namespace {
 
-FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOptions& options,
+FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOptions& options, int samples,
                        const std::function<void(double)>& progress) {
     FrameTime time;
     const double pages_before = frame.statistics().page_seconds;
@@ -85,10 +85,16 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
         frame.build_all(kernels);
         time.eager_seconds = seconds_since(begin);
     }
-    if (options.run)
-        options.run(frame, progress);
+    const auto run = [&](const std::function<void(double)>& shown) {
+        if (options.run)
+            options.run(frame, shown);
+        else
+            run_workers(frame, kernels, shown, options.cancel);
+    };
+    if (options.passes.samples > 0)
+        time.passes = take_passes(frame, options.passes, samples, run, progress);
     else
-        run_workers(frame, kernels, progress, options.cancel);
+        run(progress);
     time.render_seconds = seconds_since(begin);
     time.render_processor_seconds = static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
     time.topology_page_seconds = frame.statistics().page_seconds - pages_before;
@@ -130,6 +136,7 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
                                 .memory_bytes = options_.memory_bytes,
                                 .apart = options_.layers.has(LayerSource::touch),
                                 .moves = moves_,
+                                .passes = options_.passes.samples > 0,
                                 .tile_costs = options_.layers.has(LayerSource::tile)});
     }
     load_seconds_ = seconds_since(begin);
@@ -151,7 +158,7 @@ RenderResult NativeRenderer::render(const std::function<void(double)>& progress)
         std::function<void(double)> part;
         if (progress)
             part = [&](double fraction) { progress((n + fraction) / options_.frames); };
-        r.statistics.times.push_back(render_frame(*frame_, kernels_, options_, part));
+        r.statistics.times.push_back(render_frame(*frame_, kernels_, options_, settings_.samples, part));
     }
     r.statistics.frame = frame_->statistics();
     r.statistics.budget = frame_->budget();

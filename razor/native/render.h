@@ -3,6 +3,7 @@
 
 #include "razor/frame/frame.h"
 #include "razor/image/image.h"
+#include "razor/native/passes.h"
 #include "razor/native/visible.h"
 #include "razor/scene/scene.h"
 #include "razor/survey/survey.h"
@@ -31,6 +32,7 @@ struct RenderOptions {
     std::uint64_t memory_bytes = 0;
     int tiles = 0;              // screen tiles rendered, along the curve; pixels of others stay 0. 0: all
     bool tiles_in_rows = false; // their order
+    PassOptions passes{};       // in which camera samples are taken
     LayerSet layers{};          // added to the film, once the frame is rendered
     TouchMeter touched{};       // for some of them
     /// Instead of those of `isa`; and what runs all workers of a frame with them, instead of run_workers().
@@ -48,6 +50,7 @@ struct FrameTime {
     double render_processor_seconds = 0; // the same: processor time of all threads
     double eager_seconds = 0;            // of that: what was built before the first ray
     double topology_page_seconds = 0;    // of that: topology pages made, which later frames find
+    PassFigures passes{};                // where there were any
 };
 
 struct RenderStatistics {

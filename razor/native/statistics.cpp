@@ -119,6 +119,11 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                                           {"render_processor_seconds", t.render_processor_seconds},
                                           {"eager_seconds", t.eager_seconds},
                                           {"topology_page_seconds", t.topology_page_seconds}});
+    if (const PassFigures passes = s.times.empty() ? PassFigures{} : s.times.back().passes; passes.passes > 0)
+        json["passes"] = {{"count", passes.passes},
+                          {"samples", passes.samples},
+                          {"error", passes.error},
+                          {"relative_error", passes.relative_error}};
 }
 
 } // namespace razor

@@ -17,6 +17,7 @@ VisibleSurface visible_surface(const Film& film, const Camera& camera, const Set
     const auto plane = [&film](const char* name) { return film.find(name)->values.data(); };
     const float *depth = plane("depth.Z"), *x = plane("normal.X"), *y = plane("normal.Y"),
                 *z = plane("normal.Z");
+    const bool parallel = camera.projection == Projection::orthographic;
     VisibleSurface out;
     for (int row = 0; row < film.height; ++row)
         for (int column = 0; column < film.width; ++column) {
@@ -26,7 +27,8 @@ VisibleSurface visible_surface(const Film& film, const Camera& camera, const Set
             const glm::dvec3 way = view.forward +
                                    view.right * (-extent.half_width + (part.x + column + 0.5) * pixel) +
                                    view.up * (extent.half_height - (part.y + row + 0.5) * pixel);
-            const double cosine = std::abs(glm::dot(glm::normalize(way), glm::dvec3(x[i], y[i], z[i])));
+            const double cosine = std::abs(
+                glm::dot(parallel ? view.forward : glm::normalize(way), glm::dvec3(x[i], y[i], z[i])));
             ++out.pixels;
             out.squares += cosine * most_squares > 1 ? 1 / cosine : most_squares;
         }

@@ -148,6 +148,21 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
                     printable(text)));
 }
 
+double parse_seconds(std::string_view option, std::string_view text) {
+    constexpr std::pair<std::string_view, double> units[] = {
+        {"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+    for (const auto& [unit, factor] : units) {
+        double value = 0;
+        const char* const end = text.data() + text.size() - std::min(unit.size(), text.size());
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (text.ends_with(unit) && error == std::errc{} && stop == end && value * factor >= 1e-3 &&
+            value * factor <= 3.6e6)
+            return value * factor;
+    }
+    throw UserError(fmt::format("{} '{}' is not possible; give a time from 1ms to 1000h, for example 10s",
+                                option, printable(text)));
+}
+
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words) {
     const auto found = std::find(words.begin(), words.end(), text);

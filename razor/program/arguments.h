@@ -31,6 +31,8 @@ std::pair<int, int> parse_span(std::string_view option, std::string_view text, R
 /// "256MiB" as bytes: a whole number, or one with a fraction, and KiB, MiB or GiB; at least 64 KiB, at most
 /// 1024 GiB. Throws UserError.
 std::uint64_t parse_bytes(std::string_view option, std::string_view text);
+/// "10s" as seconds, from a millisecond to 1000 hours: a number and ms, s, min or h. Throws UserError.
+double parse_seconds(std::string_view option, std::string_view text);
 /// The index of `text` in `words`.
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> words);

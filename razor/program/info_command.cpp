@@ -2,8 +2,10 @@
 
 #include "razor/image/output_file.h"
 #include "razor/program/arguments.h"
+#include "razor/program/info_models.h"
 #include "razor/program/info_report.h"
 #include "razor/program/interrupt.h"
+#include "razor/scene/animation/pose.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,7 +13,9 @@
 namespace razor {
 
 void InfoCommand::add_to(CLI::App& app) {
-    command_ = app.add_subcommand("info", "list a scene's meshes, instances, materials, textures and lights");
+    command_ = app.add_subcommand(
+        "info", "list a scene's meshes, instances, materials, textures and lights, and what "
+                "cameras, lights and animations glTF files hold");
     scene_.add_to(*command_, "scene");
     command_->add_option("--json", json_, "write it for programs")->type_name("FILE.json");
 }
@@ -20,17 +24,20 @@ int InfoCommand::run() const {
     if (!json_.empty()) {
         check_writable(json_);
     }
-    const SceneDescription description = scene_.describe();
+    const int frame = scene_.frame(); // a wrong one is found before any file is read
+    const SceneDescription moving = scene_.describe_moving(), description = pose_of_frame(moving, frame);
+    const std::vector<GltfContents> files = contents_of(moving);
     const Scene scene = build_scene(description);
     const SceneUse use = use_of(scene, mesh_bounds(description));
     const OutputGuard guard;
     if (!json_.empty()) {
         nlohmann::ordered_json report{{"program", "razor"}, {"version", version()}};
         report.update(json_of(scene, use));
+        report["gltf_files"] = json_of(files);
         // Names need not be UTF-8.
         write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
-    fmt::print("{}", text_of(scene, use));
+    fmt::print("{}{}", text_of(scene, use), text_of(files));
     return 0;
 }
 

@@ -142,15 +142,24 @@ Json to_json(const Texture& texture, bool used) {
 }
 
 Json to_json(const Camera& camera) {
-    return {{"position", to_json(camera.position)},
-            {"target", to_json(camera.target)},
-            {"up", to_json(camera.up)},
-            {"fov", camera.fov_degrees},
-            {"aperture_radius", camera.aperture_radius},
-            {"focus_distance", focus_distance(camera)}};
+    Json json{{"position", to_json(camera.position)},
+              {"target", to_json(camera.target)},
+              {"up", to_json(camera.up)},
+              {"projection", word_of(projection_words, camera.projection)}};
+    if (camera.projection == Projection::orthographic) {
+        json["height"] = camera.height;
+        return json;
+    }
+    json["fov"] = camera.fov_degrees;
+    json["aperture_radius"] = camera.aperture_radius;
+    json["focus_distance"] = focus_distance(camera);
+    return json;
 }
 
 std::string text_of(const Camera& camera) {
+    if (camera.projection == Projection::orthographic)
+        return fmt::format("at {}, to {}, orthographic, height {:g}\n", shown(camera.position),
+                           shown(camera.target), camera.height);
     return fmt::format("at {}, to {}, {:g} degrees, aperture radius {:g}\n", shown(camera.position),
                        shown(camera.target), camera.fov_degrees, camera.aperture_radius);
 }
@@ -192,6 +201,8 @@ SceneUse use_of(const Scene& scene, std::span<const Box> bounds) {
                     use.textures[static_cast<std::size_t>(map.texture)] = true;
             },
             scene.materials[i]);
+    if (scene.sky_map.texture >= 0)
+        use.textures[static_cast<std::size_t>(scene.sky_map.texture)] = true;
     return use;
 }
 
@@ -233,7 +244,12 @@ std::string text_of(const Scene& scene, const SceneUse& use) {
             light);
         text += '\n';
     }
-    fmt::format_to(out, "sky: {}\ncamera: {}", shown(scene.sky), text_of(scene.camera));
+    fmt::format_to(out, "sky: {}", shown(scene.sky));
+    if (const SkyMap& map = scene.sky_map; map.texture >= 0)
+        fmt::format_to(out, ", map '{}' turned by {} degrees",
+                       printable(scene.textures[static_cast<std::size_t>(map.texture)].name, 100),
+                       shown(map.rotation));
+    fmt::format_to(out, "\ncamera: {}", text_of(scene.camera));
     if (scene.dicing_camera)
         fmt::format_to(out, "dicing camera: {}", text_of(*scene.dicing_camera));
     return text;
@@ -269,7 +285,11 @@ Json json_of(const Scene& scene, const SceneUse& use) {
             light);
         json["lights"].push_back(std::move(fields));
     }
-    json["sky"] = to_json(scene.sky);
+    json["sky"] = {{"radiance", to_json(scene.sky)}};
+    if (const SkyMap& map = scene.sky_map; map.texture >= 0) {
+        json["sky"]["map"] = scene.textures[static_cast<std::size_t>(map.texture)].name;
+        json["sky"]["rotation"] = map.rotation;
+    }
     json["camera"] = to_json(scene.camera);
     if (scene.dicing_camera)
         json["dicing_camera"] = to_json(*scene.dicing_camera);

@@ -2,6 +2,7 @@
 
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
+#include "razor/native/targets.h"
 #include "razor/program/arguments.h"
 #include "razor/program/explain.h"
 #include "razor/program/frame_trace.h"
@@ -84,11 +85,20 @@ void RenderCommand::add_to(CLI::App& app) {
                     "render the frame N times and tell the time of each; all but the first find the topology "
                     "analysed, as in an animation")
         ->type_name("N");
+    render.add_flag("--progressive", progressive_,
+                    "take samples in passes, and write the pictures after each: there are whole ones at any "
+                    "moment");
+    render
+        .add_option(
+            "--time", time_,
+            "take samples in passes as long as another ends by then, such as 10s, and tell how many "
+            "that were and how far the picture may be off; levels of detail are those of --spp samples")
+        ->type_name("TIME");
     render.add_option("--exposure", exposure_, "of PNG files, in stops; without it, 0")->type_name("X");
     render
         .add_option("--tone", tone_,
-                    "how PNG files show light: srgb (as it is, cut off at 1; the default) or aces (as film "
-                    "does)")
+                    "how PNG files show light: srgb (as it is, cut off at 1; the default), aces (as film "
+                    "does) or agx (likewise, bright colours fading to white)")
         ->type_name("NAME");
     layers_.add_to(render);
     render.add_option("--stats", statistics_, "write statistics and the resolved configuration")
@@ -137,6 +147,21 @@ int RenderCommand::run() const {
     }
     layers_.ask(options, outputs_);
     tone(); // a wrong one is found before any file is read
+    options.passes = passes();
+    if (options.passes.samples > 0 && (options.frames > 1 || !trace_.empty())) {
+        throw UserError(
+            "--progressive and --time take passes of one frame, rendered once; leave out --repeat "
+            "and --trace");
+    }
+    if (progressive_ && (sequence || outputs_.empty())) {
+        throw UserError(
+            "--progressive writes one frame's pictures again and again; give -o FILE, and leave out "
+            "--frames");
+    }
+    if (options.passes.samples > 0 && layers_.given()) {
+        throw UserError("layers are of whole frames; leave out --progressive and --time, or --layers and "
+                        "--false-colour");
+    }
     options.cancel = &watch_interrupts();
     if (print_config_) {
         fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
@@ -165,6 +190,7 @@ int RenderCommand::run() const {
                (statistics_.empty() || exists(statistics_));
     };
     std::unique_ptr<NativeRenderer> renderer;
+    int written = 0;
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         if (resume_ && is_there(frame)) {
             continue;
@@ -172,11 +198,12 @@ int RenderCommand::run() const {
         options.progress = [&](double fraction) {
             progress.show((frame - frames.first + fraction) / frames.count());
         };
-        if (!render(renderer, moving, frame, options, progress)) {
+        if (!render(renderer, moving, frame, options, progress, written)) {
             fmt::print(stderr, "{}razor: interrupted; {}\n", progress.shown() ? "\r\x1b[K" : "",
                        sequence ? fmt::format(
                                       "frame {} and what follows are not written; go on with --resume", frame)
-                                : "nothing written");
+                       : written > 0 ? fmt::format("the pictures are of {} samples a pixel", written)
+                                     : "nothing written");
             return interrupted_exit;
         }
     }
@@ -184,16 +211,57 @@ int RenderCommand::run() const {
 }
 
 Tone RenderCommand::tone() const {
-    constexpr std::array<std::string_view, 2> curves{"srgb", "aces"};
+    constexpr std::array<std::string_view, 3> names{"srgb", "aces", "agx"};
+    constexpr std::array<ToneCurve, 3> curves{ToneCurve::srgb, ToneCurve::aces, ToneCurve::agx};
     Tone tone;
-    tone.curve = parse_choice("--tone", tone_, curves) == 0 ? ToneCurve::srgb : ToneCurve::aces;
+    tone.curve = curves[parse_choice("--tone", tone_, names)];
     if (!exposure_.empty())
         tone.exposure = static_cast<float>(parse_number("--exposure", exposure_, stops_range));
     return tone;
 }
 
+PassOptions RenderCommand::passes() const {
+    constexpr int samples_a_pass = 4; // as in a packet of 32 lanes that sees eight pixels
+    PassOptions passes;
+    passes.samples = progressive_ || !time_.empty() ? samples_a_pass : 0;
+    passes.seconds = time_.empty() ? 0 : parse_seconds("--time", time_);
+    return passes;
+}
+
+void RenderCommand::write_pictures(int frame, const Film& film, const std::string& config,
+                                   std::string_view isa, const PassFigures& passes) const {
+    ImageAttributes attributes{
+        {"razor.version", std::string(version())}, {"razor.scene", config}, {"razor.isa", std::string(isa)}};
+    if (passes.passes > 0) {
+        attributes.emplace_back("razor.samples", fmt::format("{}", passes.samples));
+    }
+    const Film colours = layers_.shows() ? layers_.shown(film) : Film();
+    for (const std::string& output : outputs_) {
+        write_image(numbered(output, frame), layers_.shows() && is_png(output) ? colours : film, attributes,
+                    tone());
+    }
+}
+
+void RenderCommand::write_passes(PassOptions& passes, int frame, const std::string& config,
+                                 std::string_view isa, int& written) const {
+    using Clock = std::chrono::steady_clock;
+    // Writing takes no more than about a tenth of the time.
+    passes.passed = [=, this, &written, next = Clock::time_point{}](const Film& film,
+                                                                    const PassFigures& figures) mutable {
+        const auto begin = Clock::now();
+        if (begin < next) {
+            return;
+        }
+        const OutputGuard guard;
+        write_pictures(frame, film, config, isa, figures);
+        written = figures.samples;
+        const auto end = Clock::now();
+        next = end + 10 * (end - begin);
+    };
+}
+
 bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
-                           const RenderOptions& options, const Progress& progress) const {
+                           const RenderOptions& options, const Progress& progress, int& written) const {
     const auto start = std::chrono::steady_clock::now();
     std::string config;
     RenderResult result;
@@ -208,6 +276,9 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
             if (!trace_.empty()) {
                 trace.emplace(trace_, config);
                 trace->record_by(all);
+            }
+            if (progressive_) {
+                write_passes(all.passes, frame, config, native_target(options.isa).name, written);
             }
             renderer = std::make_unique<NativeRenderer>(moving.scene(), all, !frames_.empty());
         }
@@ -224,14 +295,8 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
 
     const OutputGuard guard;
     const std::string traced = trace ? trace->finish() : "";
-    const ImageAttributes attributes{{"razor.version", std::string(version())},
-                                     {"razor.scene", config},
-                                     {"razor.isa", result.statistics.isa}};
-    const Film colours = layers_.shows() ? layers_.shown(result.film) : Film();
-    for (const std::string& output : outputs_) {
-        const Film& film = layers_.shows() && is_png(output) ? colours : result.film;
-        write_image(numbered(output, frame), film, attributes, tone());
-    }
+    const PassFigures passes = result.statistics.times.back().passes;
+    write_pictures(frame, result.film, config, result.statistics.isa, passes);
     if (!statistics_.empty()) {
         const nlohmann::ordered_json report{{"program", "razor"},
                                             {"version", version()},
@@ -262,6 +327,14 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
         fmt::print(
             stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
             result.film.width, result.film.height, seconds, built.first_packet_seconds, built.refit_seconds);
+    }
+    if (passes.passes > 0 && !quiet_) {
+        fmt::print(
+            "{} samples a pixel in {} passes, {:.2f} s{}\n", passes.samples, passes.passes, passes.seconds,
+            passes.passes == 1 ? ""
+                               : fmt::format("; estimated error of luminance {:.2g}, {:.2g} % of its mean",
+                                             passes.error, 100 * passes.relative_error));
+        std::fflush(stdout);
     }
     if (!quiet_) {
         fmt::print("{}", layers_.legend(result.film));

@@ -36,9 +36,8 @@ LevelOfDetail parse_lod(std::string_view word) {
 
 void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option(scene_name, scene_,
-                   "a scene file (.toml), a model (.obj, .md3, .gltf, .glb) or a table of them (.instances); "
-                   "without one, the built-in "
-                   "scene")
+                   "a scene file (.toml), a model (.obj, .ply, .md3, .gltf, .glb) or a table of them "
+                   "(.instances); without one, the built-in scene")
         ->type_name("FILE");
     app.add_option("--size", size_, "the picture's size in pixels")->type_name("WxH");
     app.add_option("--crop", crop_,
@@ -46,6 +45,15 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
                    "size")
         ->type_name("X,Y,W,H");
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
+    app.add_option(
+           "--filter", filter_,
+           "what pixels are of the light about them: box (the default, of the pixel alone), triangle, "
+           "gaussian, mitchell or lanczos, with pbrt's parameters")
+        ->type_name("NAME");
+    app.add_option("--filter-radius", filter_radius_,
+                   "how far about a pixel's middle its filter reaches, in "
+                   "pixels")
+        ->type_name("R");
     app.add_option("--light-samples", light_samples_, "shadow rays a hit to each light")->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
     app.add_option("--bounces", bounces_, "reflections and refractions in a row that are followed")
@@ -96,6 +104,13 @@ SceneDescription SceneOptions::describe_moving() const {
         }
         if (!samples_.empty()) {
             settings.samples = parse_whole("--spp", samples_, samples_range);
+        }
+        if (!filter_.empty()) {
+            settings.filter = preset_filter(parse_word("--filter", filter_, filter_words));
+        }
+        if (!filter_radius_.empty()) {
+            const double radius = parse_number("--filter-radius", filter_radius_, filter_radius_range);
+            settings.filter.radius = {radius, radius};
         }
         if (!light_samples_.empty()) {
             settings.light_samples = parse_whole("--light-samples", light_samples_, shadow_samples_range);

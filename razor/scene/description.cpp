@@ -33,6 +33,21 @@ int material_index(const SceneDescription& description, std::string_view name) {
     return static_cast<int>(std::distance(description.materials.begin(), material));
 }
 
+/// For each material of the mesh's file what replaces it, -1: nothing; or none at all.
+std::vector<int> replaced_materials(const SceneDescription& description, const MeshDescription& mesh) {
+    std::vector<int> result;
+    for (const auto& [name, replacement] : mesh.materials) {
+        const std::vector<Material>& own = mesh.source->own_materials->materials;
+        result.resize(own.size(), -1);
+        for (std::size_t m = 0; m < own.size(); ++m) {
+            if (own[m].name == name) {
+                result[m] = material_index(description, replacement);
+            }
+        }
+    }
+    return result;
+}
+
 std::vector<glm::dvec3> placed(const MeshDescription& mesh, const std::vector<glm::dvec3>& points) {
     std::vector<glm::dvec3> result;
     result.reserve(points.size());
@@ -96,10 +111,14 @@ public:
         }
     }
 
-    /// Rewrites the indices of a mesh that has its own.
-    void place(Mesh& mesh) const {
+    /// Rewrites the indices of a mesh that has its own. `instead`: of each of these another one of the scene,
+    /// or -1; may be empty.
+    void place(Mesh& mesh, const std::vector<int>& instead) const {
         const int first = find(*mesh.own_materials)->material;
-        const auto in_scene = [first](int own) { return own < 0 ? 0 : first + own; };
+        const auto in_scene = [&](int own) {
+            const int other = own < 0 || instead.empty() ? -1 : instead[static_cast<std::size_t>(own)];
+            return own < 0 ? 0 : other >= 0 ? other : first + own;
+        };
         mesh.material = in_scene(mesh.material);
         std::transform(mesh.face_materials.begin(), mesh.face_materials.end(), mesh.face_materials.begin(),
                        in_scene);
@@ -248,7 +267,7 @@ Mesh build_mesh(const SceneDescription& description, std::size_t number, const O
     mesh.points = placed_points(source);
     mesh.rest = placed(source, source.cage->rest);
     if (OwnMaterials::uses_own(source)) {
-        own.place(mesh);
+        own.place(mesh, replaced_materials(description, source));
     } else {
         mesh.material = source.material.empty() ? 0 : material_index(description, source.material);
         mesh.face_materials.clear();
@@ -270,6 +289,7 @@ Scene build_scene(const SceneDescription& description) {
     scene.camera = description.camera;
     scene.dicing_camera = description.dicing_camera;
     scene.sky = description.sky;
+    scene.sky_map = description.sky_map;
     scene.lights = description.lights;
     scene.textures = description.textures;
     scene.materials = description.materials;

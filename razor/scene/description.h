@@ -7,6 +7,7 @@
 #include "razor/scene/animation/keys.h"
 #include "razor/scene/animation/moving_cage.h"
 #include "razor/scene/animation/playback.h"
+#include "razor/scene/from_model.h"
 #include "razor/scene/graph/flatten.h"
 #include "razor/scene/instance_table.h"
 #include "razor/scene/scene.h"
@@ -27,8 +28,9 @@ struct MeshDescription {
     std::string shape;                                      // see razor/scene/shapes/shapes.h
     std::vector<std::pair<std::string, double>> parameters; // of the shape, all of them
     Scheme scheme = Scheme::catmull_clark;
-    std::string material;            // of all faces; empty: those that the file itself states
-    glm::dvec3 scale{1, 1, 1};       // positive
+    std::string material; // of all faces; empty: those that the file itself states, but for
+    std::vector<std::pair<std::string, std::string>> materials; // names of these, each with what replaces it
+    glm::dvec3 scale{1, 1, 1};                                  // positive
     glm::dvec3 rotate{0, 0, 0};      // degrees, about x, then y, then z; quarter turns are exact
     glm::dvec3 translate{0, 0, 0};   // world units
     double edge_length = 0;          // see Mesh::edge_length
@@ -39,6 +41,12 @@ struct MeshDescription {
     std::shared_ptr<const Mesh> source;
     std::shared_ptr<const MovingCage> motion;
     std::shared_ptr<const Mesh> cage; // when the scene begins, or at playback.moment; before scale and so on
+};
+
+/// Lights [first, first + count) of a scene are these.
+struct LightsFromModel {
+    FromModel from;
+    std::size_t first = 0, count = 0;
 };
 
 /// Whether the cage has other shapes at other moments.
@@ -73,10 +81,14 @@ struct SceneDescription {
     Camera camera;
     std::optional<Camera> dicing_camera;
     glm::vec3 sky{0};
+    SkyMap sky_map; // names one of these textures
     std::vector<Light> lights;
     double frame_rate = 24; // frames a second
     CameraKeys camera_keys;
     std::vector<LightKeys> light_keys; // of each light, or none
+    // What models bring; camera and lights are then as when the scene begins, in a picture of its size.
+    std::optional<FromModel> camera_from;
+    std::vector<LightsFromModel> lights_from; // in order
     std::vector<Texture> textures;
     std::vector<Material> materials; // their maps name these textures
     std::vector<MeshDescription> meshes;

@@ -2,6 +2,7 @@
 
 #include "razor/scene/error.h"
 #include "razor/scene/models/cage_source.h"
+#include "razor/scene/models/gltf_stage.h"
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/text_file.h"
 
@@ -194,15 +195,40 @@ void light_and_frame(SceneDescription& scene, const std::filesystem::path& path,
                      const FramingOptions& options) try {
     const PointCloud points(scene);
     const Extent extent = checked_extent(points);
-    scene.camera = camera_for(points, scene.settings);
-    scene.lights = {light_for(extent)};
-    scene.sky = sky_radiance;
-    if (options.floor) {
+    if (!scene.camera_from) {
+        scene.camera = camera_for(points, scene.settings);
+    }
+    if (scene.lights.empty()) {
+        scene.lights = {light_for(extent)};
+        scene.sky = sky_radiance;
+    }
+    if (options.floor && !scene.camera_from) {
         scene.materials.push_back({"floor", {0.50F, 0.49F, 0.48F}});
         scene.meshes.push_back(floor_under(extent));
     }
 } catch (const UserError& error) {
     throw UserError(fmt::format("{}: {}", printable(path.string(), 1000), error.what()));
+}
+
+} // namespace
+
+namespace {
+
+/// Camera and lights of the model's own, if it has any.
+void use_stage(SceneDescription& scene, const MeshDescription& model) {
+    FromModel from{.file = model.file, .name = {}, .playback = model.playback, .rotate = model.rotate};
+    from.stage = read_gltf_stage(from.file, from.playback.clip, from.playback.timing.cycle).stage;
+    if (!from.stage) {
+        return;
+    }
+    if (has_camera(from)) {
+        scene.camera_from = from;
+        scene.camera = camera_of(from, scene.settings, 0);
+    }
+    if (!from.stage->lights().empty()) {
+        scene.lights = lights_of(from, 0);
+        scene.lights_from = {{from, 0, scene.lights.size()}};
+    }
 }
 
 } // namespace
@@ -220,6 +246,9 @@ SceneDescription frame_model(const std::filesystem::path& path, const FramingOpt
     scene.name = model.name;
     if (options.up == Up::z) {
         model.rotate.x = -90;
+    }
+    if (model_file(model.file) == ModelFile::gltf) {
+        use_stage(scene, model);
     }
     light_and_frame(scene, path, options);
     return scene;

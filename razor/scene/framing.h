@@ -17,8 +17,10 @@ struct FramingOptions {
     Settings settings; // the picture's shape decides how far the camera stands away
 };
 
-/// A scene of one model: turned y up, seen from slightly above and from the right, lit by a rectangle at
-/// the upper left and a constant sky, on a floor; all in the model's own units. Throws UserError where the
+/// A scene of one model. What a glTF file brings is used: its first perspective camera, and its lights,
+/// beside which the sky is black. What it does not is placed: turned y up, seen from slightly above and from
+/// the right, lit by a rectangle at the upper left and a constant sky, on a floor (where the camera is
+/// placed, too); all in the model's own units. Throws UserError where the
 /// file cannot be read or it reaches beyond 1e24: what is placed about it reaches further, and must stay
 /// below 1e30.
 SceneDescription frame_model(const std::filesystem::path& path, const FramingOptions& options);

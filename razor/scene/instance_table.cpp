@@ -2,6 +2,7 @@
 
 #include "razor/scene/error.h"
 #include "razor/scene/graph/flatten.h"
+#include "razor/scene/models/model_file.h"
 #include "razor/scene/models/obj_cursor.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
@@ -101,8 +102,9 @@ private:
             return known->second;
         }
         const std::filesystem::path path = std::filesystem::absolute(folder_ / file).lexically_normal();
-        if (path.extension() != ".obj" && path.extension() != ".OBJ") {
-            cursor_.fail(fmt::format("'{}' is not an OBJ file; begin the line with one", printable(file)));
+        if (model_file(path) != ModelFile::still) {
+            cursor_.fail(fmt::format("'{}' is neither an OBJ nor a PLY file; begin the line with one",
+                                     printable(file)));
         }
         const auto next = static_cast<int>(table_.files.size());
         const auto [entry, is_new] = resolved_.try_emplace(path.string(), next);

@@ -1,6 +1,6 @@
 // Plain text tables of instances, one a line: `file` and numbers, separated by blanks. The files are OBJ
-// files, named relative to the table's folder (without blanks in the name). How many numbers follow says
-// what they are:
+// or PLY files, named relative to the table's folder (without blanks in the name). How many numbers follow
+// says what they are:
 //
 //     file x z turn                   on the ground, turned by so many degrees from x towards z
 //                                     (clockwise seen from above, y up)

@@ -4,6 +4,8 @@
 #include "razor/scene/description.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/print_materials.h"
+#include "razor/scene/read_film.h"
+#include "razor/scene/read_from_model.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/words.h"
@@ -24,14 +26,26 @@ bool is_whole(std::string_view shape, std::string_view parameter) {
     return false;
 }
 
+void print_camera(std::string& text, const Camera& camera, const FromModel& from) {
+    fmt::format_to(std::back_inserter(text), "\n[camera]\n{}aperture_radius = {}\nfocus_distance = {}\n",
+                   to_toml(from, true), toml_number(camera.aperture_radius),
+                   toml_number(camera.focus_distance));
+}
+
 void print_camera(std::string& text, const Camera& camera, const CameraKeys& keys, std::string_view header) {
     const auto out = std::back_inserter(text);
-    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nfov = {}\n", header,
+    fmt::format_to(out, "\n[{}]\nposition = {}\ntarget = {}\nup = {}\nprojection = {}\n", header,
                    toml_value(camera.position), toml_value(camera.target), toml_value(camera.up),
-                   toml_number(camera.fov_degrees));
-    fmt::format_to(
-        out, "aperture_radius = {}\nfocus_distance = {}\n", toml_number(camera.aperture_radius),
-        toml_number(keys.any() ? camera.focus_distance : focus_distance(camera))); // follows the target
+                   toml_text(word_of(projection_words, camera.projection)));
+    if (camera.projection == Projection::orthographic) {
+        fmt::format_to(out, "height = {}\n", toml_number(camera.height));
+    } else {
+        const double focus =
+            keys.any() ? camera.focus_distance : focus_distance(camera); // follows the target
+        fmt::format_to(out, "fov = {}\naperture_radius = {}\nfocus_distance = {}\n",
+                       toml_number(camera.fov_degrees), toml_number(camera.aperture_radius),
+                       toml_number(focus));
+    }
     text += to_toml(keys, header);
 }
 
@@ -99,15 +113,32 @@ std::string to_toml(const SceneDescription& description) {
     }
     fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
                    toml_text(word_of(lod_words, settings.lod)));
-    print_camera(text, description.camera, description.camera_keys, "camera");
+    text += to_toml(settings.filter);
+    if (description.camera_from) {
+        print_camera(text, description.camera, *description.camera_from);
+    } else {
+        print_camera(text, description.camera, description.camera_keys, "camera");
+    }
     if (description.dicing_camera) {
         print_camera(text, *description.dicing_camera, {}, "dicing_camera");
     }
     fmt::format_to(out, "\n[sky]\nradiance = {}\n", toml_value(description.sky));
+    if (const SkyMap& map = description.sky_map; map.texture >= 0) {
+        fmt::format_to(out, "map = {}\nrotation = {}\n",
+                       toml_text(description.textures[static_cast<std::size_t>(map.texture)].name),
+                       toml_number(map.rotation));
+    }
     if (is_animated(description)) {
         fmt::format_to(out, "\n[animation]\nrate = {}\n", toml_number(description.frame_rate));
     }
+    auto run = description.lights_from.begin();
     for (std::size_t l = 0; l < description.lights.size(); ++l) {
+        if (run != description.lights_from.end() && run->first == l) {
+            fmt::format_to(out, "\n[[light]]\n{}", to_toml(run->from, false));
+            l += run->count - 1;
+            ++run;
+            continue;
+        }
         const Light& light = description.lights[l];
         fmt::format_to(out, "\n[[light]]\nkind = {}\n", toml_text(word_of(light_words, light.kind)));
         visit_light_fields(
@@ -136,6 +167,13 @@ std::string to_toml(const SceneDescription& description) {
         fmt::format_to(out, "scheme = {}\n", toml_text(word_of(scheme_words, mesh.scheme)));
         if (!mesh.material.empty()) {
             fmt::format_to(out, "material = {}\n", toml_text(mesh.material));
+        }
+        if (!mesh.materials.empty()) {
+            std::vector<std::string> pairs;
+            for (const auto& [name, replacement] : mesh.materials) {
+                pairs.push_back(fmt::format("{} = {}", toml_text(name), toml_text(replacement)));
+            }
+            fmt::format_to(out, "materials = {{ {} }}\n", fmt::join(pairs, ", "));
         }
         fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
                        toml_value(mesh.scale), toml_value(mesh.rotate), toml_value(mesh.translate),

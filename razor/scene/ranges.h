@@ -9,6 +9,7 @@ struct Range {
 
 inline constexpr Range size_range{1, 32768};          // pixels, width and height
 inline constexpr Range crop_range{0, 32768};          // pixels
+inline constexpr Range filter_radius_range{0.01, 32}; // pixels
 inline constexpr Range samples_range{1, 65536};       // a pixel
 inline constexpr Range shadow_samples_range{0, 4096}; // a hit, to the light or the sky
 inline constexpr Range stops_range{-64, 64};          // stops
@@ -16,8 +17,9 @@ inline constexpr Range bounces_range{0, 64};          // in a row
 inline constexpr Range seed_range{0, 2147483647};
 inline constexpr Range edge_pixels_range{0.01, 1e4};
 inline constexpr Range coordinate_range{-1e30, 1e30};
-inline constexpr Range fov_range{1e-3, 179}; // degrees
-inline constexpr Range unit_range{0, 1};     // of what is a part of all
+inline constexpr Range fov_range{1e-3, 179};      // degrees
+inline constexpr Range height_range{1e-30, 1e30}; // of an orthographic camera's film
+inline constexpr Range unit_range{0, 1};          // of what is a part of all
 inline constexpr Range ior_range{1, 3};
 inline constexpr Range normal_scale_range{-100, 100};
 inline constexpr Range texcoord_range{-1e6, 1e6}; // of what maps texture coordinates

@@ -14,15 +14,6 @@ glm::vec2 to_vec2(const std::pair<double, double>& p) {
     return {static_cast<float>(p.first), static_cast<float>(p.second)};
 }
 
-int read_texture_name(TomlTable& table, std::string_view key, std::span<const std::string> textures) {
-    if (textures.empty()) {
-        table.fail(key, fmt::format("there is no texture '{}'; write a [[texture]] of that name",
-                                    printable(table.text(key, ""))));
-    }
-    const std::vector<std::string_view> words(textures.begin(), textures.end());
-    return static_cast<int>(table.choice(key, 0, words));
-}
-
 TextureMap read_map(TomlTable& table, std::string_view key, std::span<const std::string> textures) {
     TextureMap map;
     if (!table.is_table(key)) {
@@ -42,6 +33,15 @@ TextureMap read_map(TomlTable& table, std::string_view key, std::span<const std:
 }
 
 } // namespace
+
+int read_texture_name(TomlTable& table, std::string_view key, std::span<const std::string> textures) {
+    if (textures.empty()) {
+        table.fail(key, fmt::format("there is no texture '{}'; write a [[texture]] of that name",
+                                    printable(table.text(key, ""))));
+    }
+    const std::vector<std::string_view> words(textures.begin(), textures.end());
+    return static_cast<int>(table.choice(key, 0, words));
+}
 
 Texture read_texture(TomlTable& table, const std::filesystem::path& folder, TextureCache& cache) {
     Texture texture;

@@ -15,6 +15,9 @@
 
 namespace razor {
 
+/// A texture that a table's member names, of `textures` by their names: its number.
+int read_texture_name(TomlTable& table, std::string_view key, std::span<const std::string> textures);
+
 /// [[texture]], with its picture; the file's name is relative to `folder`. Throws UserError.
 Texture read_texture(TomlTable& table, const std::filesystem::path& folder, TextureCache& cache);
 

@@ -3,6 +3,7 @@
 // double-precision origin is subtracted from each mesh before anything becomes single precision.
 #pragma once
 
+#include "razor/scene/filter.h"
 #include "razor/scene/graph/graph.h"
 #include "razor/scene/light.h"
 #include "razor/scene/material.h"
@@ -89,21 +90,41 @@ struct Mesh {
     double edge_length = 0;
 };
 
+enum class Projection : std::uint8_t { perspective, orthographic };
+
+/// Rays of an orthographic camera are parallel: they begin on the film, which is at `position`, and what is
+/// behind it is not seen. It has no lens: what rays ask for has one constant term (razor/kernels/morph.h),
+/// which is the lens' blur or a pixel's size, not the sum of both.
 struct Camera {
     glm::dvec3 position{0, 1, 5};
     glm::dvec3 target{0, 0, 0};
     glm::dvec3 up{0, 1, 0};
-    double fov_degrees = 35; // vertical, full angle, in (0, 180)
-    /// Of a thin lens, world units; 0: a pinhole, everything is in focus.
+    Projection projection = Projection::perspective;
+    double fov_degrees = 35; // of a perspective one: vertical, full angle, in (0, 180)
+    double height = 2;       // of an orthographic one: what its film covers, world units
+    /// Of a perspective camera's thin lens, world units; 0: a pinhole, everything is in focus.
     double aperture_radius = 0;
     /// From the camera to the plane in focus, along the line of sight; 0: to the target.
     double focus_distance = 0;
 };
 
+constexpr bool has_lens(const Camera& camera) {
+    return camera.projection == Projection::perspective && camera.aperture_radius > 0;
+}
+
 /// The same, resolved.
 inline double focus_distance(const Camera& camera) {
     return camera.focus_distance > 0 ? camera.focus_distance : glm::length(camera.target - camera.position);
 }
+
+/// A picture of all directions, by longitude and latitude: its top row is straight up (y), its middle column
+/// where -z is, and what lies to the right of that (x) is right of the middle.
+struct SkyMap {
+    int texture = -1;    // index into Scene::textures; -1: none
+    double rotation = 0; // degrees about y, counter-clockwise seen from above
+
+    bool operator==(const SkyMap&) const = default;
+};
 
 /// Which level of detail rays see.
 enum class Lod : std::uint8_t {
@@ -142,6 +163,7 @@ struct Settings {
     LevelOfDetail lod{};
     int width = 512, height = 512; // pixels
     Crop crop{};                   // what is rendered of them; without width and height: all
+    Filter filter{};               // what pixels are of the light about them
     int samples = 4;               // camera samples a pixel
     int light_samples = 4;         // shadow rays a hit to each light; 0: lights are left out
     int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
@@ -164,7 +186,8 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<Light> lights;
-    glm::vec3 sky{0}; // constant radiance
+    glm::vec3 sky{0}; // radiance from infinitely far away; with a map, times what that shows
+    SkyMap sky_map;
     Camera camera;
     std::optional<Camera> dicing_camera; // from which levels of detail are measured; else `camera`
     Settings settings;

@@ -10,6 +10,8 @@
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/read_film.h"
+#include "razor/scene/read_from_model.h"
 #include "razor/scene/read_materials.h"
 #include "razor/scene/scene_objects.h"
 #include "razor/scene/shapes/shapes.h"
@@ -21,6 +23,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace razor {
 namespace {
@@ -61,15 +64,39 @@ void check(const TomlTable& table, const std::optional<Mistake>& mistake) {
     }
 }
 
+/// What the lens adds to a camera that a model brings.
+Camera read_lens(TomlTable& table, Camera camera) {
+    camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
+    camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
+    return camera;
+}
+
 Camera read_camera(TomlTable& table) {
     Camera camera;
     camera.position = table.vector("position", camera.position, coordinate_range);
     camera.target = table.vector("target", camera.target, coordinate_range);
     camera.up = table.vector("up", camera.up, coordinate_range);
+    camera.projection = choose(table, "projection", camera.projection, projection_words);
+    if (camera.projection == Projection::orthographic) {
+        for (const std::string_view key : {"fov", "aperture_radius", "focus_distance"})
+            if (table.has(key))
+                table.fail(key, fmt::format("{}.{} is of a perspective camera, and this one is orthographic; "
+                                            "leave it out",
+                                            table.name(), key));
+        if (!table.has("height"))
+            table.fail("height",
+                       "an orthographic camera needs a height; write how much of the scene it shows, "
+                       "in world units");
+        camera.height = table.number("height", camera.height, height_range);
+        return camera;
+    }
+    if (table.has("height"))
+        table.fail("height",
+                   fmt::format("{}.height is of a camera with projection = \"orthographic\", and this "
+                               "one is perspective; leave it out",
+                               table.name()));
     camera.fov_degrees = table.number("fov", camera.fov_degrees, fov_range);
-    camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
-    camera.focus_distance = table.number("focus_distance", camera.focus_distance, focus_range);
-    return camera;
+    return read_lens(table, camera);
 }
 
 Light read_light(TomlTable& table) {
@@ -89,6 +116,51 @@ Light read_light(TomlTable& table) {
     return light;
 }
 
+void read_lights_from(TomlTable& table, SceneDescription& scene, const std::filesystem::path& folder) {
+    LightsFromModel run{read_from_model(table, folder, false), scene.lights.size(), 0};
+    table.finish();
+    try {
+        const std::vector<Light> lights = lights_of(run.from, 0);
+        run.count = lights.size();
+        scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
+    } catch (const UserError& error) {
+        table.fail("from", error.what());
+    }
+    scene.light_keys.resize(scene.lights.size());
+    scene.lights_from.push_back(std::move(run));
+}
+
+/// [camera], which is stated.
+void read_camera(TomlTable& table, SceneDescription& scene, const std::filesystem::path& folder) {
+    if (!table.has("from")) {
+        table.may_have("from");
+        scene.camera = read_camera(table);
+        scene.camera_keys = read_camera_keys(table, scene.camera.projection);
+        table.finish();
+        check(table, mistake_of(scene.camera, table.name()));
+        return;
+    }
+    scene.camera_from = read_from_model(table, folder, true);
+    try {
+        scene.camera = camera_of(*scene.camera_from, scene.settings, 0);
+    } catch (const UserError& error) {
+        table.fail("from", error.what());
+    }
+    scene.camera = read_lens(table, scene.camera);
+    table.finish();
+}
+
+void read_sky(TomlTable& table, std::span<const std::string> textures, SceneDescription& scene) {
+    table.may_have("map");
+    if (table.has("map")) {
+        scene.sky_map.texture = read_texture_name(table, "map", textures);
+        scene.sky_map.rotation = table.number("rotation", scene.sky_map.rotation, angle_range);
+        scene.sky = glm::vec3(1);
+    }
+    scene.sky = glm::vec3(table.vector_or_number("radiance", glm::dvec3(scene.sky), radiance_range));
+    table.finish();
+}
+
 void read_shape(TomlTable& table, MeshDescription& mesh) {
     std::vector<std::string_view> names;
     for (const ShapeKind& kind : shape_kinds()) {
@@ -105,6 +177,38 @@ void read_shape(TomlTable& table, MeshDescription& mesh) {
                                 : parameters.number(parameter.name, parameter.preset, range));
     }
     parameters.finish();
+}
+
+/// `materials = { "of the file" = "of the scene" }`, the scene's being called `names`.
+TomlTable read_materials(TomlTable& table, std::span<const std::string_view> names, MeshDescription& mesh) {
+    if (table.has("material")) {
+        table.fail("materials", "material replaces all of a file's, materials some; leave one out");
+    }
+    TomlTable pairs = table.table("materials");
+    for (const std::string& name : pairs.keys()) {
+        mesh.materials.emplace_back(name, names[pairs.choice(name, 0, names)]);
+    }
+    return pairs;
+}
+
+/// Whether what is to be replaced is there.
+void check_materials(const TomlTable& pairs, const MeshDescription& mesh) {
+    std::vector<std::string_view> known;
+    if (mesh.source->own_materials) {
+        for (const Material& material : mesh.source->own_materials->materials) {
+            known.push_back(material.name);
+        }
+    }
+    for (const auto& [name, replacement] : mesh.materials) {
+        if (known.empty()) {
+            pairs.fail(name, "the model brings no materials that could be replaced; write material instead");
+        }
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            pairs.fail(name, fmt::format("the model has no material '{}'; did you mean '{}'? It has: {}",
+                                         printable(name), printable(nearest(name, known)),
+                                         printable(fmt::format("{}", fmt::join(known, ", ")), 1000)));
+        }
+    }
 }
 
 MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
@@ -135,7 +239,12 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         mesh.material = std::string(names[table.choice("material", 0, names)]);
     }
     table.may_have("material");
-    read_playback(table, mesh, frame_rate);
+    std::optional<TomlTable> replaced;
+    if (table.has("materials")) {
+        replaced = read_materials(table, names, mesh);
+    }
+    table.may_have("materials");
+    read_playback(table, mesh, folder, frame_rate);
     table.finish();
     try {
         if (table.has("file") && file.empty()) {
@@ -144,6 +253,9 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         load_cage(mesh, cages);
     } catch (const UserError& error) {
         table.fail(table.has("file") ? "file" : "shape", error.what());
+    }
+    if (replaced) {
+        check_materials(*replaced, mesh);
     }
     if (mesh.material.empty() && !mesh.source->own_materials) {
         mesh.material = materials.front().name;
@@ -158,15 +270,19 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     SceneDescription scene;
     scene.name = root.text("name", std::filesystem::path(file_name).stem().string());
     scene.settings = read_settings(root.table("settings"));
+    scene.settings.filter = read_filter(root.table("film"));
     TomlTable camera = root.table("camera");
     TomlTable dicing_camera = root.table("dicing_camera");
     TomlTable sky = root.table("sky");
-    scene.sky = glm::vec3(sky.vector_or_number("radiance", glm::dvec3(scene.sky), radiance_range));
-    sky.finish();
     TomlTable animation = root.table("animation");
     scene.frame_rate = animation.number("rate", scene.frame_rate, frame_rate_range);
     animation.finish();
     for (TomlTable& light : root.tables("light")) {
+        if (light.has("from")) {
+            read_lights_from(light, scene, folder);
+            continue;
+        }
+        light.may_have("from");
         scene.lights.push_back(read_light(light));
         scene.light_keys.push_back(read_light_keys(light, scene.lights.back().kind));
         light.finish();
@@ -179,6 +295,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         check_names(texture_names, scene.textures.back().name, table);
         texture_names.push_back(scene.textures.back().name);
     }
+    read_sky(sky, texture_names, scene);
     for (TomlTable& table : root.tables("material")) {
         scene.materials.push_back(read_material(table, texture_names));
         check_names(names, scene.materials.back().name, table);
@@ -196,10 +313,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         root.fail("mesh", "no meshes; write at least one [[mesh]]");
     }
     if (camera.stated()) {
-        scene.camera = read_camera(camera);
-        scene.camera_keys = read_camera_keys(camera);
-        camera.finish();
-        check(camera, mistake_of(scene.camera, camera.name()));
+        read_camera(camera, scene, folder);
     } else {
         place_camera(scene);
     }
@@ -212,14 +326,6 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
         place_light_and_sky(scene);
     }
     return scene;
-}
-
-/// In lower case.
-std::string extension_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return extension;
 }
 
 } // namespace
@@ -240,11 +346,11 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
 }
 
 bool is_model_file(const std::filesystem::path& path) {
-    return model_file(path) != ModelFile::none || extension_of(path) == ".instances";
+    return model_file(path) != ModelFile::none || lower_extension(path) == ".instances";
 }
 
 SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing) {
-    if (extension_of(path) == ".toml") {
+    if (lower_extension(path) == ".toml") {
         return read_scene_file(path);
     }
     if (is_model_file(path)) {
@@ -252,13 +358,11 @@ SceneDescription describe(const std::filesystem::path& path, const FramingOption
                                                    : frame_instances(path, framing);
     }
     if (std::filesystem::is_directory(path)) {
-        throw UserError(fmt::format(
-            "{}: is a directory; give a file ending in .toml, .obj, .md3, .gltf, .glb or .instances",
-            printable(path.string(), 1000)));
+        throw UserError(fmt::format("{}: is a directory; give a file ending in {}",
+                                    printable(path.string(), 1000), scene_extensions));
     }
-    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in .toml, .obj, "
-                                ".md3, .gltf, .glb or .instances",
-                                printable(path.string(), 1000)));
+    throw UserError(fmt::format("{}: neither a scene file nor a model; give a file ending in {}",
+                                printable(path.string(), 1000), scene_extensions));
 }
 
 Scene load_scene(const std::filesystem::path& path) {

@@ -1,5 +1,6 @@
 // Scene files in TOML. All keys and their defaults: configs/scenes/default.toml, or --print-config; those of
-// materials and textures: razor/scene/material_fields.h and read_materials.h.
+// materials and textures: razor/scene/material_fields.h and read_materials.h; cameras and lights of models:
+// read_from_model.h.
 //
 // Where a file states no camera, one is placed to see all meshes; where it states neither light nor sky, both
 // are chosen (razor/scene/framing.h).
@@ -23,9 +24,9 @@ SceneDescription parse_scene_file(std::string_view text, std::string_view file_n
 /// Whether the name is that of a model or ends in .instances, in any case: what is framed and lit by itself.
 bool is_model_file(const std::filesystem::path& path);
 
-/// What `path` holds by its extension: .toml is a scene file; .obj (also a sequence: walk_%03d.obj), .md3,
-/// .gltf and .glb are bare models and .instances a table of them (razor/scene/instance_table.h), framed and
-/// lit by themselves. Throws UserError for any other extension.
+/// What `path` holds by its extension: .toml is a scene file; .obj and .ply (also sequences: walk_%03d.obj),
+/// .md3, .gltf and .glb are bare models and .instances a table of them (razor/scene/instance_table.h), framed
+/// and lit by themselves. Throws UserError for any other extension.
 SceneDescription describe(const std::filesystem::path& path, const FramingOptions& framing);
 
 /// The scene of `describe` with default framing: y up.

@@ -49,6 +49,16 @@ bool TomlTable::has(std::string_view key) const {
     return table_ != nullptr && table_->contains(key);
 }
 
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::string> result;
+    if (table_ != nullptr) {
+        for (const auto& [key, value] : *table_) {
+            result.emplace_back(key.str());
+        }
+    }
+    return result;
+}
+
 const toml::node* TomlTable::find(std::string_view key) {
     if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) {
         asked_.emplace_back(key);

@@ -29,6 +29,8 @@ public:
     const std::string& name() const { return name_; }
     bool stated() const { return table_ != nullptr; }
     bool has(std::string_view key) const;
+    /// All that are stated, in order of the alphabet.
+    std::vector<std::string> keys() const;
 
     /// The value of `key`, or `preset` where it is not stated. Throws UserError on a wrong type or a value
     /// out of range.

@@ -31,6 +31,19 @@ inline constexpr std::array<Word<LevelOfDetail>, 23> lod_words{{
     {"fixed:7", {Lod::fixed, 7}},    {"fixed:8", {Lod::fixed, 8}},
 }};
 
+inline constexpr std::array<Word<FilterKind>, 5> filter_words{{
+    {"box", FilterKind::box},
+    {"triangle", FilterKind::triangle},
+    {"gaussian", FilterKind::gaussian},
+    {"mitchell", FilterKind::mitchell},
+    {"lanczos", FilterKind::lanczos},
+}};
+
+inline constexpr std::array<Word<Projection>, 2> projection_words{{
+    {"perspective", Projection::perspective},
+    {"orthographic", Projection::orthographic},
+}};
+
 inline constexpr std::array<Word<LightKind>, 6> light_words{{
     {"rectangle", LightKind::rectangle},
     {"disk", LightKind::disk},

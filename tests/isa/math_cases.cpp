@@ -39,7 +39,7 @@ template <class Op> void scalars(const float* x, const float* y, float* r, int n
 
 constexpr math_function functions[] = {
     FUNCTION("exp", exp(a)), FUNCTION("exp2", exp2(a)), FUNCTION("log", log(a)),    FUNCTION("log2", log2(a)),
-    FUNCTION("sin", sin(a)), FUNCTION("cos", cos(a)),   FUNCTION("pow", pow(a, b)),
+    FUNCTION("sin", sin(a)), FUNCTION("cos", cos(a)),   FUNCTION("pow", pow(a, b)), FUNCTION("atan2", atan2(a, b)),
 };
 
 } // namespace

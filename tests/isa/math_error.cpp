@@ -1,5 +1,6 @@
 // math_error TARGET [STRIDE]: the largest error of every elementary function over all floats (or every STRIDE-th),
-// beside its stated bound; of pow over a 61st of those, with some exponents. Exits with 1 where a bound is exceeded.
+// beside its stated bound; of pow and atan2 over a 61st of those, with some second arguments. Exits with 1 where a
+// bound is exceeded.
 #include "math_targets.h"
 
 #include "isa/cpu.h"
@@ -60,14 +61,21 @@ int main(int argc, char** argv) {
             for (const math_bound& b : math_bounds)
                 if (std::string_view(f.name) == b.name)
                     failed |= report(f.name, scan(f.vectors, stride, b.domain, 0.0F, b.exact), b.ulp);
+            const auto with = [&](float y, double (*exact)(double, double), double bound) {
+                const auto of_x = [&](double x) { return exact(x, static_cast<double>(y)); };
+                const worst w = scan(f.vectors, 61 * stride, std::numeric_limits<float>::infinity(), y, of_x);
+                char name[32];
+                std::snprintf(name, sizeof name, "%s(x,%g)", f.name, static_cast<double>(y));
+                failed |= report(name, w, bound);
+            };
             if (std::string_view(f.name) == "pow")
-                for (float y : {-1.7F, -0.01F, 0.5F, 1.0F, 2.0F, 2.2F, 50.3F, -212.5F, 255.0F, 1000.0F, 1e6F}) {
-                    auto exact = [&](double x) { return x < 0 ? std::nan("") : std::pow(x, static_cast<double>(y)); };
-                    worst w = scan(f.vectors, 61 * stride, std::numeric_limits<float>::infinity(), y, exact);
-                    char name[32];
-                    std::snprintf(name, sizeof name, "pow(x,%g)", static_cast<double>(y));
-                    failed |= report(name, w, pow_bound);
-                }
+                for (float y : {-1.7F, -0.01F, 0.5F, 1.0F, 2.0F, 2.2F, 50.3F, -212.5F, 255.0F, 1000.0F, 1e6F})
+                    with(
+                        y, [](double a, double b) { return a < 0 ? std::nan("") : std::pow(a, b); }, pow_bound);
+            if (std::string_view(f.name) == "atan2")
+                for (float y : {1e-30F, 0.01F, 0.7F, 1.0F, 1234.5F, -1e-30F, -0.01F, -0.7F, -1.0F, -1234.5F})
+                    with(
+                        y, [](double a, double b) { return std::atan2(a, b); }, atan2_bound);
         }
         return failed;
     }

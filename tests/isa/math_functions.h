@@ -37,6 +37,7 @@ inline constexpr math_bound math_bounds[] = {
     {"cos", [](double x) { return std::cos(x); }, 1.0, 100000.0F},
 };
 inline constexpr double pow_bound = 1.25;
+inline constexpr double atan2_bound = 2.0;
 
 /// Distance from the exact value in units in the last place of the exact one; infinity where only one of them
 /// is a NaN. An infinite result counts as 2^128.

@@ -78,6 +78,26 @@ TEST_P(Math, PowWithinBound) {
     }
 }
 
+// In all quadrants, of all sizes, and next to the axes and diagonals.
+TEST_P(Math, Atan2WithinBound) {
+    std::mt19937 random(1);
+    std::vector<float> x(40960), y(x.size()), r(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double angle = static_cast<double>(random()) / 0x1p32 * 6.283185307179586;
+        const double size = std::ldexp(1.0, static_cast<int>(random() % 240) - 120);
+        const double aside = i % 4 == 0 ? std::ldexp(1.0, -static_cast<int>(random() % 100)) : 1;
+        x[i] = static_cast<float>(size * std::cos(angle));
+        y[i] = static_cast<float>(size * std::sin(angle) * aside);
+        if (i % 16 == 3)
+            y[i] = std::nextafter(x[i], i % 32 == 3 ? inf : 0);
+    }
+    function(GetParam(), "atan2").vectors(y.data(), x.data(), r.data(), static_cast<int>(x.size()));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double exact = std::atan2(static_cast<double>(y[i]), static_cast<double>(x[i]));
+        ASSERT_LE(ulp_error(r[i], exact), atan2_bound) << "atan2(" << y[i] << ", " << x[i] << ") = " << r[i];
+    }
+}
+
 TEST_P(Math, SameBitsAsPlain) {
     if (std::string(GetParam().name) == "sse4")
         GTEST_SKIP() << "sse4 rounds fused operations twice";
@@ -140,6 +160,18 @@ TEST_P(Math, SpecialValues) {
     EXPECT_TRUE(std::isnan(call("pow", -1.0F, 2.0F)));
     EXPECT_TRUE(std::isnan(call("pow", nan, 2.0F)));
     EXPECT_TRUE(std::isnan(call("pow", 2.0F, nan)));
+    for (const float x : {0.0F, -0.0F, 1.0F, -1.0F, inf, -inf})
+        for (const float y : {0.0F, -0.0F, 1.0F, -1.0F, inf, -inf}) {
+            const float angle = call("atan2", y, x);
+            if (std::isinf(x) && std::isinf(y)) {
+                EXPECT_TRUE(std::isnan(angle));
+                continue;
+            }
+            EXPECT_NEAR(angle, std::atan2(y, x), 2.4e-7F) << y << ' ' << x;
+            EXPECT_EQ(std::signbit(angle), std::signbit(y)) << y << ' ' << x;
+        }
+    EXPECT_TRUE(std::isnan(call("atan2", nan, 1.0F)));
+    EXPECT_TRUE(std::isnan(call("atan2", 1.0F, nan)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Math, testing::ValuesIn(math_targets), [](const auto& p) { return p.param.name; });

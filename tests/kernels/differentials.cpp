@@ -56,7 +56,7 @@ struct Case {
 };
 struct Result {
     dvec3 direction_x, direction_y, origin_x, origin_y;
-    double across, moved_across, lens_across, growth_to_area, growth_to_sky;
+    double across, moved_across, lens_across, parallel_across, growth_to_area, growth_to_sky;
     double disk_x, disk_y;
 };
 
@@ -97,15 +97,16 @@ std::vector<Result> run(const Target& target, const std::vector<Case>& cases) {
         *out = room(1);
     for (float** out : {&a.direction_x, &a.direction_y, &a.origin_x, &a.origin_y})
         *out = room(3);
-    for (float** out : {&a.across, &a.moved_across, &a.lens_across, &a.growth_to_area, &a.growth_to_sky})
+    for (float** out : {&a.across, &a.moved_across, &a.lens_across, &a.parallel_across, &a.growth_to_area,
+                        &a.growth_to_sky})
         *out = room(1);
     target.run(a);
     std::vector<Result> results;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const auto vec = [&](const float* v) { return dvec3(v[i], v[i + n], v[i + 2 * n]); };
         results.push_back({vec(a.direction_x), vec(a.direction_y), vec(a.origin_x), vec(a.origin_y),
-                           a.across[i], a.moved_across[i], a.lens_across[i], a.growth_to_area[i],
-                           a.growth_to_sky[i], a.disk_x[i], a.disk_y[i]});
+                           a.across[i], a.moved_across[i], a.lens_across[i], a.parallel_across[i],
+                           a.growth_to_area[i], a.growth_to_sky[i], a.disk_x[i], a.disk_y[i]});
     }
     return results;
 }
@@ -179,6 +180,23 @@ TEST(Differentials, OfAPinholeAreFiniteDifferences) {
             const double expected = parallelogram(px, py, unit);
             ASSERT_NEAR(r.across / expected, 1, near) << target.name << ", case " << i;
             ASSERT_NEAR(r.moved_across / expected, 1, 20 * near) << target.name << ", case " << i;
+        }
+    }
+}
+
+TEST(Differentials, OfAnOrthographicCameraAreFiniteDifferences) {
+    const std::vector<Case> cases = random_cases(3, 1024);
+    for (const Target& target : probes()) {
+        const std::vector<Result> results = run(target, cases);
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            const Case& c = cases[i];
+            const auto hit = [&](double x, double y) {
+                return on_plane(c, c.film_x * x + c.film_y * y, c.d);
+            };
+            const dvec3 px = (hit(h, 0) - hit(-h, 0)) / (2 * h);
+            const dvec3 py = (hit(0, h) - hit(0, -h)) / (2 * h);
+            ASSERT_NEAR(results[i].parallel_across / parallelogram(px, py, glm::normalize(c.d)), 1, near)
+                << target.name << ", case " << i;
         }
     }
 }

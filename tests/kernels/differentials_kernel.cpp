@@ -43,6 +43,7 @@ void differentials(const DifferentialArrays& a) {
         vfloat t = at(a.t, i);
         RayDifferential r = pinhole_differential(d, three(a.film_x).at(i), three(a.film_y).at(i));
         RayDifferential moved = transfer(r, unit, t, three(a.normal).at(i));
+        RayDifferential parallel = orthographic_differential(three(a.film_x).at(i), three(a.film_y).at(i));
         RayDifferential lens = lens_differential(d, three(a.lens_x).at(i), three(a.lens_y).at(i));
         three(a.direction_x).set(i, r.direction_x);
         three(a.direction_y).set(i, r.direction_y);
@@ -51,6 +52,7 @@ void differentials(const DifferentialArrays& a) {
         store_vector(pointer<float>(a.across + i), footprint(r, unit, t));
         store_vector(pointer<float>(a.moved_across + i), footprint(moved, unit, vfloat(0.0F)));
         store_vector(pointer<float>(a.lens_across + i), footprint(lens, unit, t));
+        store_vector(pointer<float>(a.parallel_across + i), footprint(parallel, unit, t));
         vfloat u = at(a.square_u, i);
         vpoint disk = concentric_disk({u, at(a.square_v, i)});
         store_vector(pointer<float>(a.disk_x + i), disk.u);

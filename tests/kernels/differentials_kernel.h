@@ -17,6 +17,7 @@ struct DifferentialArrays {
     float *origin_x = nullptr, *origin_y = nullptr;       // moved to the surface
     float *across = nullptr, *moved_across = nullptr;     // footprints of these two
     float* lens_across = nullptr;
+    float* parallel_across = nullptr; // of an orthographic camera with these steps
     float *disk_x = nullptr, *disk_y = nullptr;
     float *growth_to_area = nullptr, *growth_to_sky = nullptr;
 };

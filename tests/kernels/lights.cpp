@@ -165,6 +165,11 @@ struct Sampler {
     }
     static glm::dvec2 point(std::uint32_t pixel, std::uint32_t sample, std::uint32_t dimension) {
         const std::uint32_t seed = scramble(pixel + 0x9e3779b9U * dimension);
+        if (dimension != dimension_film && dimension != dimension_lens) {
+            sample ^= seed;
+            for (const unsigned bits : {12U, 8U, 5U, 3U, 2U, 1U})
+                sample ^= (sample >> bits) * (scramble(seed) | 1U) >> (32 - bits);
+        }
         const std::uint32_t x = sample * 3242174889U + seed, y = sample * 2447445414U + scramble(seed);
         return {(x >> 8U) / 16777216.0, (y >> 8U) / 16777216.0};
     }

@@ -41,6 +41,7 @@ Scene restated(Scene scene, double factor) {
             *v *= factor;
         camera->aperture_radius *= factor;
         camera->focus_distance *= factor;
+        camera->height *= factor;
     }
     return scene;
 }

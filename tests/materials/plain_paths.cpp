@@ -1,6 +1,7 @@
 #include "tests/materials/plain_paths.h"
 
 #include "tests/materials/plain_surface.h"
+#include "tests/materials/skies.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -82,7 +83,7 @@ public:
             for (const Light& light : scene_.lights)
                 sum += met_light(light, o, d, t);
         if (facet == nullptr)
-            return diffuse ? sum : sum + dvec3(scene_.sky);
+            return diffuse ? sum : sum + sky_radiance(scene_, d);
         return sum + dvec3(facet->material->emission) + reflected(*facet, o + t * d, -d, n);
     }
 
@@ -138,8 +139,10 @@ private:
         }
         if (largest(dvec3(scene_.sky)) > 0) {
             const dvec3 l = cosine_direction();
+            const dvec3 seen = scene_.sky_map.texture >= 0 ? reflectance(l)
+                                                           : all.reflectance(v, l) - rough.reflectance(v, l);
             if (l.z > 0 && open(p, frame.out(l), std::numeric_limits<double>::infinity()))
-                sum += (all.reflectance(v, l) - rough.reflectance(v, l)) * dvec3(scene_.sky) * pi;
+                sum += seen * sky_radiance(scene_, frame.out(l)) * pi;
         }
         return sum;
     }

@@ -28,6 +28,12 @@ protected:
         }
         folder_.file("random.obj", noise);
         folder_.file("random.toml", noise);
+        folder_.file("random.ply", noise);
+        folder_.file("cut.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+                                "property float y\nproperty float z\nelement face 1\n"
+                                "property list uchar int vertex_indices\nend_header\n" +
+                                    std::string(36, '\0'));
+        folder_.file("view.toml", "[camera]\nfrom = \"good.obj\"\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("random.exr", noise);
         folder_.file("key.toml", "[settings]\nsamlpes = 3\n[[mesh]]\nfile = \"good.obj\"\n");
         folder_.file("type.toml", "[settings]\nsamples = \"3\"\n[[mesh]]\nfile = \"good.obj\"\n");
@@ -87,6 +93,9 @@ TEST_F(Razor, RefusesBadInput) {
         {"empty.toml", "empty.toml: is empty"},
         {"random.obj", "random.obj:1: "},
         {"random.toml", "random.toml:1:"},
+        {"random.ply", "random.ply:1: begins with"},
+        {"cut.ply", "cut.ply:7: element face 1 does not fit into the 0 bytes that are left of the file"},
+        {"view.toml", "view.toml:2:8: 'good.obj' brings no camera; give a .gltf or .glb file"},
         {"random.exr", "neither a scene file nor a model"},
         {"key.toml", "key.toml:2:1: unknown key 'settings.samlpes'; did you mean 'samples'?"},
         {"type.toml", "type.toml:2:11: settings.samples is text"},
@@ -107,6 +116,14 @@ TEST_F(Razor, RefusesBadInput) {
         {"good.obj --spp 0", "--spp '0'"},
         {"good.obj --spp 1e3", "--spp '1e3'"},
         {"good.obj --threads 0", "--threads '0'"},
+        {"good.obj --filter gauss", "--filter 'gauss' is unknown; give one of: box, triangle"},
+        {"good.obj --filter-radius 0", "--filter-radius '0' is not possible; give a number from 0.01 to 32"},
+        {"good.obj --filter lanczos --filter-radius nan", "--filter-radius 'nan'"},
+        {"good.obj --tone agxx", "--tone 'agxx' is unknown; give one of: srgb, aces, agx"},
+        {"good.obj --time 10", "--time '10' is not possible; give a time from 1ms to 1000h"},
+        {"good.obj --time -1s", "--time '-1s' is not possible"},
+        {"good.obj --progressive --repeat 2", "rendered once; leave out --repeat"},
+        {"good.obj --progressive --frames 0:1", "--progressive writes one frame's pictures"},
         {"good.obj --threads many", "--threads 'many'"},
         {"good.obj --isa mmx", "--isa 'mmx' is unknown; give one of: auto, plain, sse4, avx2, avx512"},
         {"good.obj --share core", "--share 'core'"},

@@ -1,5 +1,6 @@
 // razor info: what it lists of a scene, for people and for programs.
 #include "tests/program/run.h"
+#include "tests/scene/gltf_writer.h"
 #include "tests/scene/picture_writer.h"
 
 #include <nlohmann/json.hpp>
@@ -54,6 +55,42 @@ TEST_F(Info, ListsWhatASceneConsistsOf) {
     EXPECT_EQ(json["textures"][1]["bytes"], 320);
     EXPECT_EQ(json["lights"].size(), 1U);
     EXPECT_EQ(json["camera"]["target"].size(), 3U);
+}
+
+TEST_F(Info, TellsWhatGltfFilesHold) {
+    GltfWriter w = triangle();
+    w.json["nodes"][0]["name"] = "Body";
+    w.json["nodes"][0]["camera"] = 0;
+    w.json["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+    w.json["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1.5707963267948966}, {"aspectRatio", 2}}}},
+        {{"type", "orthographic"}, {"name", "plan"}}};
+    w.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}}};
+    w.add("nodes", {{"camera", 1}});
+    w.json["scenes"][0]["nodes"] = {0, 1};
+    w.channel(0, "translation", {0, 1.25}, {0, 0, 0, 1, 0, 0}, 3);
+    w.json["animations"][0]["name"] = "Run";
+    folder_.file("m.glb", w.glb());
+    folder_.file("g.toml",
+                 "[camera]\nfrom = \"m.glb\"\n[[light]]\nfrom = \"m.glb\"\n[[mesh]]\nfile = \"o.obj\"\n");
+    for (const std::string scene : {"m.glb", "g.toml"}) {
+        const Outcome result = info(scene + " --json i.json");
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find(
+                      "glTF files: 1\n  " + (folder_ / "m.glb").string() +
+                      "\n    cameras: Body (90 degrees, 2 times as wide as high), plan (orthographic, not "
+                      "read)\n    lights: Body (spot)\n    animations: Run (1.25 s)\n"),
+                  std::string::npos)
+            << result.out;
+        std::ifstream file(folder_ / "i.json");
+        const auto json = nlohmann::json::parse(file)["gltf_files"];
+        ASSERT_EQ(json.size(), 1U);
+        EXPECT_EQ(json[0]["cameras"][0]["aspect_ratio"], 2.0);
+        EXPECT_EQ(json[0]["cameras"][1]["projection"], "orthographic");
+        EXPECT_EQ(json[0]["lights"][0]["kind"], "spot");
+        EXPECT_EQ(json[0]["animations"][0]["seconds"], 1.25);
+    }
+    EXPECT_EQ(info("o.obj").out.find("glTF"), std::string::npos);
 }
 
 TEST_F(Info, TakesModelsAndNamesMistakes) {

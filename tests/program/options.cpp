@@ -106,6 +106,18 @@ TEST(SceneOptions, OverrideTheFile) {
     EXPECT_EQ(scene.meshes[0].scheme, Scheme::bilinear);
 }
 
+TEST(SceneOptions, FilterThePicture) {
+    const TemporaryFolder folder;
+    const std::string file =
+        folder.file("s.toml", "[film]\nfilter = \"gaussian\"\nsigma = 2\n[[mesh]]\nshape = \"box\"\n");
+    EXPECT_EQ(described({file}).settings.filter.sigma, 2);
+    EXPECT_EQ(described({file, "--filter", "mitchell"}).settings.filter, preset_filter(FilterKind::mitchell));
+    const Filter wide = described({file, "--filter-radius", "3"}).settings.filter;
+    EXPECT_EQ(wide.kind, FilterKind::gaussian);
+    EXPECT_EQ(wide.radius, glm::dvec2(3, 3));
+    EXPECT_EQ(wide.sigma, 2);
+}
+
 TEST(SceneOptions, CropAPartOfThePicture) {
     const TemporaryFolder folder;
     const std::string file = folder.file(

@@ -6,6 +6,10 @@
 #include "razor/scene/error.h"
 #include "tests/scene/temporary_folder.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -13,8 +17,11 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <sys/resource.h>
 
 namespace razor {
@@ -39,6 +46,58 @@ std::string message_of(const std::function<void()>& action) {
         return error.what();
     }
     return {};
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// As OpenEXR's own reader sees it: layers by name, windows, what the camera was.
+TEST(Exr, SaysWhatThePictureIs) {
+    const TemporaryFolder folder;
+    Film film = noise(9, 5);
+    film.window = PictureWindow{30, 11, 64, 48};
+    film.camera.emplace();
+    for (std::size_t i = 0; i < 16; ++i) {
+        film.camera->world_to_camera[i] = static_cast<float>(i) + 0.25F;
+        film.camera->world_to_ndc[i] = 20 - static_cast<float>(i);
+    }
+    film.camera->screen_width = 1.5F;
+    write_exr(folder / "a.exr", film);
+    {
+        Imf::InputFile file((folder / "a.exr").c_str());
+        const Imf::Header& header = file.header();
+        EXPECT_EQ(header.displayWindow(), Imath::Box2i({0, 0}, {63, 47}));
+        EXPECT_EQ(header.dataWindow(), Imath::Box2i({30, 11}, {38, 15}));
+        EXPECT_EQ(header.pixelAspectRatio(), 1);
+        EXPECT_EQ(header.screenWindowWidth(), 1.5F);
+        EXPECT_EQ(header.screenWindowCenter(), Imath::V2f(0, 0));
+        EXPECT_EQ(Imf::worldToCamera(header)[0][1], 1.25F);
+        EXPECT_EQ(Imf::worldToNDC(header)[3][3], 5);
+        EXPECT_EQ(Imf::chromaticities(header).green, Imath::V2f(0.3F, 0.6F));
+        EXPECT_FALSE(Imf::hasCapDate(header));
+        std::set<std::string> layers;
+        header.channels().layers(layers);
+        EXPECT_EQ(layers, (std::set<std::string>{"albedo", "depth", "normal"}));
+        Imf::ChannelList::ConstIterator first, end;
+        header.channels().channelsInLayer("normal", first, end);
+        std::vector<std::string> channels;
+        for (; first != end; ++first)
+            channels.emplace_back(first.name());
+        EXPECT_EQ(channels, (std::vector<std::string>{"normal.X", "normal.Y", "normal.Z"}));
+        for (const char* beauty : {"R", "G", "B"})
+            EXPECT_NE(header.channels().findChannel(beauty), nullptr);
+    }
+    const Film again = read_exr(folder / "a.exr");
+    EXPECT_EQ(again.window, film.window);
+    EXPECT_EQ(again.camera, film.camera);
+    EXPECT_EQ(again.find("depth.Z")->values, film.find("depth.Z")->values);
+    write_exr(folder / "b.exr", again);
+    EXPECT_EQ(bytes_of(folder / "a.exr"), bytes_of(folder / "b.exr"));
+    write_exr(folder / "whole.exr", noise(9, 5));
+    EXPECT_FALSE(read_exr(folder / "whole.exr").window.has_value());
+    EXPECT_FALSE(read_exr(folder / "whole.exr").camera.has_value());
 }
 
 TEST(Exr, KeepsEveryBit) {

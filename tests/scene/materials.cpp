@@ -154,6 +154,22 @@ TEST(Materials, PrintedSceneIsTheSame) {
     EXPECT_EQ(again.settings.diffuse_bounces, 3);
 }
 
+TEST(Materials, TheSkyHasAMap) {
+    const TemporaryFolder folder;
+    add_pictures(folder);
+    const std::string known = "[[texture]]\nname = \"other\"\nfile = \"b.jpg\"\n" + std::string(textures);
+    const SceneDescription dim =
+        parsed("[sky]\nmap = \"rough\"\nrotation = -30\nradiance = [1, 2, 3]\n" + known + box, folder.path());
+    EXPECT_EQ(dim.sky_map, (SkyMap{2, -30}));
+    EXPECT_EQ(dim.sky, glm::vec3(1, 2, 3));
+    EXPECT_EQ(dim.lights.size(), 0U); // none of those of a bare model
+    const SceneDescription again = parsed(to_toml(dim), "/nowhere");
+    expect_same(build_scene(dim), build_scene(again));
+    const SceneDescription whole = parsed("[sky]\nmap = \"bricks\"\n" + known + box, folder.path());
+    EXPECT_EQ(whole.sky, glm::vec3(1));
+    EXPECT_EQ(parsed("[sky]\nradiance = 2\n" + known + box, folder.path()).sky_map, SkyMap{});
+}
+
 TEST(Materials, MattePrintsAsItAlwaysHas) {
     EXPECT_EQ(to_toml(Material{.name = "a", .albedo = {0.5F, 0.1F, 1}}, {}),
               "\n[[material]]\nname = \"a\"\nalbedo = [0.5, 0.1, 1.0]\n");
@@ -204,6 +220,9 @@ TEST(Materials, MistakesNamePlaceCauseAndMend) {
          "unknown key 'texture.colour_space'; did you mean 'color_space'?"},
         {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\n[[texture]]\nname = \"t\"\nfile = \"a.png\"\n" + box,
          "s.toml:5:8: the name 't' is used twice"},
+        {"[sky]\nmap = \"x\"\n" + box, "s.toml:2:7: there is no texture 'x'; write a [[texture]]"},
+        {"[sky]\nmap = \"brick\"\n" + known + box, "sky.map 'brick' is unknown; did you mean 'bricks'?"},
+        {"[sky]\nradiance = 1\nrotation = 9\n" + box, "unknown key 'sky.rotation'"},
         {"[settings]\nbounces = 65\n" + box,
          "settings.bounces = 65 is out of range; write a number from 0 to 64"},
     };

@@ -48,7 +48,7 @@ protected:
 };
 
 TEST_F(ObjFrames, AreReachedAtTheirTimesAndBlendedInBetween) {
-    const ObjSequence motion(name(), 3, 6, 2, {});
+    const CageSequence motion(name(), 3, 6, 2, {});
     EXPECT_EQ(motion.length(), 1.5);
     const std::vector<glm::dvec3> rest = read_obj(folder_ / "w_03.obj").points;
     for (int n = 3; n <= 6; ++n) {
@@ -60,14 +60,14 @@ TEST_F(ObjFrames, AreReachedAtTheirTimesAndBlendedInBetween) {
     EXPECT_EQ(motion.at(9)->points, motion.at(1.5)->points);
     EXPECT_EQ(motion.at(0.125)->points[2].x, 1 + 9 + 7 / 4.0);
     EXPECT_EQ(motion.at(1.25)->points[3].z, 3 * (25 + 11 / 2.0));
-    EXPECT_EQ(ObjSequence(name(), 3, 6, 2, {Interpolation::step, 0}).at(0.99)->points,
+    EXPECT_EQ(CageSequence(name(), 3, 6, 2, {Interpolation::step, 0}).at(0.99)->points,
               motion.at(0.5)->points);
     // Squares are a parabola, which cubics through three keys keep.
-    const ObjSequence smooth(name(), 3, 6, 2, {Interpolation::smooth, 0});
+    const CageSequence smooth(name(), 3, 6, 2, {Interpolation::smooth, 0});
     EXPECT_NEAR(smooth.at(0.7)->points[2].x, 1 + 4.4 * 4.4, 1e-12);
     // 6 (at 1.5 s) and 3 (at 2 s) are neighbours.
-    EXPECT_EQ(ObjSequence(name(), 3, 6, 2, {Interpolation::linear, 2}).at(3.75)->points[2].x, 1 + 22.5);
-    EXPECT_EQ(ObjSequence(name(), 4, 5, 1, {}).at(0)->points, motion.at(0.5)->points);
+    EXPECT_EQ(CageSequence(name(), 3, 6, 2, {Interpolation::linear, 2}).at(3.75)->points[2].x, 1 + 22.5);
+    EXPECT_EQ(CageSequence(name(), 4, 5, 1, {}).at(0)->points, motion.at(0.5)->points);
 }
 
 TEST_F(ObjFrames, WithOtherFacesOnlyFollowEachOther) {

@@ -213,7 +213,7 @@ TEST_F(Mtl, FramesOfASequenceHaveTheFirstOnesMaterials) {
     folder_.file("l.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
     folder_.file("w1.obj", points + "mtllib l.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\n");
     folder_.file("w2.obj", "v 0 0 9\n" + points + "usemtl blue\nf 1 2 3\nf 1 3 4\nusemtl red\nf 2 3 4\n");
-    const ObjSequence sequence((folder_ / "w%d.obj").string(), 1, 2, 1, {Interpolation::step, 0}, &cache_);
+    const CageSequence sequence((folder_ / "w%d.obj").string(), 1, 2, 1, {Interpolation::step, 0}, &cache_);
     const auto first = sequence.at(0), second = sequence.at(1);
     EXPECT_EQ(first->face_materials, (std::vector<int>{0, 1}));
     EXPECT_EQ(second->face_materials, (std::vector<int>{1, 1, 0}));

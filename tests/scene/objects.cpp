@@ -194,8 +194,8 @@ TEST(InstanceTable, MistakesNameLineCauseAndMend) {
         {"a.obj 1 2 3 4 0\n", "t:1: 0 is out of range"},
         {"a.obj 1 2 3 4 -1\n", "t:1: -1 is out of range"},
         {"a.obj 1 0 0 0 0 1 0 0 1 1 0 0\n", "t:1: the matrix flattens what it places"},
-        {"1 2 3\n", "t:1: '1' is not an OBJ file"},
-        {"a.png 1 2 3\n", "t:1: 'a.png' is not an OBJ file"},
+        {"1 2 3\n", "t:1: '1' is neither an OBJ nor a PLY file"},
+        {"a.png 1 2 3\n", "t:1: 'a.png' is neither an OBJ nor a PLY file"},
     };
     for (const auto& [text, expected] : cases) {
         try {
@@ -263,7 +263,7 @@ TEST(Objects, MistakesNamePlaceCauseAndMend) {
         {mesh + "[[object]]\ninstances = \"bad.instances\"\n", "bad.instances:1: 2 numbers"},
         {mesh + "[[object]]\ninstances = \"lost.instances\"\n", "lost.instances:2: "},
         {mesh + "[[object]]\ninstances = \"lost.instances\"\n", "lost.obj: no such file"},
-        {mesh + "[[object]]\ninstances = \"tri.obj\"\n", "tri.obj:1: 'v' is not an OBJ file"},
+        {mesh + "[[object]]\ninstances = \"tri.obj\"\n", "tri.obj:1: 'v' is neither an OBJ nor a PLY file"},
         {mesh + "[[group]]\n", "s.toml:4:1: a group without a name"},
         {mesh + "[[group]]\nname = \"g\"\n", "the group 'g' is empty; write at least one [[group.object]]"},
         {mesh + group("g", "mesh = \"m\"") + group("g", "mesh = \"m\""),

@@ -42,6 +42,8 @@ inline void expect_same(const Camera& a, const Camera& b) {
     EXPECT_EQ(a.position, b.position);
     EXPECT_EQ(a.target, b.target);
     EXPECT_EQ(a.up, b.up);
+    EXPECT_EQ(a.projection, b.projection);
+    EXPECT_EQ(a.height, b.height);
     EXPECT_EQ(a.fov_degrees, b.fov_degrees);
     EXPECT_EQ(a.aperture_radius, b.aperture_radius);
     EXPECT_EQ(focus_distance(a), focus_distance(b));
@@ -52,12 +54,14 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.width, b.settings.width);
     EXPECT_EQ(a.settings.height, b.settings.height);
     EXPECT_EQ(a.settings.crop, b.settings.crop);
+    EXPECT_EQ(a.settings.filter, b.settings.filter);
     EXPECT_EQ(a.settings.samples, b.settings.samples);
     EXPECT_EQ(a.settings.light_samples, b.settings.light_samples);
     EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
     EXPECT_EQ(a.settings.bounces, b.settings.bounces);
     EXPECT_EQ(a.settings.diffuse_bounces, b.settings.diffuse_bounces);
     EXPECT_EQ(a.settings.seed, b.settings.seed);
+    EXPECT_EQ(a.sky_map, b.sky_map);
     EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);
     EXPECT_EQ(a.settings.lod, b.settings.lod);
     expect_same(a.camera, b.camera);

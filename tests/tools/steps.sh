@@ -2,6 +2,7 @@
 
 razor=razor/program/razor # within a build folder
 simulator=sim/program/razor-sim
+picture=tests/kernels/picture
 # Run by g++'s build alone: studies and whole runs, of which every part has tests of its own.
 only_by_gcc='ValidatesItself|^(Sweep|Whole)\.|^(sweep|calibration|sharing|analysis|embree)_|^kernels_operand_order|^isa_(refused|lint)|^tree$'
 # Not under sanitizers either: the longest ones that take the paths of others.
@@ -102,12 +103,6 @@ run_tests() {
     fi
 }
 
-# What is compared with g++'s. What clang makes of the tests is seen under its sanitizers.
-build_by_clang() {
-    configure clang build/clang -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON -DRAZOR_BENCHMARKS=OFF
-    compile build/clang razor-sim op_stream fuzz_obj fuzz_pictures fuzz_traces
-}
-
 # Ten times as slow, and one trial shows an error of memory as well as ten do.
 run_sanitized_tests() {
     export RAZOR_WATERTIGHT_RAYS=20000 RAZOR_RANDOM_MACHINES=40
@@ -137,19 +132,20 @@ start_benchmarks() {
     ((count > 0))
 }
 
+# Clang's are those of its sanitized build, which takes other paths through no frame.
 compare_compilers() {
     local compiler machine folder=build/compare
     mkdir -p $folder
     for machine in "${machines[@]}"; do
-        for compiler in release clang; do
+        for compiler in release asan-ubsan; do
             "build/$compiler/$simulator" run --machine "$machine" --scene $scene "${simulated[@]}" \
                 -o $folder/$compiler.exr --json $folder/$compiler.json >$folder/$compiler.txt
         done
-        tests/tools/compare_reports.py $folder/release.json $folder/clang.json
-        "build/release/$razor" compare --identical $folder/release.exr $folder/clang.exr
+        tests/tools/compare_reports.py $folder/release.json $folder/asan-ubsan.json
+        "build/release/$razor" compare --identical $folder/release.exr $folder/asan-ubsan.exr
     done
     # Every event of the simulated kernels, in order.
-    tests/kernels/compare_compilers.sh build/release build/clang
+    tests/kernels/compare_compilers.sh build/release build/asan-ubsan
 }
 
 fuzz() {
@@ -158,7 +154,7 @@ fuzz() {
         name=$(basename $program)
         mkdir -p "build/fuzz/$name"
         # Findings are left beside the corpus; the log only matters when there are some.
-        if ! "build/clang/tests/$program" -max_total_time=$fuzz_seconds -artifact_prefix="build/fuzz/$name/" \
+        if ! "build/asan-ubsan/tests/$program" -max_total_time=$fuzz_seconds -artifact_prefix="build/fuzz/$name/" \
             "build/fuzz/$name" >build/fuzz.log 2>&1; then
             tail -n 40 build/fuzz.log >&2
             return 1
@@ -168,20 +164,16 @@ fuzz() {
 }
 
 build_for_threads() {
-    configure tsan build/tsan -DRAZOR_TESTS=OFF -DRAZOR_TARGETS=avx2
-    compile build/tsan razor
+    configure tsan build/tsan -DRAZOR_TESTS=ON -DRAZOR_TARGETS=avx2
+    compile build/tsan picture
 }
 
 # All workers on one tree, built while they render.
 render_shared_trees() {
-    local samples memory
-    for samples in 1 2; do
-        memory=()
-        if [ $samples = 2 ]; then
-            memory=(--memory 3MiB)
-        fi
-        TSAN_OPTIONS=halt_on_error=1 "build/tsan/$razor" render $scene --size 96x96 --spp $samples --threads 5 --share chip \
-            "${memory[@]}" --quiet -o build/tsan/picture.exr
+    local samples
+    for samples in 1 2; do # within a memory budget, too
+        TSAN_OPTIONS=halt_on_error=1 build/tsan/$picture $scene 96 96 $samples recursive 5 $(((samples - 1) * 3)) \
+            build/tsan/picture.exr
         "build/release/$razor" render $scene --size 96x96 --spp $samples --isa avx2 --quiet -o build/release/picture.exr
         "build/release/$razor" compare --identical build/release/picture.exr build/tsan/picture.exr
     done
@@ -192,10 +184,10 @@ render_shared_trees() {
 # share what they ask for, are wider or narrower.
 render_width() {
     local folder=build/width-$1 lod
-    configure release "$folder" -DRAZOR_WIDTH="$1" -DRAZOR_TARGETS=avx2 -DRAZOR_TESTS=OFF
-    compile "$folder" razor
+    configure release "$folder" -DRAZOR_WIDTH="$1" -DRAZOR_TARGETS=avx2 -DRAZOR_TESTS=ON -DRAZOR_BENCHMARKS=OFF
+    compile "$folder" picture
     for lod in fixed camera; do
-        "$folder/$razor" render $scene --size 256x192 --lod $lod --quiet -o "$folder/$lod.exr"
+        "$folder/$picture" $scene 256 192 4 $lod 2 0 "$folder/$lod.exr"
         "build/release/$razor" render $scene --size 256x192 --lod $lod --isa avx2 --quiet -o build/release/$lod.exr
     done
     "build/release/$razor" compare --identical build/release/fixed.exr "$folder/fixed.exr"

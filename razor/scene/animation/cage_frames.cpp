@@ -1,7 +1,7 @@
 #include "razor/scene/animation/cage_frames.h"
 
 #include "razor/scene/error.h"
-#include "razor/scene/models/obj_materials.h"
+#include "razor/scene/models/still_cage.h"
 #include "razor/scene/numbered_name.h"
 #include "razor/scene/text_file.h"
 
@@ -47,8 +47,8 @@ std::shared_ptr<const Mesh> PointFrames::at(double seconds) const {
                  blended(blend_at(times_, timing_, seconds), [&](std::size_t n) { return &frames_[n]; }));
 }
 
-ObjSequence::ObjSequence(std::string name, int first, int last, double rate, const Timing& timing,
-                         TextureCache* textures)
+CageSequence::CageSequence(std::string name, int first, int last, double rate, const Timing& timing,
+                           TextureCache* textures)
     : name_(std::move(name)), first_(first),
       times_(even_times(static_cast<std::size_t>(last - first) + 1, rate)), timing_(timing) {
     for (int n = first; n <= last; ++n) {
@@ -58,11 +58,12 @@ ObjSequence::ObjSequence(std::string name, int first, int last, double rate, con
             throw UserError(fmt::format("{}: no such file, of frames {} to {}; give frames that are there",
                                         printable(file, 1000), first, last));
     }
-    rest_ = std::make_shared<const Mesh>(textures == nullptr ? read_obj(numbered(name_, first))
-                                                             : read_obj(numbered(name_, first), *textures));
+    rest_ = std::make_shared<const Mesh>(textures == nullptr
+                                             ? read_still_cage(numbered(name_, first), nullptr)
+                                             : read_still_cage(numbered(name_, first), *textures));
 }
 
-std::shared_ptr<const Mesh> ObjSequence::frame(std::size_t key) const {
+std::shared_ptr<const Mesh> CageSequence::frame(std::size_t key) const {
     constexpr std::size_t most_kept = 4; // what a smooth moment needs
     if (key == 0)
         return rest_;
@@ -78,9 +79,9 @@ std::shared_ptr<const Mesh> ObjSequence::frame(std::size_t key) const {
     return kept_.back().second;
 }
 
-std::shared_ptr<const Mesh> ObjSequence::read(std::size_t key) const {
+std::shared_ptr<const Mesh> CageSequence::read(std::size_t key) const {
     const std::string file = numbered(name_, first_ + static_cast<int>(key));
-    Mesh cage = read_obj(file, rest_->own_materials);
+    Mesh cage = read_still_cage(file, rest_->own_materials);
     if (cage.points.size() == rest_->points.size() && cage.face_sizes == rest_->face_sizes &&
         cage.face_vertices == rest_->face_vertices)
         return moved(*rest_, std::move(cage.points));
@@ -92,7 +93,7 @@ std::shared_ptr<const Mesh> ObjSequence::read(std::size_t key) const {
     return std::make_shared<const Mesh>(std::move(cage));
 }
 
-std::shared_ptr<const Mesh> ObjSequence::at(double seconds) const {
+std::shared_ptr<const Mesh> CageSequence::at(double seconds) const {
     const Blend blend = blend_at(times_, timing_, seconds);
     const std::shared_ptr<const Mesh> base = frame(blend.base);
     if (blend.count == 0)

@@ -30,16 +30,16 @@ private:
     Timing timing_;
 };
 
-/// OBJ files, one a frame: the numbers first to last in place of %d or %0Nd in their name. Only the first one
-/// and the last few are kept; they are read when a moment needs them. The first frame is at rest. Where
-/// others have other faces, each is at rest as it is, and nothing can be in between: interpolation must be
-/// `step`.
-class ObjSequence : public MovingCage {
+/// OBJ or PLY files, one a frame: the numbers first to last in place of %d or %0Nd in their name. Only the
+/// first one and the last few are kept; they are read when a moment needs them. The first frame is at rest.
+/// Where others have other faces, each is at rest as it is, and nothing can be in between: interpolation must
+/// be `step`.
+class CageSequence : public MovingCage {
 public:
     /// With `textures`, also the materials of the first frame, which others name. Throws UserError where a
     /// file is missing or the first cannot be read.
-    ObjSequence(std::string name, int first, int last, double rate, const Timing& timing,
-                TextureCache* textures = nullptr);
+    CageSequence(std::string name, int first, int last, double rate, const Timing& timing,
+                 TextureCache* textures = nullptr);
     /// Throws UserError where a file cannot be read or has other faces.
     std::shared_ptr<const Mesh> at(double seconds) const override;
     double length() const override { return times_.back(); }

@@ -3,6 +3,7 @@
 
 #include "razor/scene/animation/track.h"
 #include "razor/scene/light_fields.h"
+#include "razor/scene/scene.h"
 
 #include <glm/vec3.hpp>
 
@@ -17,13 +18,15 @@ struct TransformKeys {
     bool operator==(const TransformKeys&) const = default;
 };
 
+/// Of those that a camera of its projection has.
 struct CameraKeys {
+    Projection projection = Projection::perspective;
     Timing timing;
     Track<glm::dvec3> position, target, up;
-    Track<double> fov, aperture_radius, focus_distance;
+    Track<double> fov, height, aperture_radius, focus_distance;
 
     bool any() const {
-        return !position.empty() || !target.empty() || !up.empty() || !fov.empty() ||
+        return !position.empty() || !target.empty() || !up.empty() || !fov.empty() || !height.empty() ||
                !aperture_radius.empty() || !focus_distance.empty();
     }
     bool operator==(const CameraKeys&) const = default;

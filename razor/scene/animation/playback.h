@@ -14,6 +14,7 @@ struct Playback {
     double frame_rate = 24;                    // of those, a second
     Timing timing;                             // between those; of a clip its cycle alone
     std::string clip;                          // of a glTF file; empty: the first
+    std::string clip_file;                     // absolute path of that file; empty: the cage's own
     // The motion's own seconds are start + speed times the scene's, or stand still.
     double start = 0, speed = 1;
     std::optional<double> moment;

@@ -32,8 +32,10 @@ void pose(Camera& camera, const CameraKeys& keys, double t) {
     follow(camera.fov_degrees, keys.fov, keys.timing, t);
     follow(camera.aperture_radius, keys.aperture_radius, keys.timing, t);
     follow(camera.focus_distance, keys.focus_distance, keys.timing, t);
+    follow(camera.height, keys.height, keys.timing, t);
     // Cubics pass beyond their keys.
     camera.fov_degrees = std::clamp(camera.fov_degrees, fov_range.least, fov_range.most);
+    camera.height = std::clamp(camera.height, height_range.least, height_range.most);
     camera.aperture_radius = std::max(camera.aperture_radius, 0.0);
     camera.focus_distance = std::max(camera.focus_distance, 0.0);
 }
@@ -63,7 +65,10 @@ void check(const std::optional<Mistake>& mistake, const SceneDescription& scene,
 
 bool is_animated(const SceneDescription& d) {
     const auto moves = [](const ObjectDescription& o) { return o.keys.any(); };
-    return d.camera_keys.any() || std::any_of(d.meshes.begin(), d.meshes.end(), changes_shape) ||
+    return d.camera_keys.any() || (d.camera_from && camera_moves(*d.camera_from)) ||
+           std::any_of(d.lights_from.begin(), d.lights_from.end(),
+                       [](const LightsFromModel& l) { return lights_move(l.from); }) ||
+           std::any_of(d.meshes.begin(), d.meshes.end(), changes_shape) ||
            std::any_of(d.objects.begin(), d.objects.end(), moves) ||
            std::any_of(d.light_keys.begin(), d.light_keys.end(),
                        [](const LightKeys& k) { return k.any(); }) ||
@@ -96,6 +101,19 @@ void pose_view(SceneDescription& posed, const SceneDescription& moving, double t
     posed.lights = moving.lights;
     posed.camera_keys = {};
     posed.light_keys.clear();
+    posed.camera_from.reset();
+    posed.lights_from.clear();
+    if (moving.camera_from) {
+        posed.camera = camera_of(*moving.camera_from, moving.settings, t);
+        posed.camera.aperture_radius = moving.camera.aperture_radius;
+        posed.camera.focus_distance = moving.camera.focus_distance;
+        check(mistake_of(posed.camera, "camera"), moving, t);
+    }
+    for (const LightsFromModel& run : moving.lights_from) {
+        const std::vector<Light> lights = lights_of(run.from, t);
+        std::copy(lights.begin(), lights.end(),
+                  posed.lights.begin() + static_cast<std::ptrdiff_t>(run.first));
+    }
     if (moving.camera_keys.any()) {
         pose(posed.camera, moving.camera_keys, t);
         check(mistake_of(posed.camera, "camera"), moving, t);

@@ -26,6 +26,10 @@ void visit_tracks(Keys& k, Visit visit) {
     visit("position", k.position, coordinate_range, false);
     visit("target", k.target, coordinate_range, false);
     visit("up", k.up, coordinate_range, false);
+    if (k.projection == Projection::orthographic) {
+        visit("height", k.height, height_range, false);
+        return;
+    }
     visit("fov", k.fov, fov_range, false);
     visit("aperture_radius", k.aperture_radius, aperture_range, false);
     visit("focus_distance", k.focus_distance, focus_range, false);
@@ -121,8 +125,10 @@ template <class Keys> std::string print_keys(const Keys& keys, std::string_view 
 TransformKeys read_transform_keys(TomlTable& table) {
     return read_keys<TransformKeys>(table);
 }
-CameraKeys read_camera_keys(TomlTable& table) {
-    return read_keys<CameraKeys>(table);
+CameraKeys read_camera_keys(TomlTable& table, Projection projection) {
+    CameraKeys keys;
+    keys.projection = projection;
+    return read_keys(table, std::move(keys));
 }
 LightKeys read_light_keys(TomlTable& table, LightKind kind) {
     LightKeys keys;

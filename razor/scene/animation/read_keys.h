@@ -9,7 +9,7 @@ namespace razor {
 
 // `table` is the object's, camera's or light's. Throws UserError naming the place.
 TransformKeys read_transform_keys(TomlTable& table);
-CameraKeys read_camera_keys(TomlTable& table);
+CameraKeys read_camera_keys(TomlTable& table, Projection projection);
 LightKeys read_light_keys(TomlTable& table, LightKind kind);
 
 /// `interpolation`, `cycle` and [[header.key]] as they are read; nothing of what has no keys.

@@ -3,6 +3,7 @@
 #include "razor/scene/animation/read_keys.h"
 #include "razor/scene/models/cage_source.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/text_file.h"
 #include "razor/scene/toml_text.h"
 #include "razor/scene/toml_words.h"
 
@@ -27,7 +28,7 @@ struct PlaybackKeys {
 
 PlaybackKeys keys_of(const MeshDescription& mesh) {
     const ModelFile kind = mesh.file.empty() ? ModelFile::none : model_file(mesh.file);
-    return {kind == ModelFile::obj_sequence || kind == ModelFile::md3, kind == ModelFile::gltf};
+    return {kind == ModelFile::sequence || kind == ModelFile::md3, kind == ModelFile::gltf};
 }
 
 Deformer read_deformer(TomlTable table) {
@@ -56,9 +57,27 @@ Deformer read_deformer(TomlTable table) {
     return d;
 }
 
+/// What a motion's own seconds are.
+void read_seconds(TomlTable& table, Playback& p) {
+    for (const std::string_view name : {"start", "speed"})
+        if (table.has(name) && table.has("moment"))
+            table.fail(name, fmt::format("{} and moment, at which all stands still; leave one out", name));
+    p.start = table.number("start", p.start, moment_range);
+    p.speed = table.number("speed", p.speed, speed_range);
+    if (table.has("moment"))
+        p.moment = table.number("moment", 0, moment_range);
+    table.may_have("moment");
+}
+
+std::string seconds_to_toml(const Playback& p) {
+    return p.moment ? fmt::format("moment = {}\n", toml_number(*p.moment))
+                    : fmt::format("start = {}\nspeed = {}\n", toml_number(p.start), toml_number(p.speed));
+}
+
 } // namespace
 
-void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
+void read_playback(TomlTable& table, MeshDescription& mesh, const std::filesystem::path& folder,
+                   double frame_rate) {
     for (TomlTable& deformer : table.tables("deform"))
         mesh.deformers.push_back(read_deformer(std::move(deformer)));
     const PlaybackKeys keys = keys_of(mesh);
@@ -72,10 +91,9 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
         }
     };
     only({"frames", "frame_rate", "interpolation"}, keys.frames,
-         "whose file has no frames; give an .md3 model, or write %d in the name of .obj files, where the "
-         "number "
-         "of the frame comes");
-    only({"clip"}, keys.clip, "whose file has no clips; give a .gltf or .glb model");
+         "whose file has no frames; give an .md3 model, or write %d in the name of .obj or .ply files, "
+         "where the number of the frame comes");
+    only({"clip", "clip_file"}, keys.clip, "whose file has no clips; give a .gltf or .glb model");
     only({"cycle"}, keys.frames || keys.clip, "whose file does not move; leave it out");
     only({"start", "speed", "moment"}, keys.frames || keys.clip || !mesh.deformers.empty(),
          "that does not change its shape; leave it out");
@@ -93,13 +111,25 @@ void read_playback(TomlTable& table, MeshDescription& mesh, double frame_rate) {
         p.timing.cycle = table.number("cycle", 0, time_range);
     if (keys.clip)
         p.clip = table.text("clip", "");
-    for (const std::string_view name : {"start", "speed"})
-        if (table.has(name) && table.has("moment"))
-            table.fail(name, fmt::format("{} and moment, at which all stands still; leave one out", name));
-    p.start = table.number("start", p.start, moment_range);
-    p.speed = table.number("speed", p.speed, speed_range);
-    if (table.has("moment"))
-        p.moment = table.number("moment", 0, moment_range);
+    if (keys.clip && table.has("clip_file")) {
+        const std::string file = table.text("clip_file", "");
+        if (model_file(file) != ModelFile::gltf)
+            table.fail("clip_file",
+                       fmt::format("'{}' has no clips; give a .gltf or .glb file", printable(file, 1000)));
+        p.clip_file = std::filesystem::absolute(folder / file).lexically_normal().string();
+    }
+    read_seconds(table, p);
+}
+
+void read_clip_playback(TomlTable& table, Playback& playback) {
+    playback.clip = table.text("clip", "");
+    playback.timing.cycle = table.number("cycle", 0, time_range);
+    read_seconds(table, playback);
+}
+
+std::string clip_playback_to_toml(const Playback& p) {
+    return (p.clip.empty() ? "" : fmt::format("clip = {}\n", toml_text(p.clip))) +
+           fmt::format("cycle = {}\n", toml_number(p.timing.cycle)) + seconds_to_toml(p);
 }
 
 std::string playback_to_toml(const MeshDescription& mesh) {
@@ -110,14 +140,14 @@ std::string playback_to_toml(const MeshDescription& mesh) {
         text += fmt::format("frames = [{}, {}]\nframe_rate = {}\ninterpolation = {}\n", p.frames->first,
                             p.frames->second, toml_number(p.frame_rate),
                             toml_text(word_of(interpolation_words, p.timing.interpolation)));
+    if (!p.clip_file.empty())
+        text += fmt::format("clip_file = {}\n", toml_text(p.clip_file));
     if (!p.clip.empty())
         text += fmt::format("clip = {}\n", toml_text(p.clip));
     if (keys.frames || keys.clip)
         text += fmt::format("cycle = {}\n", toml_number(p.timing.cycle));
     if (keys.frames || keys.clip || !mesh.deformers.empty())
-        text += p.moment
-                    ? fmt::format("moment = {}\n", toml_number(*p.moment))
-                    : fmt::format("start = {}\nspeed = {}\n", toml_number(p.start), toml_number(p.speed));
+        text += seconds_to_toml(p);
     return text;
 }
 

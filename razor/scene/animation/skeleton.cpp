@@ -17,21 +17,6 @@ Affine local_transform(const SkeletonNode& node) {
     return {linear, node.translation};
 }
 
-SkeletonPose pose_of(const std::vector<SkeletonNode>& nodes, const std::vector<int>& order) {
-    SkeletonPose pose;
-    pose.world.resize(nodes.size());
-    pose.weights.reserve(nodes.size());
-    for (const SkeletonNode& node : nodes)
-        pose.weights.push_back(node.weights);
-    for (const int i : order) {
-        const auto n = static_cast<std::size_t>(i);
-        const int parent = nodes[n].parent;
-        const Affine local = local_transform(nodes[n]);
-        pose.world[n] = parent < 0 ? local : pose.world[static_cast<std::size_t>(parent)] * local;
-    }
-    return pose;
-}
-
 void apply(const Channel& channel, double seconds, SkeletonNode& node) {
     if (channel.path == Channel::Path::weights) {
         node.weights.resize(channel.curve.width);
@@ -47,6 +32,21 @@ void apply(const Channel& channel, double seconds, SkeletonNode& node) {
 }
 
 } // namespace
+
+SkeletonPose pose_of(const std::vector<SkeletonNode>& nodes, const std::vector<int>& order) {
+    SkeletonPose pose;
+    pose.world.resize(nodes.size());
+    pose.weights.reserve(nodes.size());
+    for (const SkeletonNode& node : nodes)
+        pose.weights.push_back(node.weights);
+    for (const int i : order) {
+        const auto n = static_cast<std::size_t>(i);
+        const int parent = nodes[n].parent;
+        const Affine local = local_transform(nodes[n]);
+        pose.world[n] = parent < 0 ? local : pose.world[static_cast<std::size_t>(parent)] * local;
+    }
+    return pose;
+}
 
 std::vector<int> parents_first(const std::vector<SkeletonNode>& nodes) {
     std::vector<std::vector<int>> children(nodes.size());
@@ -76,11 +76,15 @@ SkeletonPose rest_pose(const Skeleton& skeleton) {
     return pose_of(skeleton.nodes, skeleton.order);
 }
 
-SkeletonPose pose_at(const Skeleton& skeleton, const Clip& clip, double seconds) {
+std::vector<SkeletonNode> nodes_at(const Skeleton& skeleton, const Clip& clip, double seconds) {
     std::vector<SkeletonNode> nodes = skeleton.nodes;
     for (const Channel& channel : clip.channels)
         apply(channel, seconds, nodes[static_cast<std::size_t>(channel.node)]);
-    return pose_of(nodes, skeleton.order);
+    return nodes;
+}
+
+SkeletonPose pose_at(const Skeleton& skeleton, const Clip& clip, double seconds) {
+    return pose_of(nodes_at(skeleton, clip, seconds), skeleton.order);
 }
 
 std::vector<bool> moved_nodes(const Skeleton& skeleton, const Clip& clip) {

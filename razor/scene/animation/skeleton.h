@@ -50,9 +50,14 @@ struct SkeletonPose {
     std::vector<std::vector<double>> weights;
 };
 
+/// The nodes of a skeleton `seconds` after the clip's beginning; what has no channel stays.
+std::vector<SkeletonNode> nodes_at(const Skeleton& skeleton, const Clip& clip, double seconds);
+/// Of nodes that stand so; `order` as of a skeleton.
+SkeletonPose pose_of(const std::vector<SkeletonNode>& nodes, const std::vector<int>& order);
+
 /// The nodes as they stand.
 SkeletonPose rest_pose(const Skeleton& skeleton);
-/// ... and `seconds` after the clip's beginning; what has no channel stays.
+/// ... and `seconds` after the clip's beginning.
 SkeletonPose pose_at(const Skeleton& skeleton, const Clip& clip, double seconds);
 
 /// Nodes whose world matrices the clip changes: those of its channels and all below them.

@@ -4,7 +4,7 @@
 #include "razor/scene/error.h"
 #include "razor/scene/models/gltf_reader.h"
 #include "razor/scene/models/md3_reader.h"
-#include "razor/scene/models/obj_materials.h"
+#include "razor/scene/models/still_cage.h"
 #include "razor/scene/numbered_name.h"
 #include "razor/scene/shapes/shapes.h"
 #include "razor/scene/text_file.h"
@@ -28,7 +28,7 @@ std::pair<int, int> all_frames(const std::string& file) {
 std::string key_of(const MeshDescription& mesh) {
     const Playback& p = mesh.playback;
     const auto [first, last] = p.frames.value_or(std::pair(-1, -1));
-    return fmt::format("{}\n{} {} {} {} {} {}", mesh.file, first, last, p.frame_rate,
+    return fmt::format("{}\n{}\n{} {} {} {} {} {}", mesh.file, p.clip_file, first, last, p.frame_rate,
                        static_cast<int>(p.timing.interpolation), p.timing.cycle, p.clip);
 }
 
@@ -58,7 +58,7 @@ CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
 CageCache::Entry read_clip(const MeshDescription& mesh, TextureCache& textures) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
-    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle, &textures);
+    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle, &textures, p.clip_file);
     if (p.clip.empty() && !model.clips.empty())
         p.clip = model.clips.front();
     entry.source = model.cage;
@@ -71,39 +71,29 @@ CageCache::Entry read_sequence(const MeshDescription& mesh, TextureCache& textur
     Playback& p = entry.playback;
     if (!p.frames)
         p.frames = all_frames(mesh.file);
-    entry.motion = std::make_shared<const ObjSequence>(mesh.file, p.frames->first, p.frames->second,
-                                                       p.frame_rate, p.timing, &textures);
+    entry.motion = std::make_shared<const CageSequence>(mesh.file, p.frames->first, p.frames->second,
+                                                        p.frame_rate, p.timing, &textures);
     entry.source = entry.motion->at(0);
     return entry;
 }
 
 CageCache::Entry read(const MeshDescription& mesh, TextureCache& textures) {
     switch (model_file(mesh.file)) {
-    case ModelFile::obj_sequence:
+    case ModelFile::sequence:
         return read_sequence(mesh, textures);
     case ModelFile::md3:
         return read_md3_frames(mesh);
     case ModelFile::gltf:
         return read_clip(mesh, textures);
     case ModelFile::none:
-    case ModelFile::obj:
+    case ModelFile::still:
         break;
     }
-    return {.playback = mesh.playback, .source = std::make_shared<const Mesh>(read_obj(mesh.file, textures))};
+    return {.playback = mesh.playback,
+            .source = std::make_shared<const Mesh>(read_still_cage(mesh.file, textures))};
 }
 
 } // namespace
-
-ModelFile model_file(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (extension == ".obj")
-        return has_number(path.filename().string()) ? ModelFile::obj_sequence : ModelFile::obj;
-    if (extension == ".md3")
-        return ModelFile::md3;
-    return extension == ".gltf" || extension == ".glb" ? ModelFile::gltf : ModelFile::none;
-}
 
 void load_cage(MeshDescription& mesh) {
     CageCache none;

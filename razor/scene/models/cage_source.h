@@ -1,7 +1,9 @@
-// Cages from where a scene says they come: shapes, OBJ files and sequences of them, MD3 and glTF models.
+// Cages from where a scene says they come: shapes, OBJ and PLY files and sequences of them, MD3 and glTF
+// models.
 #pragma once
 
 #include "razor/scene/description.h"
+#include "razor/scene/models/model_file.h"
 #include "razor/scene/textures/texture_cache.h"
 
 #include <filesystem>
@@ -20,10 +22,6 @@ struct CageCache {
     std::unordered_map<std::string, Entry> entries;
     TextureCache textures;
 };
-
-/// What files hold by their names' extensions, in any case.
-enum class ModelFile { none, obj, obj_sequence, md3, gltf };
-ModelFile model_file(const std::filesystem::path& path);
 
 /// Reads or generates the cage of a mesh whose file or shape, parameters, playback and deformers are set;
 /// fills in which frames are played (all that there are) and which clip (the first). Throws UserError.

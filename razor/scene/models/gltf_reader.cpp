@@ -1,7 +1,9 @@
 #include "razor/scene/models/gltf_reader.h"
 
+#include "razor/scene/animation/retarget.h"
 #include "razor/scene/error.h"
 #include "razor/scene/models/gltf/drawn_mesh.h"
+#include "razor/scene/models/gltf/joints.h"
 #include "razor/scene/models/gltf/materials.h"
 #include "razor/scene/models/gltf/nodes.h"
 #include "razor/scene/models/own_materials.h"
@@ -36,23 +38,21 @@ std::vector<glm::dvec3> pose_all(const std::vector<Skin>& skins, const SkeletonP
 
 class GltfMotion final : public MovingCage {
 public:
-    GltfMotion(std::shared_ptr<const Mesh> cage, Skeleton skeleton, std::vector<Skin> skins, Clip clip,
-               double cycle)
-        : cage_(std::move(cage)), skeleton_(std::move(skeleton)), skins_(std::move(skins)),
-          clip_(std::move(clip)), cycle_(cycle) {}
+    GltfMotion(std::shared_ptr<const Mesh> cage, std::vector<Skin> skins,
+               std::unique_ptr<const SkeletonMotion> motion, double cycle)
+        : cage_(std::move(cage)), skins_(std::move(skins)), motion_(std::move(motion)), cycle_(cycle) {}
 
     std::shared_ptr<const Mesh> at(double seconds) const override {
         if (cycle_ > 0)
             seconds -= cycle_ * std::floor(seconds / cycle_);
-        return moved(*cage_, pose_all(skins_, pose_at(skeleton_, clip_, seconds)));
+        return moved(*cage_, pose_all(skins_, motion_->at(seconds)));
     }
-    double length() const override { return clip_.length(); }
+    double length() const override { return motion_->length(); }
 
 private:
     std::shared_ptr<const Mesh> cage_;
-    Skeleton skeleton_;
     std::vector<Skin> skins_;
-    Clip clip_;
+    std::unique_ptr<const SkeletonMotion> motion_;
     double cycle_;
 };
 
@@ -98,39 +98,62 @@ void check_cage(const Document& document, const Mesh& cage) {
         document.fail("texture coordinate beyond single precision; mend it");
 }
 
-std::size_t find_clip(const Document& document, const std::vector<std::string>& clips,
-                      const std::string& name) {
-    const auto found = std::find(clips.begin(), clips.end(), name);
-    if (found == clips.end()) {
-        std::string list;
-        for (const std::string& clip : clips)
-            list += fmt::format("{}{}", list.empty() ? "" : ", ", printable(clip));
-        document.fail(fmt::format("no animation is named '{}'; {}", printable(name),
-                                  list.empty() ? "the file has none" : "there are: " + list));
-    }
-    return static_cast<std::size_t>(found - clips.begin());
-}
-
-/// Whether any point follows a node, or has a morph target, that the clip moves.
-bool moves(const Clip& clip, const Skeleton& skeleton, const std::vector<Skin>& skins) {
-    const std::vector<bool> moved = moved_nodes(skeleton, clip);
+/// Whether any point follows one of these nodes.
+bool follows(const std::vector<Skin>& skins, const std::vector<bool>& moved) {
     const auto is_moved = [&](int node) { return moved[static_cast<std::size_t>(node)]; };
     return std::any_of(skins.begin(), skins.end(), [&](const Skin& skin) {
-        const auto morphs = [&](const Channel& channel) {
-            return channel.path == Channel::Path::weights && channel.node == skin.node;
-        };
-        return std::any_of(clip.channels.begin(), clip.channels.end(), morphs) ||
-               (skin.joints.empty() ? is_moved(skin.node)
-                                    : std::any_of(skin.joints.begin(), skin.joints.end(), is_moved));
+        return skin.joints.empty() ? is_moved(skin.node)
+                                   : std::any_of(skin.joints.begin(), skin.joints.end(), is_moved);
     });
 }
 
+/// ... or has a morph target that the clip moves.
+bool moves(const Clip& clip, const Skeleton& skeleton, const std::vector<Skin>& skins) {
+    return follows(skins, moved_nodes(skeleton, clip)) ||
+           std::any_of(skins.begin(), skins.end(), [&](const Skin& skin) {
+               return std::any_of(clip.channels.begin(), clip.channels.end(), [&](const Channel& channel) {
+                   return channel.path == Channel::Path::weights && channel.node == skin.node;
+               });
+           });
+}
+
+/// By the chosen clip of the file itself; sets nothing where it moves none of the cage.
+void set_clip(GltfModel& model, const Document& document, const std::string& clip_name, double cycle,
+              const Skeleton& skeleton, std::vector<Skin> skins) {
+    model.clips = clip_names(document);
+    if (model.clips.empty() && clip_name.empty())
+        return;
+    Clip clip =
+        read_clip(document, skeleton, clip_name.empty() ? 0 : find_clip(document, model.clips, clip_name));
+    if (moves(clip, skeleton, skins))
+        model.motion = std::make_shared<const GltfMotion>(
+            model.cage, std::move(skins), std::make_unique<const ClipMotion>(skeleton, std::move(clip)),
+            cycle);
+}
+
+/// By one of another file.
+void set_clip_of(const std::filesystem::path& path, GltfModel& model, const Document& document,
+                 const std::string& clip_name, double cycle, const Skeleton& skeleton,
+                 std::vector<Skin> skins) {
+    const Document other = load_document(path);
+    model.clips = clip_names(other);
+    if (model.clips.empty())
+        other.fail("has no animation; give a file that has one");
+    Skeleton source = read_skeleton(other);
+    Clip clip = read_clip(other, source, clip_name.empty() ? 0 : find_clip(other, model.clips, clip_name));
+    auto motion = std::make_unique<const RetargetedMotion>(std::move(source), std::move(clip), skeleton,
+                                                           match_joints(document, other));
+    if (follows(skins, motion->moved()))
+        model.motion =
+            std::make_shared<const GltfMotion>(model.cage, std::move(skins), std::move(motion), cycle);
+}
+
 GltfModel read(const std::filesystem::path& path, const std::string& clip_name, double cycle,
-               TextureCache* textures) {
+               TextureCache* textures, const std::filesystem::path& clip_file) {
     const Document document = load_document(path);
     if (!(cycle >= 0 && std::isfinite(cycle)))
         document.fail(fmt::format("a cycle of {} s; give 0 or more", cycle));
-    Skeleton skeleton = read_skeleton(document);
+    const Skeleton skeleton = read_skeleton(document);
     const SkeletonPose rest = rest_pose(skeleton);
     Mesh cage;
     cage.name = path.stem().string();
@@ -158,27 +181,24 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
         set_own_materials(cage, std::make_shared<const ModelMaterials>(materials->finish()));
     cage.points = pose_all(skins, rest);
     check_cage(document, cage);
-    GltfModel model{std::make_shared<const Mesh>(std::move(cage)), nullptr, clip_names(document)};
-    if (model.clips.empty() && clip_name.empty())
-        return model;
-    const std::size_t chosen = clip_name.empty() ? 0 : find_clip(document, model.clips, clip_name);
-    Clip clip = read_clip(document, skeleton, chosen);
-    if (moves(clip, skeleton, skins))
-        model.motion = std::make_shared<const GltfMotion>(model.cage, std::move(skeleton), std::move(skins),
-                                                          std::move(clip), cycle);
+    GltfModel model{std::make_shared<const Mesh>(std::move(cage)), nullptr, {}};
+    if (clip_file.empty())
+        set_clip(model, document, clip_name, cycle, skeleton, std::move(skins));
+    else
+        set_clip_of(clip_file, model, document, clip_name, cycle, skeleton, std::move(skins));
     return model;
 }
 
 } // namespace
 
 GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle,
-                    TextureCache* textures) {
+                    TextureCache* textures, const std::filesystem::path& clip_file) {
     const auto too_large = [&path] {
         return UserError(fmt::format("{}: the model does not fit in memory; give a smaller one",
                                      printable(path.string(), 1000)));
     };
     try {
-        return read(path, clip, cycle, textures);
+        return read(path, clip, cycle, textures, clip_file);
     } catch (const std::bad_alloc&) {
         throw too_large();
     } catch (const std::length_error&) {

@@ -3,8 +3,8 @@
 // Read: triangles (lists, strips, fans), nodes, skins, morph targets, animations of nodes and of morph
 // weights, sparse accessors, quantised meshes. Points that a file keeps apart only for their normals or
 // texture coordinates are joined, so that the surface is closed there; texture coordinates become
-// face-varying. Materials: gltf/materials.h. Passed over: points, lines, normals, cameras, lights. Refused:
-// compressed geometry and other required extensions that could change shapes.
+// face-varying. Materials: gltf/materials.h; cameras and lights: gltf_stage.h. Passed over: points, lines,
+// normals. Refused: compressed geometry and other required extensions that could change shapes.
 #pragma once
 
 #include "razor/scene/animation/moving_cage.h"
@@ -27,9 +27,10 @@ struct GltfModel {
 
 /// The cage is named by the file's stem. `clip`: name of an animation; empty: the first. `cycle`: seconds
 /// after which the motion begins again; 0: it holds its last keys. Materials are read if there is a place to
-/// keep their pictures. Throws UserError: one line
-/// `file: cause; mend`.
+/// keep their pictures. `clip_file`: where the animations are, instead of in the file itself: joints move as
+/// those of the same name there (animation/retarget.h; of a file without skins, nodes). Throws UserError: one
+/// line `file: cause; mend`.
 GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle,
-                    TextureCache* textures = nullptr);
+                    TextureCache* textures = nullptr, const std::filesystem::path& clip_file = {});
 
 } // namespace razor

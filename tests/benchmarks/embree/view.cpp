@@ -29,6 +29,10 @@ FrameView view_of_scene(const Scene& scene, const glm::dvec3& origin) {
     const Settings& s = scene.settings;
     if (s.seed != 0)
         throw UserError("--seed: the baseline takes the samples of seed 0 only; leave it out");
+    if (scene.camera.projection != Projection::perspective || !is_pixel(s.filter))
+        throw UserError(
+            "the baseline knows perspective cameras and the box filter only; render this scene without "
+            "it");
     FrameView v{};
     v.width = s.width;
     v.height = s.height;

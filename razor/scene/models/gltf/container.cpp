@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 11> needed{
     "skins",   "animations",
 };
 
-/// Read apart; here extensions count.
+/// Read apart; here extensions count, as those of the file and of nodes.
 constexpr std::array<std::string_view, 4> of_appearance{"materials", "textures", "images", "samplers"};
 
 [[noreturn]] void fail(std::string_view file, std::string_view mistake) {
@@ -67,11 +67,38 @@ void summarise(const nlohmann::json& text, Container& container) {
         container.primitives += list(mesh, "primitives").size();
 }
 
+/// Takes cameras and extensions out of the text.
+std::string stage_of(nlohmann::json& text) {
+    using nlohmann::json;
+    const auto move_member = [](json& from, const char* key, json& to) {
+        const auto found = from.find(key);
+        if (found == from.end())
+            return false;
+        to[key] = std::move(*found);
+        from.erase(found);
+        return true;
+    };
+    json stage = json::object();
+    json& nodes = stage["nodes"] = json::array();
+    bool any = false;
+    if (const auto found = text.find("nodes"); found != text.end() && found->is_array())
+        for (json& node : *found) {
+            json& carried = nodes.emplace_back(json::object());
+            if (node.is_object()) {
+                any = move_member(node, "camera", carried) || any;
+                any = move_member(node, "extensions", carried) || any;
+            }
+        }
+    move_member(text, "cameras", stage);
+    move_member(text, "extensions", stage);
+    return any ? stage.dump(-1, ' ', false, json::error_handler_t::replace) : "";
+}
+
 /// Reads the text, and leaves out what is not needed.
 void sift(std::string_view text, std::string_view file, Container& container) {
     using nlohmann::json;
-    bool appearance = false; // whether the parser is inside such a list
-    const auto keep = [file, &appearance](int depth, json::parse_event_t event, json& parsed) {
+    bool appearance = false, nodes = false; // whether the parser is inside such a list
+    const auto keep = [file, &appearance, &nodes](int depth, json::parse_event_t event, json& parsed) {
         if (depth > deepest)
             fail(file, fmt::format("brackets more than {} deep; this is no glTF file", deepest));
         if (event != json::parse_event_t::key)
@@ -82,9 +109,10 @@ void sift(std::string_view text, std::string_view file, Container& container) {
         };
         if (depth == 1) {
             appearance = is_in(of_appearance);
-            return key == "scene" || appearance || is_in(needed);
+            nodes = key == "nodes";
+            return key == "scene" || key == "cameras" || key == "extensions" || appearance || is_in(needed);
         }
-        return key != "extras" && (appearance || key != "extensions");
+        return key != "extras" && (appearance || (nodes && depth == 3) || key != "extensions");
     };
     try {
         json sifted = json::parse(text, keep);
@@ -97,6 +125,7 @@ void sift(std::string_view text, std::string_view file, Container& container) {
                 apart[std::string(list)] = std::move(*found);
                 sifted.erase(found);
             }
+        container.stage = stage_of(sifted);
         container.json = sifted.dump(-1, ' ', false, json::error_handler_t::replace);
         container.appearance = apart.dump(-1, ' ', false, json::error_handler_t::replace);
     } catch (const json::exception& error) {

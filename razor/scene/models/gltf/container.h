@@ -9,8 +9,11 @@
 namespace razor::gltf {
 
 struct Container {
-    std::string json;        // without:
-    std::string appearance;  // materials, textures, images and samplers, an object of these lists
+    std::string json;       // without:
+    std::string appearance; // materials, textures, images and samplers, an object of these lists
+    /// `cameras`, `extensions` of the file, and of each of its `nodes` camera and extensions; empty: no node
+    /// has any of either.
+    std::string stage;
     std::string_view binary; // of the first buffer of a .glb, part of the bytes read
     bool is_binary = false;
     std::string version;               // of glTF, as the file states it

@@ -51,6 +51,7 @@ struct MeshEntry {
 };
 
 struct NodeEntry {
+    std::string name;                                                  // may be empty
     std::vector<double> translation, rotation, scale, matrix, weights; // empty: not given
     std::vector<int> children;
     int mesh = none, skin = none;
@@ -86,7 +87,7 @@ struct Document {
     std::vector<AnimationEntry> animations;
     std::vector<std::vector<int>> scenes; // their nodes
     int scene = none;
-    std::string appearance; // see Container
+    std::string appearance, stage; // see Container
 
     /// Throws UserError; `mistake`: "cause; mend".
     [[noreturn]] void fail(std::string_view mistake) const;

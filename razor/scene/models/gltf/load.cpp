@@ -177,7 +177,7 @@ Document load_document(const std::filesystem::path& path) {
         document.meshes.push_back(to_mesh(mesh));
     for (const tinygltf::Node& n : model.nodes)
         document.nodes.push_back(
-            {n.translation, n.rotation, n.scale, n.matrix, n.weights, n.children, n.mesh, n.skin});
+            {n.name, n.translation, n.rotation, n.scale, n.matrix, n.weights, n.children, n.mesh, n.skin});
     for (const tinygltf::Skin& skin : model.skins)
         document.skins.push_back({skin.joints, skin.inverseBindMatrices});
     for (const tinygltf::Animation& animation : model.animations)
@@ -186,6 +186,7 @@ Document load_document(const std::filesystem::path& path) {
         document.scenes.push_back(scene.nodes);
     document.scene = model.defaultScene;
     document.appearance = container.appearance;
+    document.stage = container.stage;
     return document;
 }
 

@@ -1,6 +1,7 @@
 #include "razor/scene/models/gltf/materials.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/models/gltf/fields.h"
 #include "razor/scene/models/gltf/uri.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
@@ -15,81 +16,6 @@
 
 namespace razor::gltf {
 namespace {
-
-using Json = nlohmann::json;
-
-/// One object of the file, and what it is called in messages. Members that are not there have presets;
-/// numbers beyond their range count as the nearest in it.
-class Fields {
-public:
-    Fields(const Document& document, const Json* object, std::string what)
-        : document_(&document), object_(object), what_(std::move(what)) {
-        if (object != nullptr && !object->is_object())
-            fail("is no object");
-    }
-    bool stated() const { return object_ != nullptr; }
-    const std::string& what() const { return what_; }
-    [[noreturn]] void fail(std::string_view mistake) const {
-        document_->fail(fmt::format("{} {}; export it anew", what_, mistake));
-    }
-    Fields object(const char* key) const { return {*document_, find(key), fmt::format("{} {}", what_, key)}; }
-    Fields extension(const char* name) const { return object("extensions").object(name); }
-    float number(const char* key, float preset, Range range) const {
-        const Json* const value = find(key);
-        return value == nullptr ? preset : to_number(*value, key, range);
-    }
-    int index(const char* key) const {
-        const Json* const value = find(key);
-        if (value == nullptr)
-            return none;
-        if (!value->is_number_integer() || *value < 0 || *value > 1 << 30)
-            fail(fmt::format("has {} {}, which is no index", key, shown(*value)));
-        return value->get<int>();
-    }
-    /// So many numbers.
-    template <class Vector> Vector vector(const char* key, Vector preset, Range range) const {
-        const Json* const list = find(key);
-        if (list == nullptr)
-            return preset;
-        if (!list->is_array() || list->size() != static_cast<std::size_t>(Vector::length()))
-            fail(fmt::format("has {} {}, which is not of {} numbers", key, shown(*list), Vector::length()));
-        for (int i = 0; i < Vector::length(); ++i)
-            preset[i] = to_number((*list)[static_cast<std::size_t>(i)], key, range);
-        return preset;
-    }
-    std::string text(const char* key, std::string_view preset) const {
-        const Json* const value = find(key);
-        if (value != nullptr && !value->is_string())
-            fail(fmt::format("has {} {}, which is no text", key, shown(*value)));
-        return value == nullptr ? std::string(preset) : value->get<std::string>();
-    }
-    bool flag(const char* key) const {
-        const Json* const value = find(key);
-        if (value != nullptr && !value->is_boolean())
-            fail(fmt::format("has {} {}, which is neither true nor false", key, shown(*value)));
-        return value != nullptr && value->get<bool>();
-    }
-
-private:
-    const Json* find(const char* key) const {
-        if (object_ == nullptr)
-            return nullptr;
-        const auto found = object_->find(key);
-        return found == object_->end() ? nullptr : &*found;
-    }
-    float to_number(const Json& value, const char* key, Range range) const {
-        if (!value.is_number() || !std::isfinite(value.get<double>()))
-            fail(fmt::format("has {} {}, which is no number", key, shown(value)));
-        return static_cast<float>(std::clamp(value.get<double>(), range.least, range.most));
-    }
-    static std::string shown(const Json& value) {
-        return printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
-    }
-
-    const Document* document_;
-    const Json* object_;
-    std::string what_;
-};
 
 Wrap to_wrap(int code) {
     return code == 33071 ? Wrap::clamp : code == 33648 ? Wrap::mirror : Wrap::repeat;
@@ -126,11 +52,7 @@ public:
 
 private:
     Fields entry_of(const char* list, const char* kind, int number, const std::string& user) const {
-        const auto found = lists_.find(list);
-        const std::size_t count = found != lists_.end() && found->is_array() ? found->size() : 0;
-        if (number < 0 || static_cast<std::size_t>(number) >= count)
-            fail_index(document_, count, number, kind, user);
-        return {document_, &(*found)[static_cast<std::size_t>(number)], fmt::format("{} {}", kind, number)};
+        return Fields(document_, &lists_, user).entry(list, kind, number);
     }
 
     Material read(const Fields& f) {

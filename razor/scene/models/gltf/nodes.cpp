@@ -150,6 +150,19 @@ std::vector<std::string> clip_names(const Document& document) {
     return names;
 }
 
+std::size_t find_clip(const Document& document, const std::vector<std::string>& clips,
+                      const std::string& name) {
+    const auto found = std::find(clips.begin(), clips.end(), name);
+    if (found == clips.end()) {
+        std::string list;
+        for (const std::string& clip : clips)
+            list += fmt::format("{}{}", list.empty() ? "" : ", ", printable(clip));
+        document.fail(fmt::format("no animation is named '{}'; {}", printable(name),
+                                  list.empty() ? "the file has none" : "there are: " + list));
+    }
+    return static_cast<std::size_t>(found - clips.begin());
+}
+
 Clip read_clip(const Document& document, const Skeleton& skeleton, std::size_t number) {
     const AnimationEntry& animation = document.animations[number];
     Clip clip{clip_names(document)[number], {}};

@@ -15,6 +15,10 @@ std::vector<int> nodes_to_draw(const Document& document, const Skeleton& skeleto
 /// Names of the animations, "clip 0" and so on for those without.
 std::vector<std::string> clip_names(const Document& document);
 
+/// The number of the one called so. Throws UserError, telling those that there are.
+std::size_t find_clip(const Document& document, const std::vector<std::string>& clips,
+                      const std::string& name);
+
 /// The channels of an animation that do something to a node. Throws UserError.
 Clip read_clip(const Document& document, const Skeleton& skeleton, std::size_t animation);
 

@@ -1,0 +1,95 @@
+#include "razor/program/info_models.h"
+
+#include "razor/scene/models/model_file.h"
+#include "razor/scene/text_file.h"
+#include "razor/scene/words.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace razor {
+namespace {
+
+template <class List, class Show> std::string line_of(std::string_view title, const List& list, Show show) {
+    std::string text;
+    for (const auto& entry : list)
+        text +=
+            fmt::format("{}{} ({})", text.empty() ? "" : ", ", printable(entry.called(), 100), show(entry));
+    return text.empty() ? "" : fmt::format("    {}: {}\n", title, text);
+}
+
+std::string shown(const CarriedCamera& camera) {
+    if (!camera.perspective)
+        return "orthographic, not read";
+    return camera.aspect_ratio > 0 ? fmt::format("{:g} degrees, {:g} times as wide as high",
+                                                 camera.fov_degrees, camera.aspect_ratio)
+                                   : fmt::format("{:g} degrees", camera.fov_degrees);
+}
+
+} // namespace
+
+std::vector<GltfContents> contents_of(const SceneDescription& description) {
+    std::vector<std::string> files;
+    const auto add = [&](const std::string& file) {
+        if (model_file(file) == ModelFile::gltf && std::find(files.begin(), files.end(), file) == files.end())
+            files.push_back(file);
+    };
+    for (const MeshDescription& mesh : description.meshes) {
+        add(mesh.file);
+        add(mesh.playback.clip_file);
+    }
+    if (description.camera_from)
+        add(description.camera_from->file);
+    for (const LightsFromModel& lights : description.lights_from)
+        add(lights.from.file);
+    std::vector<GltfContents> result;
+    result.reserve(files.size());
+    for (const std::string& file : files)
+        result.push_back(read_gltf_contents(file));
+    return result;
+}
+
+std::string text_of(const std::vector<GltfContents>& files) {
+    std::string text;
+    if (!files.empty())
+        text = fmt::format("glTF files: {}\n", files.size());
+    for (const GltfContents& file : files) {
+        text += fmt::format("  {}\n", printable(file.file, 1000));
+        text += line_of("cameras", file.cameras, shown);
+        text += line_of("lights", file.lights,
+                        [](const CarriedLight& light) { return word_of(light_words, light.light.kind); });
+        text += line_of("animations", file.clips,
+                        [](const ClipLength& clip) { return fmt::format("{:g} s", clip.seconds); });
+    }
+    return text;
+}
+
+nlohmann::ordered_json json_of(const std::vector<GltfContents>& files) {
+    using Json = nlohmann::ordered_json;
+    Json list = Json::array();
+    for (const GltfContents& file : files) {
+        Json json{{"file", file.file}};
+        for (const char* const part : {"cameras", "lights", "animations"})
+            json[part] = Json::array();
+        for (const CarriedCamera& camera : file.cameras) {
+            Json entry{{"name", camera.called()},
+                       {"projection", camera.perspective ? "perspective" : "orthographic"}};
+            if (camera.perspective)
+                entry["fov"] = camera.fov_degrees;
+            if (camera.aspect_ratio > 0)
+                entry["aspect_ratio"] = camera.aspect_ratio;
+            json["cameras"].push_back(std::move(entry));
+        }
+        for (const CarriedLight& light : file.lights)
+            json["lights"].push_back(
+                {{"name", light.called()}, {"kind", word_of(light_words, light.light.kind)}});
+        for (const ClipLength& clip : file.clips)
+            json["animations"].push_back({{"name", clip.name}, {"seconds", clip.seconds}});
+        list.push_back(std::move(json));
+    }
+    return list;
+}
+
+} // namespace razor
