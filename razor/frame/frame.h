@@ -127,8 +127,8 @@ public:
     void render(const KernelTable& kernels, int worker);
     /// Traces rays given in frame memory (worker 0 alone; call reset() before a render).
     void trace(const KernelTable& kernels, const TraceArguments& arguments);
-    /// What rays from the middle of the lens see, as the frame's own camera rays do (worker 0 alone). Whether
-    /// or not the frame was rendered before; films stay as they are.
+    /// What rays through the centres of pixels see, as the frame's own camera rays do (worker 0 alone).
+    /// Whether or not the frame was rendered before; films stay as they are.
     void see(const KernelTable& kernels, const SeeArguments& arguments);
     /// Builds the whole tree, so that traces find nothing left to build (worker 0 alone).
     void build_all(const KernelTable& kernels);

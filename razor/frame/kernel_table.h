@@ -42,11 +42,14 @@ struct TraceArguments {
     std::int32_t* triangle = nullptr;
 };
 
-/// Camera rays as arrays of `count` floats: unit vectors in scene coordinates, from the middle of the lens,
-/// and their closest hits, named as TraceArguments does; `block`: the hit block's line of the grids.
+/// `count` pixels of the picture, seen by a ray each: through the pixel's centre, with a lens from its
+/// middle. Closest hits, named as TraceArguments does; `block`: the hit block's line of the grids; `point`:
+/// where it is hit, scene coordinates.
 struct SeeArguments {
-    const float* direction[3] = {};
+    const std::int32_t* column = nullptr;
+    const std::int32_t* row = nullptr;
     int count = 0;
+    float* point[3] = {};
     float* t = nullptr;
     float* u = nullptr;
     float* v = nullptr;

@@ -10,19 +10,21 @@ inline namespace shade_kernel {
 template <Features F, bool Mapped> inline void see(const Context& c, const SeeArguments& l) {
     refit(c);
     clear_blends(c);
-    using in = pointer<const float>;
+    Camera camera = load_camera(c);
+    camera.lens = sbool(false);
+    vpoint centre{vfloat(0.5F), vfloat(0.5F)};
+    using in = pointer<const std::int32_t>;
     for (sint i = 0; branch(i < l.count); i += isa::width) {
-        Rays r;
-        r.active = first_lanes(sint(l.count) - i);
-        r.origin = load_broadcast_vec(field(c.frame, &FrameHeader::camera));
-        r.direction.x = load_vector(in(l.direction[0]) + i, r.active);
-        r.direction.y = load_vector(in(l.direction[1]) + i, r.active);
-        r.direction.z = load_vector(in(l.direction[2]) + i, r.active);
-        r.t_min = vfloat(0.0F);
-        r.t_max = vfloat(infinite);
-        ask_for_camera(c, r);
+        vmask active = first_lanes(sint(l.count) - i);
+        vint column = load_vector(in(l.column) + i, active);
+        vint row = load_vector(in(l.row) + i, active);
+        Rays r = camera_rays(c, camera, column, row, centre, vint(0), vint(0), active);
         render_within_budget(c, [&](const Context& within) {
             Hits h = trace_seen<F, kind_camera, Mapped>(within, r);
+            vvec point = madd(h.t, r.direction, r.origin);
+            store_vector(pointer<float>(l.point[0]) + i, point.x, r.active);
+            store_vector(pointer<float>(l.point[1]) + i, point.y, r.active);
+            store_vector(pointer<float>(l.point[2]) + i, point.z, r.active);
             store_vector(pointer<float>(l.t) + i, h.t, r.active);
             store_vector(pointer<float>(l.u) + i, h.u, r.active);
             store_vector(pointer<float>(l.v) + i, h.v, r.active);

@@ -4,8 +4,6 @@
 #include "razor/survey/sight.h"
 #include "razor/survey/tile_layers.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -18,21 +16,15 @@ namespace {
 constexpr int most_lanes = 64;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-glm::dvec3 vec(const float* p) {
-    return {p[0], p[1], p[2]};
-}
-
-/// The rays of one packet, and what they hit.
+/// The pixels of one packet, and what they show.
 struct Packet {
-    alignas(256) float direction[3][most_lanes];
+    alignas(256) std::int32_t column[most_lanes], row[most_lanes];
+    alignas(256) float point[3][most_lanes];
     alignas(256) float t[most_lanes], u[most_lanes], v[most_lanes];
     alignas(256) std::int32_t patch[most_lanes], triangle[most_lanes], block[most_lanes];
 
     SeeArguments arguments(int count) {
-        return {{direction[0], direction[1], direction[2]}, count, t, u, v, patch, triangle, block};
-    }
-    glm::dvec3 way(std::size_t lane) const {
-        return {direction[0][lane], direction[1][lane], direction[2][lane]};
+        return {column, row, count, {point[0], point[1], point[2]}, t, u, v, patch, triangle, block};
     }
     NamedHit hit(std::size_t lane) const {
         return {t[lane], u[lane], v[lane], patch[lane], triangle[lane], block[lane]};
@@ -72,11 +64,8 @@ private:
         pixels_.clear();
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
-                const glm::dvec3 way =
-                    vec(h_.film_corner) + (x + 0.5) * vec(h_.film_x) + (y + 0.5) * vec(h_.film_y);
-                const glm::vec3 unit(glm::normalize(way));
-                for (int k = 0; k < 3; ++k)
-                    packet_.direction[k][pixels_.size()] = unit[k];
+                packet_.column[pixels_.size()] = x;
+                packet_.row[pixels_.size()] = y;
                 pixels_.push_back(place_in_film(x, y));
             }
         const SeeArguments arguments = packet_.arguments(static_cast<int>(pixels_.size()));
@@ -119,10 +108,10 @@ private:
             if (hit.patch < 0)
                 continue;
             sights[lane] = sight_of(frame_, hit);
-            const glm::dvec3 point = vec(h_.camera) + static_cast<double>(hit.t) * packet_.way(lane);
+            const glm::vec3 point(packet_.point[0][lane], packet_.point[1][lane], packet_.point[2][lane]);
             asked[lane] = asked_edge(h_, point);
             if (options_.layers.has(LayerGroup::kd))
-                leaves[lane] = kd_leaf_at(h_, 0, glm::vec3(point), hit.block);
+                leaves[lane] = kd_leaf_at(h_, 0, point, hit.block);
         }
         const double unit = frame_.unit();
         const auto is_hit = [this](std::size_t lane) { return packet_.patch[lane] >= 0; };

@@ -1,4 +1,4 @@
-// Layers of a frame that was rendered: one ray through the centre of each pixel, from the middle of the lens,
+// Layers of a frame that was rendered: one ray through the centre of each pixel, with a lens from its middle,
 // asks for what the frame's camera rays ask for; and what the frame's own rays cost, tile by tile. The
 // picture's other planes stay as they are, and ordinary frames pay nothing.
 //

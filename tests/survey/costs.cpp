@@ -95,6 +95,17 @@ TEST(Costs, OfTilesAddUpToTheFrames) {
     expect_tiles(mirrors, 2);
 }
 
+TEST(Costs, OfTilesAreThoseOfAllPasses) {
+    const Scene scene = lit(45, 27);
+    RenderOptions options;
+    options.threads = 1;
+    options.passes.samples = 1; // of two
+    const RenderResult r = surveyed(scene, layers({LayerGroup::shading}), options);
+    EXPECT_EQ(r.statistics.frame.by_kind.kind[kind_camera].rays, 45 * 27 * 2);
+    const auto hits = static_cast<double>(r.statistics.frame.counters.camera_hits);
+    EXPECT_NEAR(sum(r.film, "shading.hits"), hits, 1e-5 * hits);
+}
+
 TEST(Costs, OfATileInPlaceOfAWaitAreItsOwn) {
     CountersByKind counters;
     TileLog log(counters);

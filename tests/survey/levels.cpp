@@ -52,7 +52,7 @@ Tally expect_levels(const Scene& scene) {
             }
             // Levels are the nearest in the logarithm: edges from 2^(k - 1/2) to 2^(k + 1/2).
             const glm::dvec3 way =
-                scene.camera.position + way_through(scene, x, y) * distance - dicing.position;
+                start_of(scene, x, y) + way_through(scene, x, y) * distance - dicing.position;
             const double blur = field.base + field.slope * glm::dot(view.forward, way);
             const double asked = std::log2(std::sqrt(2) * (std::abs(blur) + field.growth * glm::length(way)));
             EXPECT_NEAR(at("lod.asked", x, y), asked, 1e-4);
@@ -83,6 +83,15 @@ TEST(Levels, FollowTheCircleOfConfusionOfALens) {
     scene.camera.focus_distance = 10;
     const Tally tally = expect_levels(scene);
     EXPECT_GE(tally.hits, 150);
+}
+
+TEST(Levels, AreTheSameEverywhereForAnOrthographicCamera) {
+    Scene scene = long_torus(Lod::discrete);
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.height = 4;
+    const Tally tally = expect_levels(scene);
+    EXPECT_GE(tally.hits, 150);
+    EXPECT_EQ(tally.as_asked, tally.hits);
 }
 
 TEST(Levels, AreMeasuredFromTheDicingCamera) {

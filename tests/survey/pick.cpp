@@ -79,7 +79,7 @@ void expect_picks(const Scene& scene, int least_hits) {
     int hits = 0, skipped = 0;
     for (int y = 0; y < scene.settings.height; ++y)
         for (int x = 0; x < scene.settings.width; ++x) {
-            const Found f = all.nearest(scene.camera.position, way_through(scene, x, y));
+            const Found f = all.nearest(start_of(scene, x, y), way_through(scene, x, y));
             SCOPED_TRACE(testing::Message() << x << ' ' << y);
             if (f.face >= 0 && f.inside < 1e-3) { // so near to an edge, rounding may choose
                 ++skipped;
@@ -117,6 +117,17 @@ TEST(Pick, IsWhatBruteForceFinds) {
         slab.settings.lod = lod;
         expect_picks(slab, 150);
     }
+}
+
+TEST(Pick, IsByTheCamerasRays) {
+    Scene scene = scene_of(bilinear(cube_cage()), 20);
+    scene.settings.width = 45;
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.height = 5;
+    expect_picks(scene, 200);
+    scene = scene_of(bilinear(cube_cage()), 20);
+    scene.camera.aperture_radius = 0.8; // through the middle of the lens
+    expect_picks(scene, 200);
 }
 
 TEST(Pick, TellsInstancesApartTurnedMirroredAndSheared) {
@@ -161,7 +172,7 @@ void expect_places(const Mesh& mesh, int least_parts) {
             const dvec3 p10 = surface.grid_point(patch, i + 1, j), p01 = surface.grid_point(patch, i, j + 1);
             const dvec3 place = a >= b ? p00 + (a - b) * (p10 - p00) + b * (p11 - p00)
                                        : p00 + a * (p11 - p00) + (b - a) * (p01 - p00);
-            const dvec3 hit = scene.camera.position + double{at("pick.Z", x, y)} * way_through(scene, x, y);
+            const dvec3 hit = start_of(scene, x, y) + double{at("pick.Z", x, y)} * way_through(scene, x, y);
             // On sides, vertices may hang on a coarser edge.
             const bool inner = i > 0 && j > 0 && i + 1 < 1 << nu && j + 1 < 1 << nv;
             const double size = glm::length(hit - scene.camera.position);
@@ -202,7 +213,7 @@ TEST(Pick, NamesTrianglesOfAConcavePolygon) {
             const double u = at("pick.u", x, y), v = at("pick.v", x, y);
             const auto corner = [&](int k) { return m.points[static_cast<std::size_t>(patch.corner[k])]; };
             const dvec3 place = corner(0) + (u - v) * (corner(1) - corner(0)) + v * (corner(2) - corner(0));
-            const dvec3 hit = scene.camera.position + double{at("pick.Z", x, y)} * way_through(scene, x, y);
+            const dvec3 hit = start_of(scene, x, y) + double{at("pick.Z", x, y)} * way_through(scene, x, y);
             EXPECT_LT(glm::length(place - hit), 1e-5);
         }
     EXPECT_GE(hits[0], 20);

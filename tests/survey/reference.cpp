@@ -27,12 +27,29 @@ float Pixels::operator()(std::string_view plane, int x, int y) const {
                                         static_cast<std::size_t>(x - part_.x));
 }
 
-glm::dvec3 way_through(const Scene& scene, int x, int y) {
+namespace {
+
+/// From the middle of the film to a pixel's.
+glm::dvec3 on_film(const Scene& scene, int x, int y) {
     const View view = view_of(scene.camera);
     const FilmExtent film = film_extent(scene.camera, scene.settings);
     const double pixel = 2 * film.half_height / scene.settings.height;
-    return glm::normalize(view.forward + view.right * ((x + 0.5) * pixel - film.half_width) +
-                          view.up * (film.half_height - (y + 0.5) * pixel));
+    return view.right * ((x + 0.5) * pixel - film.half_width) +
+           view.up * (film.half_height - (y + 0.5) * pixel);
+}
+
+} // namespace
+
+glm::dvec3 start_of(const Scene& scene, int x, int y) {
+    const bool parallel = scene.camera.projection == Projection::orthographic;
+    return scene.camera.position + (parallel ? on_film(scene, x, y) : glm::dvec3(0));
+}
+
+glm::dvec3 way_through(const Scene& scene, int x, int y) {
+    const glm::dvec3 forward = view_of(scene.camera).forward;
+    if (scene.camera.projection == Projection::orthographic)
+        return forward;
+    return glm::normalize(forward + on_film(scene, x, y));
 }
 
 std::vector<Drawn> drawn(const Scene& scene) {

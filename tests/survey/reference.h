@@ -28,7 +28,9 @@ private:
     Crop part_;
 };
 
-/// Unit direction through the middle of a pixel.
+/// Of the ray through the middle of a pixel: where it begins, with a lens in its middle, and its unit
+/// direction.
+glm::dvec3 start_of(const Scene& scene, int x, int y);
 glm::dvec3 way_through(const Scene& scene, int x, int y);
 
 /// From mesh to world, of each drawing of a mesh in the graph's order.

@@ -88,8 +88,7 @@ TEST(Touched, NothingByNoRay) {
     const Scene scene = small_scene();
     Frame frame(scene, {});
     TouchedLines lines;
-    alignas(64) static float words[64];
-    const SeeArguments nothing{{words, words, words}, 0, words, words, words, nullptr, nullptr, nullptr};
+    const SeeArguments nothing;
     EXPECT_EQ(lines.measure(frame, nothing).all, 0);
 }
 
