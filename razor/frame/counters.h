@@ -11,8 +11,8 @@ struct Counters {
     std::int64_t rays = 0;
     std::int64_t camera_hits = 0;
     std::int64_t bounce_hits = 0; // these and the camera's are shaded, once each
-    std::int64_t packets = 0; // rays / (packets x width) is their utilisation
-    std::int64_t groups = 0;  // of rays alike in direction, traversed one after the other
+    std::int64_t packets = 0;     // rays / (packets x width) is their utilisation
+    std::int64_t groups = 0;      // of rays alike in direction, traversed one after the other
     std::int64_t node_visits = 0, box_tests = 0, block_tests = 0, cell_tests = 0, quad_tests = 0;
     std::int64_t graph_openings = 0, cluster_openings = 0; // once a kd node that needs it
     std::int64_t patches_opened = 0, blocks_made = 0, vertices_made = 0, triangles_made = 0;

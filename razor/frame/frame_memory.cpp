@@ -490,6 +490,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.fixed_target = one_level(s.lod.lod) ? least_target_edge : 0.0F;
     h.morphs = s.lod == Lod::recursive || s.lod == Lod::camera || s.lod == Lod::paper ? 1 : 0;
     h.one_field = s.lod == Lod::camera ? 1 : 0;
+    h.leaving_morphs = h.morphs != 0 && h.one_field == 0 ? 1 : 0;
     h.level_choice = s.lod == Lod::patch ? by_patch : s.lod == Lod::paper ? by_stretch : by_leaf;
     const Camera& dicing = dicing_camera(scene);
     const CameraField asked = camera_field(dicing, s);

@@ -592,12 +592,14 @@ struct FrameHeader {
     float focus;                // depth in focus; 0: a pinhole
     float sky_spacing;          // see growth_to_sky(), times edge_pixels; of a map, as of density 1
     std::int32_t morphs;        // 0: vertices stay at their anchors
-    std::int32_t one_field;     // not 0: rays that leave surfaces ask for what camera rays do
-    float fixed_target;         // not 0: what all rays ask for, everywhere
-    std::int32_t level_choice;  // a LevelChoice
-    std::int32_t filter_use;    // a FilterUse
-    std::int32_t sample_seed;   // added to the numbers of pixels: razor/kernels/sampling.h
-    std::int32_t discards;      // not 0: see razor/kernels/dead.h
+    std::int32_t
+        leaving_morphs;     // not 0: rays that leave a surface may see another one than those that found it
+    std::int32_t one_field; // not 0: rays that leave surfaces ask for what camera rays do
+    float fixed_target;     // not 0: what all rays ask for, everywhere
+    std::int32_t level_choice; // a LevelChoice
+    std::int32_t filter_use;   // a FilterUse
+    std::int32_t sample_seed;  // added to the numbers of pixels: razor/kernels/sampling.h
+    std::int32_t discards;     // not 0: see razor/kernels/dead.h
     std::int32_t grid_lines, node_count, list_lines; // of a worker's arenas, up to their ends
     std::int32_t bounces, diffuse_bounces;           // see Settings
     float lobe_spacing;                 // of a pixel's samples in directions of density 1, times edge_pixels

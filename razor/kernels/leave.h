@@ -73,6 +73,7 @@ inline vfloat common_growth(const vmask& active, const vfloat& growth) {
     constexpr float steps = growth_steps / gradation_cap;
     vfloat cap(gradation_cap);
     vfloat slowest = vfloat(reduce_min(select(active, growth, cap)));
+    slowest = min(slowest, gradation_cap); // which no lane stands for where all are active
     slowest = max(slowest, -cap);
     vfloat shifted = fma(slowest, vfloat(steps), vfloat(growth_steps));
     vint step = to_int(shifted);

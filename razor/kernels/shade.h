@@ -177,11 +177,18 @@ inline pointer<float> blended_slot(const Context& c, sint lane, sint line) {
     return kept.slot;
 }
 
+/// Rays that leave a hit begin as far off the surface as the finest vertices of its block can move, or this
+/// share of how far those of the next coarser level can, where they ask for somewhat coarser levels than the
+/// ray that found it: what they see there is no further from what was hit. Target edge lengths are up to
+/// shared_ratio^2 times as large (razor/kernels/leave.h) and vary by gradation_cap over an edge, and weights
+/// change no faster than 2.25 times as much (weight_of()).
+inline constexpr float leaving_share_above = 1.0F;
+
 /// The corners of the triangles hit, and their vertices' normals interpolated (zero where they have none).
 struct Corners {
     vvec a, b, c;
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
-    vfloat sway;                   // of the block's finest vertices
+    vfloat sway;                   // see leaving_share_above
     vpoint map_a, map_b, map_c;    // texture coordinates, where they are asked for and there are any
 };
 /// A block between two levels of the paper's scheme, `number` that of the finer one's field: arrays of both
@@ -253,8 +260,10 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
         pointer<float> words = as<float>(c.grids + block);
         sint corners_at = load(field(as<BlockHeader>(words), &BlockHeader::corners_at));
         if (branch(corners_at != no_vertex_moves)) {
-            vfloat sway = load_broadcast(field(as<BlockHeader>(words), &BlockHeader::sway));
-            k.sway = select(here, sway, k.sway);
+            pointer<float> sways = field(as<BlockHeader>(words), &BlockHeader::sway);
+            sfloat own = load(sways);
+            sfloat above = load(sways + 1) * leaving_share_above;
+            k.sway = select(here, vfloat(max(own, above)), k.sway);
         }
         sint normals_at = ensure_normals(c, block);
         sint planes = 0;
@@ -320,10 +329,6 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
     }
     return k;
 }
-
-/// Rays that leave a hit begin this far off the surface, in units of how far the finest vertices of its block
-/// can move: what they see there is no further from what was hit.
-inline constexpr float leaving_share = 1.0F;
 
 /// The target edge length that each ray asks for `way` from its field's origin (see target_at()).
 inline vfloat asked_at(const Rays& r, const vvec& way) {
@@ -486,10 +491,9 @@ template <Look L>
     if constexpr (L == look_matte)
         s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);
     vvec p = blend(k.a, k.b, k.c, h);
-    vfloat error = position_error(k.a, k.b, k.c, origin);
-    vmask morphs = vmask(load(field(c.frame, &FrameHeader::morphs)) != 0);
-    vfloat apart = fma(k.sway, vfloat(leaving_share), error);
-    error = select(morphs, apart, error);
+    vfloat rounding = position_error(k.a, k.b, k.c, origin);
+    vmask morphs = vmask(load(field(c.frame, &FrameHeader::leaving_morphs)) != 0);
+    vfloat error = select(morphs, k.sway + rounding, rounding);
     vfloat side = select(opposed, vfloat(-1.0F), vfloat(1.0F));
     if constexpr (glossy) {
         beyond.toward = toward;
@@ -517,7 +521,12 @@ template <Look L>
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;
-    s.position = madd(error, s.geometric, p);
+    // Off the surface, but back along the ray: beside it other surfaces may be nearer than that, along it
+    // none is.
+    vfloat facing = max(dot(s.geometric, toward), 1.0e-3F);
+    vfloat half_way = h.t * 0.5F;
+    vfloat back = min(error / facing, half_way);
+    s.position = madd(max(back, rounding), toward, p);
     return s;
 }
 

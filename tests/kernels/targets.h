@@ -21,6 +21,12 @@ inline std::vector<const KernelTable*> all_targets() {
     return targets;
 }
 
+/// The best one alone, for what is compared within noise: others have its bits (tests/materials/targets.cpp),
+/// or, sse4, nearly so.
+inline std::vector<const KernelTable*> best_target() {
+    return {native_targets().back()};
+}
+
 /// Those whose fused multiply-add rounds once, or those whose does not.
 inline std::vector<const KernelTable*> targets_with(bool fused) {
     std::vector<const KernelTable*> targets;
