@@ -66,7 +66,7 @@ Comparison compare(Scene scene, const std::string& target, const std::vector<Blo
 /// `alike`: rendered instead, if not null.
 void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* alike = nullptr) {
     const std::vector<BlockSums> plain = plain_picture(scene, side, samples_a_pixel);
-    for (const KernelTable* target : native_targets()) {
+    for (const KernelTable* target : best_target()) {
         const Comparison c = compare(alike != nullptr ? *alike : scene, target->name, plain);
         fmt::print(
             "  {}, {}: blocks differ by {:.1f} standard errors at most, means by {:+.2f} {:+.2f} {:+.2f} "
