@@ -8,6 +8,7 @@
 #include "tests/kernels/cages.h"
 #include "tests/kernels/recording_port.h"
 #include "tests/kernels/targets.h"
+#include "tests/materials/room.h"
 
 #include "razor/frame/frame.h"
 #include "traces/footprint.h"
@@ -77,7 +78,9 @@ std::vector<float> film_of(Frame& frame, int width, int height) {
 class NothingIsFree : public testing::TestWithParam<std::string> {
 protected:
     void SetUp() override {
-        scene_ = GetParam() == "flat" ? scene_of(bilinear(cube_cage()), 10) : named_scene(GetParam())->scene;
+        scene_ = GetParam() == "flat"    ? scene_of(bilinear(cube_cage()), 10)
+                 : GetParam() == "paths" ? full_room()
+                                         : named_scene(GetParam())->scene;
     }
     Scene scene_;
 };
@@ -136,7 +139,7 @@ TEST_P(NothingIsFree, NativeReadsAndWritesNothingElse) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NothingIsFree,
-                         testing::Values("default", "urchin_stretched", "torus_bilinear", "flat"),
+                         testing::Values("default", "urchin_stretched", "torus_bilinear", "flat", "paths"),
                          [](const auto& name) { return name.param; });
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "tests/materials/room.h"
 
+#include "tests/materials/skies.h"
+
 #include <glm/trigonometric.hpp>
 
 #include <cmath>
@@ -96,6 +98,28 @@ Scene room() {
     s.camera.fov_degrees = 38;
     s.settings = {
         .width = room_size, .height = room_size, .samples = 32, .light_samples = 2, .sky_samples = 2};
+    return s;
+}
+
+Scene full_room() {
+    Scene s = room();
+    set_sky(s, sky_texture(64, 32, [](double u, double v) { return morning(u, v, 0.2, 20); }));
+    s.textures.push_back(sky_texture(16, 16, [](double u, double v) { return glm::vec3(u, v, 0.5); }));
+    s.meshes[0].texcoords = {{0, 0}, {3, 0}, {3, 2}, {0, 2}};
+    s.meshes[0].face_texcoords = {0, 1, 2, 3};
+    s.materials[0].albedo_map.texture = s.materials[0].normal_map.texture = 1;
+    s.materials[0].coat = 0.5F;
+    s.materials[0].coat_roughness = 0.2F;
+    s.meshes.push_back(ball("ball", {-0.4, 0.8, 0}, 0.8, 3));
+    s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
+    s.materials.back().metallic = 1;
+    s.materials.back().roughness = 0.4F;
+    s.meshes.push_back(box("glass", {0.3, 0.1, 0.6}, {0.7, 0.9, 0.6}, 30, 4));
+    s.materials.push_back(named("glass", {0.9F, 1, 0.9F}));
+    s.materials.back().specular = s.materials.back().transmission = 1;
+    s.materials.back().roughness = 0.1F;
+    s.settings.samples = 4;
+    s.settings.diffuse_bounces = 1;
     return s;
 }
 

@@ -2,7 +2,6 @@
 // nearly so on the one that does not.
 #include "tests/kernels/targets.h"
 #include "tests/materials/room.h"
-#include "tests/materials/skies.h"
 
 #include "razor/native/render.h"
 
@@ -12,28 +11,6 @@
 
 namespace razor::test {
 namespace {
-
-Scene everything() {
-    Scene s = room();
-    set_sky(s, sky_texture(64, 32, [](double u, double v) { return morning(u, v, 0.2, 20); }));
-    s.textures.push_back(sky_texture(16, 16, [](double u, double v) { return glm::vec3(u, v, 0.5); }));
-    s.meshes[0].texcoords = {{0, 0}, {3, 0}, {3, 2}, {0, 2}};
-    s.meshes[0].face_texcoords = {0, 1, 2, 3};
-    s.materials[0].albedo_map.texture = s.materials[0].normal_map.texture = 1;
-    s.materials[0].coat = 0.5F;
-    s.materials[0].coat_roughness = 0.2F;
-    s.meshes.push_back(ball("ball", {-0.4, 0.8, 0}, 0.8, 3));
-    s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
-    s.materials.back().metallic = 1;
-    s.materials.back().roughness = 0.4F;
-    s.meshes.push_back(box("glass", {0.3, 0.1, 0.6}, {0.7, 0.9, 0.6}, 30, 4));
-    s.materials.push_back(named("glass", {0.9F, 1, 0.9F}));
-    s.materials.back().specular = s.materials.back().transmission = 1;
-    s.materials.back().roughness = 0.1F;
-    s.settings.samples = 4;
-    s.settings.diffuse_bounces = 1;
-    return s;
-}
 
 std::vector<float> picture(const Scene& scene, const KernelTable* target) {
     RenderOptions options;
@@ -47,7 +24,7 @@ std::vector<float> picture(const Scene& scene, const KernelTable* target) {
 }
 
 TEST(TargetsOfPaths, ShowTheSame) {
-    const Scene scene = everything();
+    const Scene scene = full_room();
     const std::vector<float> best = picture(scene, native_targets().back());
     for (const KernelTable* target : native_targets()) {
         const std::vector<float> values = picture(scene, target);
