@@ -195,7 +195,7 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
     out.density = way.density;
     vmask bright = largest(way.factor) > zero;
     Rays& r = out.rays;
-    r.origin = select(way.passes, b.position, s.position);
+    r.origin = select(way.passes, b.position, b.before);
     r.direction = way.direction * reciprocal_sqrt(dot(way.direction, way.direction));
     r.t_min = zero;
     r.t_max = vfloat(infinite);

@@ -177,18 +177,11 @@ inline pointer<float> blended_slot(const Context& c, sint lane, sint line) {
     return kept.slot;
 }
 
-/// Rays that leave a hit begin as far off the surface as the finest vertices of its block can move, or this
-/// share of how far those of the next coarser level can, where they ask for somewhat coarser levels than the
-/// ray that found it: what they see there is no further from what was hit. Target edge lengths are up to
-/// shared_ratio^2 times as large (razor/kernels/leave.h) and vary by gradation_cap over an edge, and weights
-/// change no faster than 2.25 times as much (weight_of()).
-inline constexpr float leaving_share_above = 1.0F;
-
 /// The corners of the triangles hit, and their vertices' normals interpolated (zero where they have none).
 struct Corners {
     vvec a, b, c;
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
-    vfloat sway;                   // see leaving_share_above
+    vfloat sway, sway_above;       // of the block's finest vertices; of those of the next coarser level
     vpoint map_a, map_b, map_c;    // texture coordinates, where they are asked for and there are any
 };
 /// A block between two levels of the paper's scheme, `number` that of the finer one's field: arrays of both
@@ -238,12 +231,12 @@ inline void gather_texcoord(pointer<float> texcoords, const vint& corner, const 
 }
 
 /// Block after block.
-template <bool Mapped>
+template <bool Mapped, bool Glossy>
 inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, const vmask& hit) {
     TriangleWords t = locate(c, h, hit);
     vfloat zero(0.0F);
     vvec none_yet{zero, zero, zero};
-    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero, {}, {}, {}};
+    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero, zero, {}, {}, {}};
     if constexpr (Mapped)
         k.map_a = k.map_b = k.map_c = {zero, zero};
     vint first_word = h.block << 4;
@@ -261,9 +254,9 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
         sint corners_at = load(field(as<BlockHeader>(words), &BlockHeader::corners_at));
         if (branch(corners_at != no_vertex_moves)) {
             pointer<float> sways = field(as<BlockHeader>(words), &BlockHeader::sway);
-            sfloat own = load(sways);
-            sfloat above = load(sways + 1) * leaving_share_above;
-            k.sway = select(here, vfloat(max(own, above)), k.sway);
+            k.sway = select(here, load_broadcast(sways), k.sway);
+            if constexpr (Glossy)
+                k.sway_above = select(here, load_broadcast(sways + 1), k.sway_above);
         }
         sint normals_at = ensure_normals(c, block);
         sint planes = 0;
@@ -432,6 +425,7 @@ struct Beyond {
     vfloat side;   // 1, or -1 where the surface's own normal, outwards, is not the one that faces the viewer
     vvec toward;   // unit, to the viewer
     vmask inside;  // the viewer is behind the surface
+    vvec before;   // moved off the surface for bounces, back along the ray
     vvec position; // moved off the surface to the side that the viewer is not on
     vfloat curvature; // see curvature_of()
     vint material;    // its number
@@ -462,7 +456,7 @@ template <Look L>
     s.hit = h.patch >= vint(0);
     constexpr bool mapped = L == look_mapped || L == look_glossy_mapped;
     constexpr bool glossy = L == look_glossy || L == look_glossy_mapped;
-    Corners k = find_triangles<mapped>(c, r, h, s.hit);
+    Corners k = find_triangles<mapped, glossy>(c, r, h, s.hit);
     vvec toward = r.direction * vfloat(-1.0F);
     vvec edge1 = k.b - k.a;
     vvec edge2 = k.c - k.a;
@@ -521,12 +515,20 @@ template <Look L>
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;
-    // Off the surface, but back along the ray: beside it other surfaces may be nearer than that, along it
-    // none is.
-    vfloat facing = max(dot(s.geometric, toward), 1.0e-3F);
-    vfloat half_way = h.t * 0.5F;
-    vfloat back = min(error / facing, half_way);
-    s.position = madd(max(back, rounding), toward, p);
+    // Rays to lights leave as far off the surface as the finest vertices of its block can move: what they see
+    // there is no further from what was hit.
+    s.position = madd(error, s.geometric, p);
+    if constexpr (glossy) {
+        // Bounces, behind whose hits others follow, leave as far off as vertices of the next coarser level
+        // can move, which begin to where the others end; and not along the normal but back along the ray:
+        // beside the surface others may be nearer than that, as in sharp folds, along the ray none is.
+        vfloat sway = max(k.sway, k.sway_above);
+        vfloat off = select(morphs, sway + rounding, rounding);
+        vfloat facing_ray = max(dot(s.geometric, toward), 1.0e-3F);
+        vfloat half_way = h.t * 0.5F;
+        vfloat back = min(off / facing_ray, half_way);
+        beyond.before = madd(max(back, rounding), toward, p);
+    }
     return s;
 }
 

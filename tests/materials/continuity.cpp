@@ -67,8 +67,9 @@ double light_within(const Scene& scene, const std::string& target, std::int64_t&
     return sum;
 }
 
-/// Where levels change over a concave place a bounce may begin behind what it sees: one in so many, at most.
-constexpr double few = 1.0 / 40000;
+/// Where levels change over a concave place a ray that leaves a surface may begin behind what it sees: one in
+/// so many at most of bounces, and of the rays to lights that leave where bounces end.
+constexpr double few = 1.0 / 40000, few_to_lights = 1.0 / 4000;
 
 TEST(BounceLevels, HaveNoHoles) {
     for (const Mesh& mesh :
@@ -93,18 +94,17 @@ TEST(BounceLevels, OfDiffuseBouncesHaveNoHoles) {
     // The sky is what shadow rays sample where light goes in all directions: none is left to bounces.
     scene.settings.sky_samples = 1;
     const double light = light_within(scene, native_targets().back()->name, bounces);
-    EXPECT_LE(light * scene.settings.samples, few * static_cast<double>(bounces));
+    EXPECT_LE(light * scene.settings.samples, few_to_lights * static_cast<double>(bounces));
     EXPECT_GT(bounces, 50000);
 }
 
 // Levels that jump at once have holes where one ends.
 TEST(BounceLevels, ThatJumpHaveHoles) {
-    Scene scene = inside_tube(stretched(torus_cage(9, 6)), 6, metal(0));
+    Scene scene = inside_tube(stretched(torus_cage(9, 6)), 6, metal(0.5F));
     scene.settings.lod = Lod::discrete;
-    scene.settings.samples = 64;
     std::int64_t bounces = 0;
     const double light = light_within(scene, native_targets().back()->name, bounces);
-    EXPECT_GT(light * scene.settings.samples, 4 * few * static_cast<double>(bounces));
+    EXPECT_GT(light * scene.settings.samples, 40 * few * static_cast<double>(bounces));
 }
 
 /// Largest root mean square difference of pictures that follow each other while footprints grow by three
@@ -208,15 +208,15 @@ TEST(TextureLevels, HaveNoSeams) {
                             return glm::dot(dvec3(nx[p], ny[p], nz[p]), toward);
                         };
                         const double cosine = std::min(facing(i), facing(next));
-                        if (!std::isfinite(depth[i] + depth[next]) || cosine < 0.35 ||
+                        if (!std::isfinite(depth[i] + depth[next]) || cosine < 0.5 ||
                             std::abs(depth[i] - depth[next]) > 0.1F)
                             continue;
                         ++pairs;
                         worst = std::max(worst, std::abs(double{albedo[i]} - albedo[next]) * cosine);
                     }
             }
-            EXPECT_GT(pairs, 8000);
-            EXPECT_LT(worst, 0.12) << target->name << ", " << edge_pixels;
+            EXPECT_GT(pairs, 5000);
+            EXPECT_LT(worst, 0.2) << target->name << ", " << edge_pixels;
         }
 }
 
