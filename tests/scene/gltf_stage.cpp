@@ -43,7 +43,7 @@ protected:
         w.add("nodes",
               {{"name", "Sun"}, {"extensions", lit(2)}, {"rotation", {-root_half, 0, 0, root_half}}});
         w.json["scenes"][0]["nodes"] = {0, 1, 5};
-        w.json["cameras"] = {perspective(pi / 3)};
+        w.json["cameras"] = Json::array({perspective(pi / 3)});
         w.json["cameras"][0]["name"] = "Camera.001";
         w.json["extensionsUsed"] = {"KHR_lights_punctual"};
         w.json["extensions"]["KHR_lights_punctual"]["lights"] = {
