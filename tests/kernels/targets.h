@@ -3,6 +3,7 @@
 
 #include "razor/native/targets.h"
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -25,6 +26,22 @@ inline std::vector<const KernelTable*> all_targets() {
 /// or, sse4, nearly so.
 inline std::vector<const KernelTable*> best_target() {
     return {native_targets().back()};
+}
+
+/// A test's own function of kernels, compiled for a target.
+template <class Arrays> struct TargetFunction {
+    const char* name;
+    void (*run)(const Arrays&);
+};
+/// Those that this processor runs.
+template <class Arrays>
+std::vector<TargetFunction<Arrays>> runnable(std::vector<TargetFunction<Arrays>> functions) {
+    const std::vector<const KernelTable*> runs = native_targets();
+    std::erase_if(functions, [&](const TargetFunction<Arrays>& f) {
+        return std::none_of(runs.begin(), runs.end(),
+                            [&](const KernelTable* k) { return std::strcmp(k->name, f.name) == 0; });
+    });
+    return functions;
 }
 
 /// Those whose fused multiply-add rounds once, or those whose does not.

@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace razor::test {
@@ -29,20 +29,12 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-struct Target {
-    const char* name;
-    void (*run)(const LobeArrays&);
-};
+using Target = TargetFunction<LobeArrays>;
 std::vector<Target> targets() {
     std::vector<Target> all;
 #define RAZOR_LIST(target) all.push_back({#target, target::lobes});
     RAZOR_TEST_TARGETS(RAZOR_LIST)
-    std::erase_if(all, [](const Target& t) {
-        const auto runs = native_targets();
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, t.name) == 0; });
-    });
-    return all;
+    return runnable(std::move(all));
 }
 
 struct Lobe {

@@ -16,10 +16,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace razor::test {
 
@@ -34,20 +34,12 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-struct Target {
-    const char* name;
-    void (*run)(const SkyArrays&);
-};
+using Target = TargetFunction<SkyArrays>;
 std::vector<Target> targets() {
     std::vector<Target> all;
 #define RAZOR_LIST(target) all.push_back({#target, target::sky});
     RAZOR_TEST_TARGETS(RAZOR_LIST)
-    std::erase_if(all, [](const Target& t) {
-        const auto runs = native_targets();
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, t.name) == 0; });
-    });
-    return all;
+    return runnable(std::move(all));
 }
 
 struct Map {
