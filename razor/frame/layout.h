@@ -14,6 +14,10 @@
 #pragma once
 
 #include "isa/memory_types.h"
+#include "razor/frame/film_record.h"
+#include "razor/frame/light_record.h"
+#include "razor/frame/line.h"
+#include "razor/frame/material_record.h"
 #include "razor/frame/stretches.h"
 
 #include <cstdint>
@@ -112,11 +116,6 @@ constexpr int strip_pair(int u, int v) {
 // Weights over a face's control points, made by the host on request and immutable from then on, in whole
 // lines of 64 bytes. The number of lines that a class could need is beyond any memory, so each page has an
 // entry that says where it lies: entries[first of its kind + index].
-inline constexpr int line_bytes = 64;
-struct alignas(line_bytes) Line {
-    std::int32_t word[line_bytes / 4];
-};
-
 enum class PageKind : std::int32_t {
     vertex = 0, // index = corner (or corner_count: the centre). One row of control_count weights, zero-padded
                 // to the width
@@ -187,51 +186,6 @@ struct InstanceRecord {
 };
 static_assert(sizeof(InstanceRecord) == 128);
 
-/// What a surface is made of, if some surface of the scene is more than matte: see razor/scene/material.h.
-struct alignas(line_bytes) MaterialRecord {
-    float albedo[3];
-    float metallic, roughness;
-    float specular;
-    float normal_reflection; // of a dielectric, at normal incidence, without the weight `specular`
-    float ior, transmission;
-    float coat, coat_roughness;
-    float emission[3];
-    float normal_scale;
-    std::int32_t map[5]; // of each MaterialMap: a MapRecord, or -1
-    float alpha_cutoff;  // 0: nothing is cut out
-    std::int32_t padding[11];
-};
-static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
-inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
-enum MaterialMap : std::int32_t {
-    map_albedo,
-    map_metallic,
-    map_roughness,
-    map_emission,
-    map_normal,
-    map_count
-};
-
-/// A texture where a material uses it: at (row_u . (u, v, 1), row_v . (u, v, 1)).
-struct MapRecord {
-    float row_u[3], row_v[3];
-    std::int32_t texture;
-    std::int32_t padding;
-};
-static_assert(sizeof(MapRecord) == line_bytes / 2);
-
-enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
-
-/// Where the texels of each level lie, as razor/scene/texture.h says, counted from FrameHeader::texels.
-struct alignas(line_bytes) TextureRecord {
-    std::int32_t levels, wrap_u, wrap_v;
-    float size;           // sqrt(width * height) of the finest level
-    std::int32_t opacity; // words from each level's texels to its opacity; 0: all is opaque
-    std::int32_t padding[11];
-    std::int32_t first[16], width[16], height[16];
-};
-static_assert(sizeof(TextureRecord) == 4 * line_bytes);
-
 /// A box in scene coordinates, and what to look at if a ray comes near it. Node 0 is the root. Nodes that are
 /// none's children have neither instance (-1) nor children.
 struct GraphNodeRecord {
@@ -242,54 +196,6 @@ struct GraphNodeRecord {
     std::int32_t padding;
 };
 static_assert(sizeof(GraphNodeRecord) == 40);
-
-/// The dimensions of sample points, a number each, so that no two of a pixel and sample go together.
-enum SampleDimension : std::int32_t {
-    dimension_film = 1,
-    dimension_light = 2, // of the scene's first light
-    dimension_sky = 3,
-    dimension_lens = 4,
-    dimension_count = 5,
-    dimension_lobe = -1,  // where a bounce goes within its lobe ...
-    dimension_choice = -2 // ... and which lobe it takes
-};
-/// Of the scene's light of that number, whether or not those before it have radiance.
-constexpr std::int32_t light_dimension(int light) {
-    return light == 0 ? dimension_light : dimension_count - 1 + light;
-}
-
-/// How a light's points are sampled (razor/kernels/light_samples.h).
-enum LightShape : std::int32_t {
-    light_rectangle,
-    light_disk,
-    light_sphere,
-    light_point, // and spots
-    light_directional
-};
-
-/// Lights without radiance have no record. What members mean depends on the shape, in this order: rectangle;
-/// disk; sphere; point; directional.
-struct alignas(line_bytes) LightRecord {
-    float corner[3];            // scene coordinates; of others than rectangles the middle
-    float edge_u[3], edge_v[3]; // of a disk radii at right angles
-    float normal[3];            // unit; to where a disk emits, of a spot its axis, towards directional light
-    /// Each / (pi x samples): radiance x area; x area; x 2 pi; intensity; irradiance x 2 / (1 + cos of the
-    /// angular radius).
-    float radiance[3];
-    float spacing;              // of the samples that a pixel takes: see growth_to_area(), times edge_pixels
-    std::int32_t samples;       // shadow rays a hit
-    std::int32_t dimension;     // of its sample points (razor/kernels/sampling.h)
-    std::int32_t shape;         // a LightShape
-    float radius;               // of a sphere
-    float versine;              // 1 - cos of a directional light's angular radius
-    float cone_end, cone_scale; // of a spot: 1 - cos where it ends, 1 / (that - where it is whole)
-    float emitted[3];           // radiance; 0 of a point
-    /// Where the density of samples, by solid angle, is the cosine to the normal of what is lit, over this
-    /// and their weight; 0 of what no ray meets by chance.
-    float domain;
-    std::int32_t padding[5];
-};
-static_assert(sizeof(LightRecord) == 2 * line_bytes);
 
 // --- grids: what tessellating a patch yields
 // --------------------------------------------------------------------------
@@ -480,31 +386,6 @@ struct alignas(line_bytes) QueueRecord {
     isa::shared<std::int32_t> refitted; // clusters done
     std::int32_t padding3[15];
 };
-
-/// Planes of the film, one float a pixel each, in this order.
-enum FilmPlane : std::int32_t {
-    film_beauty = 0,
-    film_normal = 3,
-    film_depth = 6,
-    film_albedo = 7,
-    film_planes = 10
-};
-
-/// What a film holds beside its planes where passes add to it: sums over each pixel's samples, planes of one
-/// float a pixel. Of a filter with negative parts there are more: razor/kernels/film_filter.h.
-inline constexpr int sum_planes = 11;          // beauty, normal, albedo, depth, how many hit something
-inline constexpr int weighted_sum_planes = 18; // these, then weighted beauty and albedo, weights
-
-/// Where samples lie, and what they count: evenly in their pixel; as a FilterBin says, all alike; or some of
-/// them less than nothing.
-enum FilterUse : std::int32_t { filter_pixel = 0, filter_even = 1, filter_weighted = 2 };
-/// Of what is drawn along one axis, a part that is drawn once in filter_bins times.
-struct FilterBin {
-    float from, width; // pixels, from the pixel's corner
-    float weight;
-    float padding;
-};
-inline constexpr int filter_bins = 512;
 
 // --- in which order the vertices of a block are blended
 // A block of 2^a x 2^b quads: pass 0 blends the vertices at steps of 4 quads that are no corners, pass 1

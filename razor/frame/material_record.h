@@ -1,0 +1,53 @@
+// What surfaces are made of, as kernels read it.
+#pragma once
+
+#include "razor/frame/line.h"
+
+namespace razor {
+
+/// What a surface is made of, if some surface of the scene is more than matte: see razor/scene/material.h.
+struct alignas(line_bytes) MaterialRecord {
+    float albedo[3];
+    float metallic, roughness;
+    float specular;
+    float normal_reflection; // of a dielectric, at normal incidence, without the weight `specular`
+    float ior, transmission;
+    float coat, coat_roughness;
+    float emission[3];
+    float normal_scale;
+    std::int32_t map[5]; // of each MaterialMap: a MapRecord, or -1
+    float alpha_cutoff;  // 0: nothing is cut out
+    std::int32_t padding[11];
+};
+static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
+inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
+enum MaterialMap : std::int32_t {
+    map_albedo,
+    map_metallic,
+    map_roughness,
+    map_emission,
+    map_normal,
+    map_count
+};
+
+/// A texture where a material uses it: at (row_u . (u, v, 1), row_v . (u, v, 1)).
+struct MapRecord {
+    float row_u[3], row_v[3];
+    std::int32_t texture;
+    std::int32_t padding;
+};
+static_assert(sizeof(MapRecord) == line_bytes / 2);
+
+enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
+
+/// Where the texels of each level lie, as razor/scene/texture.h says, counted from FrameHeader::texels.
+struct alignas(line_bytes) TextureRecord {
+    std::int32_t levels, wrap_u, wrap_v;
+    float size;           // sqrt(width * height) of the finest level
+    std::int32_t opacity; // words from each level's texels to its opacity; 0: all is opaque
+    std::int32_t padding[11];
+    std::int32_t first[16], width[16], height[16];
+};
+static_assert(sizeof(TextureRecord) == 4 * line_bytes);
+
+} // namespace razor
