@@ -1,0 +1,276 @@
+// The triangles that rays hit, as these see them.
+#pragma once
+
+#include "razor/kernels/mapping.h"
+#include "razor/kernels/normals.h"
+
+namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
+
+/// The three vertices of the triangles hit, from component arrays at word `base` of each lane's block.
+struct TriangleWords {
+    vint a, b, c; // of x; y and z follow at +stride, +2 stride
+    vint stride;
+};
+
+/// Word numbers, from the grids' base, of the vertices of the triangles hit.
+inline TriangleWords locate(const Context& c, const Hits& h, const vmask& m) {
+    pointer<std::int32_t> words = as<std::int32_t>(c.grids);
+    vint block = h.block << 4;
+    constexpr int quads_u_word = offsetof(BlockHeader, quads_u) / 4;
+    constexpr int stride_word = offsetof(BlockHeader, stride) / 4;
+    vint quads_u = gather(words + quads_u_word, block, m);
+    TriangleWords t;
+    t.stride = gather(words + stride_word, block, m);
+    vint which = h.triangle & vint(1);
+    vint quad = (h.triangle >> 1) & vint(63);
+    vint row = quad >> block_log2;
+    vint column = quad & vint(block_quads - 1);
+    vint width = quads_u + vint(1);
+    vint low = row * width + column;
+    low = low + block;
+    vint high = low + width;
+    vmask second = which > vint(0);
+    t.a = low;
+    vint right = low + vint(1);
+    vint opposite = high + vint(1);
+    t.b = select(second, opposite, right);
+    t.c = select(second, high, opposite);
+    return t;
+}
+
+inline void copy_corner_texcoords(pointer<float> own, sint quads_u, sint quads_v, sint stride,
+                                  pointer<float> out) {
+    for (int k = 0; k < 4; ++k) {
+        sint vertex = corner_vertex(k, quads_u, quads_v);
+        sfloat u = load(own + vertex);
+        store(out + vertex, u);
+        sfloat v = load(own + stride + vertex);
+        store(out + stride + vertex, v);
+    }
+}
+/// Of one pass' vertices, as normals are.
+inline void blend_texcoords(pointer<float> own, const BlendStep& s, const vfloat& weight, sint stride,
+                            pointer<float> out, const vmask& m) {
+    for (int k = 0; k < 2; ++k) {
+        vfloat at = gather(own, s.vertex, m);
+        vfloat one = gather(out, s.one, m);
+        vfloat other = gather(out, s.other, m);
+        vfloat mean = (one + other) * 0.5F;
+        scatter(out, s.vertex, fma(weight, at - mean, mean), m);
+        own = own + stride;
+        out = out + stride;
+    }
+}
+
+/// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them;
+/// Mapped: also texture coordinates.
+template <bool Mapped>
+inline void blend_normals(const Context& c, sint line, pointer<float> normals, pointer<float> slot) {
+    pointer<float> area = slot + slot_block;
+    pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+    sint quads_u = load(field(block, &BlockHeader::quads_u));
+    sint quads_v = load(field(block, &BlockHeader::quads_v));
+    sint stride = load(field(block, &BlockHeader::stride));
+    pointer<float> x = area + blend_normals_at;
+    pointer<float> weights = area + blend_weights;
+    for (int k = 0; k < 4; ++k) {
+        sint vertex = corner_vertex(k, quads_u, quads_v);
+        svec n = load_vertex(normals, stride, vertex);
+        store(x + vertex, n.x);
+        store(x + stride + vertex, n.y);
+        store(x + stride * 2 + vertex, n.z);
+    }
+    sint planes = 0;
+    if constexpr (Mapped) {
+        sint instance = load(field(block, &BlockHeader::instance));
+        planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
+    }
+    if constexpr (Mapped) {
+        if (branch(planes != 0))
+            copy_corner_texcoords(normals + stride * 3, quads_u, quads_v, stride, slot + slot_texcoords);
+    }
+    pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
+    for (int p = 0; p < blend_passes; ++p) {
+        sint n = load(pass);
+        for (sint from = 0; branch(from < n); from += isa::width) {
+            vmask m = first_lanes(n - from);
+            BlendStep s = load_step(pass, from, m);
+            vvec own = gather_vertex(normals, stride, s.vertex, m);
+            vvec one = gather_vertex(x, stride, s.one, m);
+            vvec other = gather_vertex(x, stride, s.other, m);
+            vfloat weight = gather(weights, s.vertex, m);
+            vvec q = blend_vertex(weight, own, one, other);
+            scatter_vec(x, stride, s.vertex, q, m);
+            if constexpr (Mapped) {
+                if (branch(planes != 0))
+                    blend_texcoords(normals + stride * 3, s, weight, stride, slot + slot_texcoords, m);
+            }
+        }
+        pass = pass + pass_words;
+    }
+}
+
+/// Returns them, once they are there.
+template <bool Mapped>
+inline pointer<float> blended_normals(const Context& c, sint line, pointer<float> normals,
+                                      pointer<float> slot) {
+    build_once(c, as<shared_int>(slot) + slot_normals,
+               [&] { blend_normals<Mapped>(c, line, normals, slot); });
+    return slot + (slot_block + blend_normals_at);
+}
+
+/// The slot that holds the block as the field of that lane sees it.
+inline pointer<float> blended_slot(const Context& c, sint lane, sint line) {
+    sint number = load(as<std::int32_t>(c.packets + packet_number) + lane);
+    Kept kept = find_blended(c, number, line, no_leaf);
+    if (branch(!kept.there)) {
+        pointer<BlockHeader> block = as<BlockHeader>(c.grids + line);
+        sint instance = load(field(block, &BlockHeader::instance));
+        svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
+        blend_block(c, field_of(c, lane, origin), number, line, no_leaf, kept.slot);
+    }
+    return kept.slot;
+}
+
+/// A block between two levels of the paper's scheme, `number` that of the finer one's field: arrays of both
+/// levels' vertices, and of their normals.
+struct BlockPair {
+    pointer<float> fine, coarse, fine_normals, coarse_normals;
+};
+template <bool Mapped>
+inline BlockPair block_pair(const Context& c, sint line, sint number, sint normals_at) {
+    sint level = level_of_number(number);
+    pointer<float> fine = level_slot(c, level, line);
+    pointer<float> coarse = level_slot(c, level + 1, line);
+    BlockPair p;
+    p.fine = fine + (slot_block + block_header_words);
+    p.coarse = coarse + (slot_block + block_header_words);
+    if (branch(normals_at != 0)) {
+        pointer<float> normals = as<float>(c.grids + line) + normals_at;
+        p.fine_normals = blended_normals<Mapped>(c, line, normals, fine);
+        p.coarse_normals = blended_normals<Mapped>(c, line, normals, coarse);
+    }
+    return p;
+}
+
+/// The vertex and its normal where each ray sees them.
+inline void find_between(const BlockPair& p, const Scale& s, const vvec& from, sint number, const vint& at,
+                         const vint& stride, sint normals_at, const vmask& m, vvec& vertex, vvec& normal) {
+    vvec fine = gather_vec(p.fine, at, stride, m);
+    vvec coarse = gather_vec(p.coarse, at, stride, m);
+    sint level = level_of_number(number);
+    vfloat weight = pair_weight(s, dot(fine - from, s.direction), level);
+    vertex = select(m, blend_pair(weight, fine, coarse), vertex);
+    if (branch(normals_at != 0)) {
+        fine = gather_vec(p.fine_normals, at, stride, m);
+        coarse = gather_vec(p.coarse_normals, at, stride, m);
+        normal = select(m, blend_pair(weight, fine, coarse), normal);
+    }
+}
+
+/// Texture coordinates of a corner of the triangles hit, `texcoords` being those of the block, u[stride],
+/// v[stride].
+inline void gather_texcoord(pointer<float> texcoords, const vint& corner, const vint& stride,
+                            const vmask& here, vpoint& at) {
+    vfloat u = gather(texcoords, corner, here);
+    vfloat v = gather(texcoords, corner + stride, here);
+    at.u = select(here, u, at.u);
+    at.v = select(here, v, at.v);
+}
+
+/// Block after block.
+template <bool Mapped, bool Glossy>
+inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, const vmask& hit) {
+    TriangleWords t = locate(c, h, hit);
+    vfloat zero(0.0F);
+    vvec none_yet{zero, zero, zero};
+    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero, zero, {}, {}, {}};
+    if constexpr (Mapped)
+        k.map_a = k.map_b = k.map_c = {zero, zero};
+    vint first_word = h.block << 4;
+    vint at_a = t.a - first_word;
+    vint at_b = t.b - first_word;
+    vint at_c = t.c - first_word;
+    for (vmask left = hit; branch(any(left));) {
+        sint one = first(left);
+        sint block = extract(h.block, one);
+        sint lane = extract(h.field, one);
+        vmask here = left & (h.block == vint(block));
+        here = here & (h.field == vint(lane));
+        left = left & !here;
+        pointer<float> words = as<float>(c.grids + block);
+        sint corners_at = load(field(as<BlockHeader>(words), &BlockHeader::corners_at));
+        if (branch(corners_at != no_vertex_moves)) {
+            pointer<float> sways = field(as<BlockHeader>(words), &BlockHeader::sway);
+            k.sway = select(here, load_broadcast(sways), k.sway);
+            if constexpr (Glossy)
+                k.sway_above = select(here, load_broadcast(sways + 1), k.sway_above);
+        }
+        sint normals_at = ensure_normals(c, block);
+        sint planes = 0;
+        if constexpr (Mapped) {
+            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
+            planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
+        }
+        const auto find_texcoords = [&](pointer<float> texcoords) {
+            if (branch(planes != 0)) {
+                gather_texcoord(texcoords, at_a, t.stride, here, k.map_a);
+                gather_texcoord(texcoords, at_b, t.stride, here, k.map_b);
+                gather_texcoord(texcoords, at_c, t.stride, here, k.map_c);
+            }
+        };
+        if (branch(lane < -1)) {
+            BlockPair p = block_pair<Mapped>(c, block, lane, normals_at);
+            Scale scale = scale_of(c, r);
+            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
+            svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
+            vvec from = r.origin - broadcast(origin);
+            find_between(p, scale, from, lane, at_a, t.stride, normals_at, here, k.a, k.at_a);
+            find_between(p, scale, from, lane, at_b, t.stride, normals_at, here, k.b, k.at_b);
+            find_between(p, scale, from, lane, at_c, t.stride, normals_at, here, k.c, k.at_c);
+            k.normal = select(here, blend(k.at_a, k.at_b, k.at_c, h), k.normal);
+            if constexpr (Mapped) { // as they are at the anchors
+                sint after = load(field(as<BlockHeader>(words), &BlockHeader::stride)) * 3;
+                find_texcoords(words + normals_at + after);
+            }
+            continue;
+        }
+        pointer<float> vertices = words + block_header_words;
+        pointer<float> normals = words + normals_at;
+        pointer<float> texcoords = normals;
+        if constexpr (Mapped) {
+            sint after = load(field(as<BlockHeader>(words), &BlockHeader::stride)) * 3;
+            texcoords = normals + after;
+        }
+        if (branch(lane >= 0)) {
+            pointer<float> slot = blended_slot(c, lane, block);
+            vertices = slot + (slot_block + block_header_words);
+            if (branch(normals_at != 0))
+                normals = blended_normals<Mapped>(c, block, normals, slot);
+            texcoords = slot + slot_texcoords;
+        }
+        if constexpr (Mapped) {
+            find_texcoords(texcoords);
+        }
+        vvec a = gather_vec(vertices, at_a, t.stride, here);
+        vvec b = gather_vec(vertices, at_b, t.stride, here);
+        vvec d = gather_vec(vertices, at_c, t.stride, here);
+        k.a = select(here, a, k.a);
+        k.b = select(here, b, k.b);
+        k.c = select(here, d, k.c);
+        if (branch(normals_at != 0)) {
+            vvec na = gather_vec(normals, at_a, t.stride, here);
+            vvec nb = gather_vec(normals, at_b, t.stride, here);
+            vvec nc = gather_vec(normals, at_c, t.stride, here);
+            k.at_a = select(here, na, k.at_a);
+            k.at_b = select(here, nb, k.at_b);
+            k.at_c = select(here, nc, k.at_c);
+            k.normal = select(here, blend(na, nb, nc, h), k.normal);
+        }
+    }
+    return k;
+}
+
+} // namespace shade_kernel
+} // namespace razor::ISA_TARGET

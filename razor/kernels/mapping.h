@@ -1,0 +1,92 @@
+// Where points of a surface lie on textures, and how finely those are seen there.
+#pragma once
+
+#include "isa/math.h"
+#include "razor/kernels/packet.h"
+#include "razor/kernels/sampling.h"
+
+namespace razor::ISA_TARGET {
+inline namespace shade_kernel {
+
+inline vvec gather_vec(pointer<float> words, const vint& at, const vint& stride, const vmask& m) {
+    vvec v;
+    v.x = gather(words, at, m);
+    vint next = at + stride;
+    v.y = gather(words, next, m);
+    next = next + stride;
+    v.z = gather(words, next, m);
+    return v;
+}
+
+inline vvec blend(const vvec& a, const vvec& b, const vvec& c, const Hits& h) {
+    vfloat w = vfloat(1.0F) - h.u;
+    w = w - h.v;
+    return madd(h.v, c, madd(h.u, b, a * w));
+}
+
+/// The corners of the triangles hit, and their vertices' normals interpolated (zero where they have none).
+struct Corners {
+    vvec a, b, c;
+    vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
+    vfloat sway, sway_above;       // of the block's finest vertices; of those of the next coarser level
+    vpoint map_a, map_b, map_c;    // texture coordinates, where they are asked for and there are any
+};
+/// The target edge length that each ray asks for `way` from its field's origin (see target_at()).
+inline vfloat asked_at(const Rays& r, const vvec& way) {
+    vfloat distance = sqrt(dot(way, way)) - r.radius;
+    distance = max(distance, 0.0F);
+    vfloat along = dot(r.slope, way) + r.base;
+    vfloat target = fma(r.growth, distance, abs(along));
+    return max(target, vfloat(least_target));
+}
+
+/// Where a hit lies on its texture, and how.
+struct Mapping {
+    vpoint at;
+    vfloat footprint; // the area, in texture coordinates, that the ray asked for
+    vvec along_u;     // directions on the surface: unit, at right angles to the normal
+    vvec along_v;
+};
+
+inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const vvec& edge2,
+                       const vvec& area, const vfloat& target, const vfloat& cosine) {
+    Mapping map;
+    vfloat w = vfloat(1.0F) - h.u;
+    w = w - h.v;
+    map.at.u = fma(h.v, k.map_c.u, fma(h.u, k.map_b.u, k.map_a.u * w));
+    map.at.v = fma(h.v, k.map_c.v, fma(h.u, k.map_b.v, k.map_a.v * w));
+    vfloat u1 = k.map_b.u - k.map_a.u;
+    vfloat v1 = k.map_b.v - k.map_a.v;
+    vfloat u2 = k.map_c.u - k.map_a.u;
+    vfloat v2 = k.map_c.v - k.map_a.v;
+    vfloat across = fms(u1, v2, u2 * v1);
+    vfloat surface = sqrt(dot(area, area));
+    surface = max(surface, 1.0e-36F);
+    // Across the ray it asks for a square; on the surface that is as much longer as it is inclined.
+    vfloat inclined = max(cosine, 0.05F);
+    vfloat asked = (target * target) / inclined;
+    asked = asked / surface;
+    map.footprint = abs(across) * asked;
+    vfloat sign = select(across < vfloat(0.0F), vfloat(-1.0F), vfloat(1.0F));
+    vvec tangent = edge2 * v1;
+    map.along_u = (edge1 * v2 - tangent) * sign;
+    tangent = edge1 * u2;
+    map.along_v = (edge2 * u1 - tangent) * sign;
+    return map;
+}
+
+/// What a texture is filtered for: what the ray asked for; where one level serves all, what a ray of the
+/// camera asks for as far away.
+inline vfloat filtered_target(const Context& c, const vfloat& target, const vvec& way) {
+    sfloat fixed = load(field(c.frame, &FrameHeader::fixed_target));
+    if (branch(fixed > 0.0F)) {
+        vfloat base = load_broadcast(field(c.frame, &FrameHeader::camera_base));
+        vfloat growth = load_broadcast(field(c.frame, &FrameHeader::camera_growth));
+        vfloat distance = sqrt(dot(way, way));
+        return fma(growth, distance, abs(base));
+    }
+    return target;
+}
+
+} // namespace shade_kernel
+} // namespace razor::ISA_TARGET
