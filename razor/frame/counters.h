@@ -21,6 +21,11 @@ struct Counters {
     std::int64_t blended_blocks = 0; // blendings, for tests and for shading
     std::int64_t finest_blocks = 0;  // of the blocks made, those of level 0
     std::int64_t normal_blocks = 0;  // blocks whose normals were asked for
+    std::int64_t textured_hits = 0;  // that are shaded, where textures make something of the surface
+    std::int64_t shading_evaluations =
+        0;                             // of all of a surface's textures, at hits or at vertices (phase one)
+    std::int64_t grid_evaluations = 0; // of these, at vertices ...
+    std::int64_t grid_lanes = 0;       // ... in so many lanes
     std::int64_t pages_requested = 0;
     std::int64_t waits = 0;          // for what another worker was building
     std::int64_t steals = 0;         // of other workers' stretches of the screen ...
@@ -64,6 +69,10 @@ template <class Visit> void for_each_counter(const Counters& c, Visit visit) {
     visit("blended_blocks", c.blended_blocks);
     visit("finest_blocks", c.finest_blocks);
     visit("normal_blocks", c.normal_blocks);
+    visit("textured_hits", c.textured_hits);
+    visit("shading_evaluations", c.shading_evaluations);
+    visit("grid_evaluations", c.grid_evaluations);
+    visit("grid_lanes", c.grid_lanes);
     visit("pages_requested", c.pages_requested);
     visit("waits", c.waits);
     visit("steals", c.steals);

@@ -44,32 +44,51 @@ int packet_samples_log2(int samples) {
     return log2;
 }
 
+/// Calls visit(m) with the number of each of the scene's materials that the instance has, once or more often.
+template <class Visit> void each_material(const Scene& scene, const Instance& i, const Visit& visit) {
+    const auto known = [&](int m) {
+        if (m >= 0 && static_cast<std::size_t>(m) < scene.materials.size())
+            visit(static_cast<std::size_t>(m));
+    };
+    if (i.material >= 0)
+        return known(i.material);
+    for (const int material : scene.meshes[static_cast<std::size_t>(i.mesh)].face_materials)
+        known(material);
+}
+
 } // namespace
+
+std::int32_t Frame::Impl::shading_of(const Scene& scene, const Instance& i) const {
+    const int texcoords = texture_cage_of[static_cast<std::size_t>(i.mesh)] >= 0 ? 2 : 0;
+    int bits = 0, arrays = 0;
+    if (scene.settings.shading == Shading::grids)
+        bits = i.material < 0 ? face_map_bits[static_cast<std::size_t>(i.mesh)]
+                              : materials.map_bits[static_cast<std::size_t>(i.material)];
+    for (int map = 0; map < map_count; ++map)
+        arrays += (bits >> map & 1) != 0 ? shaded_arrays(map) : 0;
+    return pack_shading(texcoords, arrays, bits);
+}
 
 void Frame::Impl::take_materials(const Scene& scene) {
     std::vector<bool> used(scene.materials.size(), false);
     bool by_face = false;
-    const auto each_material = [&](const Instance& i, const auto& visit) {
-        if (i.material >= 0)
-            return visit(static_cast<std::size_t>(i.material));
-        for (const int material : scene.meshes[static_cast<std::size_t>(i.mesh)].face_materials)
-            visit(static_cast<std::size_t>(material));
-    };
     for (const Instance& i : geometry.instances) {
         by_face = by_face || i.material < 0;
-        each_material(i, [&](std::size_t m) {
-            if (m < used.size())
-                used[m] = true;
-        });
+        each_material(scene, i, [&](std::size_t m) { used[m] = true; });
     }
     materials = tabulate_materials(scene, used, by_face);
+    for (const Mesh& mesh : scene.meshes) {
+        face_map_bits.push_back(0);
+        for (const int m : mesh.face_materials)
+            face_map_bits.back() |= materials.map_bits[static_cast<std::size_t>(m)];
+    }
     texture_cage_of.assign(scene_meshes, -1);
     for (const Instance& i : geometry.instances) {
         const auto mesh = static_cast<std::size_t>(i.mesh);
         const Mesh& own = scene.meshes[mesh];
         std::size_t textured = used.size();
-        each_material(i, [&](std::size_t m) {
-            if (m < used.size() && materials.mapped[m])
+        each_material(scene, i, [&](std::size_t m) {
+            if (materials.map_bits[m] != 0)
                 textured = m;
         });
         if (textured == used.size() || texture_cage_of[mesh] >= 0)
@@ -133,7 +152,10 @@ void Frame::Impl::place_scene(const Scene& scene) {
 void Frame::Impl::place_materials(const Scene& scene) {
     plan.look = materials.look;
     header->cutouts = materials.cutouts ? 1 : 0;
-    header->slot_floats = slot_floats(meshes.size() > scene_meshes);
+    int shaded = 0;
+    for (std::size_t n = 0; n < geometry.instances.size(); ++n)
+        shaded = std::max(shaded, shaded_arrays_in(shading_of(scene, geometry.instances[n])));
+    header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded);
     if (plan.look == look_matte)
         return;
     const auto copy = [&](const auto& table, auto& to, const char* structure) {
@@ -241,7 +263,7 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
         r.albedo[k] = albedo[k];
     r.material = i.material;
     const int cage = texture_cage_of[mesh];
-    r.shading_planes = cage >= 0 ? 2 : 0;
+    r.shading = shading_of(scene, i);
     if (cage >= 0)
         r.texture_faces = static_cast<std::int32_t>(first_face[static_cast<std::size_t>(cage)]) -
                           static_cast<std::int32_t>(first_face[mesh]);

@@ -53,6 +53,7 @@ struct Frame::Impl {
     std::vector<Mesh> meshes;
     std::vector<Topology> topologies;
     std::size_t scene_meshes = 0;
+    std::vector<int> face_map_bits;   // of each mesh of the scene whose faces have materials: of all of them
     std::vector<int> texture_cage_of; // of each mesh of the scene, -1: none
     MaterialTables materials;
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
@@ -115,6 +116,7 @@ struct Frame::Impl {
     }
     /// Which materials are used, and what for that.
     void take_materials(const Scene& scene);
+    std::int32_t shading_of(const Scene& scene, const Instance& i) const; // InstanceRecord::shading
     void count_records(const Scene& scene);
     void size_arenas();
     void size_bounded_arenas();

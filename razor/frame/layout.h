@@ -179,9 +179,8 @@ struct InstanceRecord {
     float linear[9];    // rows: of the map from mesh coordinates to the instance's own ...
     float offset[3];    // ... and what rounding the origin left over
     float albedo[3];
-    std::int32_t material; // where the frame has materials; -1: see FrameHeader::face_materials
-    std::int32_t
-        shading_planes; // arrays that follow the normals of a block: texture coordinates u, v, or none
+    std::int32_t material;      // where the frame has materials; -1: see FrameHeader::face_materials
+    std::int32_t shading;       // which arrays follow the normals of a block: see pack_shading()
     std::int32_t texture_faces; // from the mesh's faces to those of its texture cage
 };
 static_assert(sizeof(InstanceRecord) == 128);

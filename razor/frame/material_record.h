@@ -15,9 +15,10 @@ struct alignas(line_bytes) MaterialRecord {
     float coat, coat_roughness;
     float emission[3];
     float normal_scale;
-    std::int32_t map[5]; // of each MaterialMap: a MapRecord, or -1
-    float alpha_cutoff;  // 0: nothing is cut out
-    std::int32_t padding[11];
+    std::int32_t map[5];   // of each MaterialMap: a MapRecord, or -1
+    float alpha_cutoff;    // 0: nothing is cut out
+    std::int32_t map_bits; // of the maps that it has: 1 << MaterialMap
+    std::int32_t padding[10];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
@@ -29,6 +30,28 @@ enum MaterialMap : std::int32_t {
     map_normal,
     map_count
 };
+
+/// What textures make of a surface at vertices of its grids, before any ray is shaded there (phase one): an
+/// instance's maps of which some material has one, as bits 1 << MaterialMap, and the arrays that each needs.
+constexpr int shaded_arrays(int map) {
+    return map == map_metallic || map == map_roughness ? 1 : 3;
+}
+inline constexpr int most_shaded_arrays = 11;
+
+/// InstanceRecord::shading: arrays of texture coordinates that follow the normals of a block, 0 or 2; arrays
+/// of what is shaded that follow those, in the order of MaterialMap; the bits.
+constexpr std::int32_t pack_shading(int texcoords, int arrays, int bits) {
+    return texcoords | arrays << 4 | bits << 8;
+}
+template <class Int> constexpr Int texcoord_arrays(Int shading) {
+    return shading & 15;
+}
+template <class Int> constexpr Int shaded_arrays_in(Int shading) {
+    return (shading >> 4) & 15;
+}
+template <class Int> constexpr Int shaded_bits(Int shading) {
+    return shading >> 8;
+}
 
 /// A texture where a material uses it: at (row_u . (u, v, 1), row_v . (u, v, 1)).
 struct MapRecord {

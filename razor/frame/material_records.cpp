@@ -59,19 +59,18 @@ public:
     void add(const Material& m, bool used) {
         MaterialRecord r = material_record(m);
         const auto maps = maps_of(m);
-        bool any = false;
         for (std::size_t k = 0; used && k < maps.size(); ++k)
             if (maps[k]->texture >= 0) {
                 r.map[k] = static_cast<std::int32_t>(t.maps.size());
                 t.maps.push_back(map_record(*maps[k], texture(maps[k]->texture)));
-                any = true;
+                r.map_bits |= 1 << k;
             }
         if (r.map[map_albedo] >= 0 && m.alpha_cutoff > 0) {
             const std::int32_t number = t.maps[static_cast<std::size_t>(r.map[map_albedo])].texture;
             add_opacity(m.albedo_map.texture, t.textures[static_cast<std::size_t>(number)]);
             r.alpha_cutoff = m.alpha_cutoff;
         }
-        t.mapped.push_back(any);
+        t.map_bits.push_back(r.map_bits);
         t.materials.push_back(r);
     }
 
@@ -145,7 +144,7 @@ MaterialTables tabulate_materials(const Scene& scene, const std::vector<bool>& u
         const Material& m = scene.materials[i];
         tables.add(m, used[i]);
         glossy = glossy || (used[i] && !(is_matte(m) && m.emission == glm::vec3(0)));
-        mapped = mapped || tables.t.mapped.back();
+        mapped = mapped || tables.t.map_bits.back() != 0;
     }
     if (scene.sky_map.texture >= 0) {
         tables.add_sky(scene.sky_map);

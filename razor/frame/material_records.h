@@ -12,7 +12,7 @@ namespace razor {
 /// Of the materials that something drawn has; others take no room but their records.
 struct MaterialTables {
     Look look = look_matte;
-    std::vector<bool> mapped; // of each material, whether it has maps
+    std::vector<int> map_bits; // of each material, the maps that it has: 1 << MaterialMap
     std::vector<MaterialRecord> materials;
     std::vector<MapRecord> maps;
     std::vector<TextureRecord> textures;

@@ -13,6 +13,7 @@ struct Shape {
     sint stride;        // vertices
     sbool parts;        // have boxes, before the normals
     sint corners_at, cells_at, ancestors_at, middles_at, normals_at, lines;
+    sint shaded_at; // a BuildState, behind what is shaded; 0: nothing is
     sint triangles;
 };
 
@@ -53,10 +54,19 @@ inline Shape block_shape(const Dicing& d) {
     s.parts = s.parts & (max(d.nu, d.nv) >= block_log2);
     words = words + select(s.parts, sint(parts_words), sint(0));
     // Normals; what lies on vertices besides follows them, and brings them along where they are not needed.
-    sbool plain = flat & (d.shading_planes == 0);
+    // Flat patches have no vertices inside, so nothing is shaded at theirs.
+    sint texcoords = texcoord_arrays(d.shading);
+    sbool plain = flat & (texcoords == 0);
     s.normals_at = select(plain, sint(0), words);
     words = words + select(plain, sint(0), vertex_words);
-    words = words + s.stride * d.shading_planes;
+    words = words + s.stride * texcoords;
+    s.shaded_at = 0;
+    if (branch(d.shading > texcoords)) {
+        sint arrays = select(flat, sint(0), shaded_arrays_in(d.shading));
+        words = words + s.stride * arrays;
+        s.shaded_at = select(arrays > 0, words, sint(0));
+        words = words + 1;
+    }
     s.lines = (words + 15) >> 4;
     s.triangles = select(d.kind == static_cast<int>(PatchKind::flat_triangle), sint(1), sint(2));
     return s;

@@ -2,8 +2,8 @@
 // cutoff, nothing is there (glTF 2.0, alpha mode MASK).
 #pragma once
 
-#include "razor/kernels/mapped.h"
 #include "razor/kernels/packet.h"
+#include "razor/kernels/shade.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -16,8 +16,8 @@ inline constexpr float hole_step = 1.0e-6F;
 /// Of these hits, which lie in holes.
 [[gnu::noinline]] inline vmask find_holes(const Context& c, const Rays& r, const Hits& h) {
     Beyond beyond;
-    Surface s = find_surface<look_mapped>(c, r, h, beyond);
-    Materials of = materials_of(c, beyond, s.hit);
+    Surface s = find_surface<look_mapped>(c, r, h, false, beyond);
+    Materials of = materials_of(c, beyond.material, s.hit);
     vfloat cutoff = of.number(&MaterialRecord::alpha_cutoff);
     vmask may = s.hit & (cutoff > vfloat(0.0F));
     if (branch(none(may)))

@@ -24,7 +24,7 @@ struct Dicing {
     Side side[4];
     sint level = 0, coarsest = 0; // the level, and the last one that the patch has
     sint nu = 0, nv = 0;          // exponents of the grid
-    sint shading_planes;          // see InstanceRecord
+    sint shading;                 // see InstanceRecord
 };
 
 inline sint half(const Side& side) {
@@ -53,7 +53,7 @@ inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint p
     d.kind = load(field(d.record, &PatchRecord::kind));
     d.face = load(field(d.record, &PatchRecord::face));
     d.sub = load(field(d.record, &PatchRecord::sub));
-    d.shading_planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
+    d.shading = load(field(c.instances + instance, &InstanceRecord::shading));
     if (branch(is_flat(d)))
         return d;
     // Edges of bilinear patches are straight at every level: one flat ancestor, the whole edge.

@@ -1,8 +1,7 @@
 // The triangles that rays hit, as these see them.
 #pragma once
 
-#include "razor/kernels/mapping.h"
-#include "razor/kernels/normals.h"
+#include "razor/kernels/shading_grid.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -39,20 +38,22 @@ inline TriangleWords locate(const Context& c, const Hits& h, const vmask& m) {
     return t;
 }
 
-inline void copy_corner_texcoords(pointer<float> own, sint quads_u, sint quads_v, sint stride,
-                                  pointer<float> out) {
-    for (int k = 0; k < 4; ++k) {
-        sint vertex = corner_vertex(k, quads_u, quads_v);
-        sfloat u = load(own + vertex);
-        store(out + vertex, u);
-        sfloat v = load(own + stride + vertex);
-        store(out + stride + vertex, v);
+/// Arrays of one number a vertex, blended as normals are, by the same weights: what lies at the corners.
+inline void copy_corners(pointer<float> own, sint quads_u, sint quads_v, sint stride, sint arrays,
+                         pointer<float> out) {
+    for (sint a = 0; branch(a < arrays); ++a) {
+        for (int k = 0; k < 4; ++k) {
+            sint vertex = corner_vertex(k, quads_u, quads_v);
+            store(out + vertex, load(own + vertex));
+        }
+        own = own + stride;
+        out = out + stride;
     }
 }
-/// Of one pass' vertices, as normals are.
-inline void blend_texcoords(pointer<float> own, const BlendStep& s, const vfloat& weight, sint stride,
-                            pointer<float> out, const vmask& m) {
-    for (int k = 0; k < 2; ++k) {
+/// Of one pass' vertices.
+inline void blend_arrays(pointer<float> own, const BlendStep& s, const vfloat& weight, sint stride,
+                         sint arrays, pointer<float> out, const vmask& m) {
+    for (sint a = 0; branch(a < arrays); ++a) {
         vfloat at = gather(own, s.vertex, m);
         vfloat one = gather(out, s.one, m);
         vfloat other = gather(out, s.other, m);
@@ -63,8 +64,26 @@ inline void blend_texcoords(pointer<float> own, const BlendStep& s, const vfloat
     }
 }
 
+/// What lies on vertices beside normals: where in the block, where in a slot, and how many arrays.
+struct Attribute {
+    pointer<float> own, out;
+    sint arrays = 0;
+};
+/// Texture coordinates; and what is shaded, which is there once this returns, if the camera's field is the
+/// slot's.
+inline void find_attributes(const Context& c, pointer<BlockHeader> block, pointer<float> normals,
+                            pointer<float> slot, Attribute (&found)[2]) {
+    sint instance = load(field(block, &BlockHeader::instance));
+    sint shading = load(field(c.instances + instance, &InstanceRecord::shading));
+    sint stride = load(field(block, &BlockHeader::stride));
+    found[0] = {normals + stride * 3, slot + slot_texcoords, texcoord_arrays(shading)};
+    sint number = load(as<std::int32_t>(slot) + slot_field);
+    if (branch((shaded_bits(shading) != 0) & (number == camera_number)))
+        found[1] = {ensure_shaded(c, block, normals, shading), slot + slot_shaded, shaded_arrays_in(shading)};
+}
+
 /// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them;
-/// Mapped: also texture coordinates.
+/// Mapped: also texture coordinates and what is shaded.
 template <bool Mapped>
 inline void blend_normals(const Context& c, sint line, pointer<float> normals, pointer<float> slot) {
     pointer<float> area = slot + slot_block;
@@ -81,14 +100,11 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
         store(x + stride + vertex, n.y);
         store(x + stride * 2 + vertex, n.z);
     }
-    sint planes = 0;
+    Attribute attribute[2];
     if constexpr (Mapped) {
-        sint instance = load(field(block, &BlockHeader::instance));
-        planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
-    }
-    if constexpr (Mapped) {
-        if (branch(planes != 0))
-            copy_corner_texcoords(normals + stride * 3, quads_u, quads_v, stride, slot + slot_texcoords);
+        find_attributes(c, block, normals, slot, attribute);
+        for (const Attribute& a : attribute)
+            copy_corners(a.own, quads_u, quads_v, stride, a.arrays, a.out);
     }
     pointer<std::int32_t> pass = blend_table(c, quads_u, quads_v);
     for (int p = 0; p < blend_passes; ++p) {
@@ -103,8 +119,8 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
             vvec q = blend_vertex(weight, own, one, other);
             scatter_vec(x, stride, s.vertex, q, m);
             if constexpr (Mapped) {
-                if (branch(planes != 0))
-                    blend_texcoords(normals + stride * 3, s, weight, stride, slot + slot_texcoords, m);
+                for (const Attribute& a : attribute)
+                    blend_arrays(a.own, s, weight, stride, a.arrays, a.out, m);
             }
         }
         pass = pass + pass_words;
@@ -179,19 +195,24 @@ inline void gather_texcoord(pointer<float> texcoords, const vint& corner, const 
     at.v = select(here, v, at.v);
 }
 
-/// Block after block.
+/// Block after block. `known`: what textures make of the triangles, where that is shaded at vertices, if
+/// `on_grids`; Mapped only.
 template <bool Mapped, bool Glossy>
-inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, const vmask& hit) {
+inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, const vmask& hit,
+                              sbool on_grids, Shaded& known) {
     TriangleWords t = locate(c, h, hit);
     vfloat zero(0.0F);
     vvec none_yet{zero, zero, zero};
     Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero, zero, {}, {}, {}};
-    if constexpr (Mapped)
+    if constexpr (Mapped) {
         k.map_a = k.map_b = k.map_c = {zero, zero};
+        known = nothing_shaded();
+    }
     vint first_word = h.block << 4;
-    vint at_a = t.a - first_word;
-    vint at_b = t.b - first_word;
-    vint at_c = t.c - first_word;
+    HitCorners at;
+    at.a = t.a - first_word;
+    at.b = t.b - first_word;
+    at.c = t.c - first_word;
     for (vmask left = hit; branch(any(left));) {
         sint one = first(left);
         sint block = extract(h.block, one);
@@ -200,69 +221,83 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
         here = here & (h.field == vint(lane));
         left = left & !here;
         pointer<float> words = as<float>(c.grids + block);
-        sint corners_at = load(field(as<BlockHeader>(words), &BlockHeader::corners_at));
+        pointer<BlockHeader> header = as<BlockHeader>(words);
+        sint corners_at = load(field(header, &BlockHeader::corners_at));
         if (branch(corners_at != no_vertex_moves)) {
-            pointer<float> sways = field(as<BlockHeader>(words), &BlockHeader::sway);
+            pointer<float> sways = field(header, &BlockHeader::sway);
             k.sway = select(here, load_broadcast(sways), k.sway);
             if constexpr (Glossy)
                 k.sway_above = select(here, load_broadcast(sways + 1), k.sway_above);
         }
         sint normals_at = ensure_normals(c, block);
-        sint planes = 0;
+        pointer<float> vertices = words + block_header_words;
+        pointer<float> normals = words + normals_at;
+        [[maybe_unused]] sint shading = 0;
+        [[maybe_unused]] sint stride = 0;
+        [[maybe_unused]] sbool on_grid = false;
         if constexpr (Mapped) {
-            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
-            planes = load(field(c.instances + instance, &InstanceRecord::shading_planes));
+            sint instance = load(field(header, &BlockHeader::instance));
+            shading = load(field(c.instances + instance, &InstanceRecord::shading));
+            stride = load(field(header, &BlockHeader::stride));
+            if (branch(on_grids))
+                on_grid = has_shaded_grid(c, header, shading);
         }
-        const auto find_texcoords = [&](pointer<float> texcoords) {
-            if (branch(planes != 0)) {
-                gather_texcoord(texcoords, at_a, t.stride, here, k.map_a);
-                gather_texcoord(texcoords, at_b, t.stride, here, k.map_b);
-                gather_texcoord(texcoords, at_c, t.stride, here, k.map_c);
+        [[maybe_unused]] const auto find_texcoords = [&](pointer<float> texcoords) {
+            if (branch(texcoord_arrays(shading) != 0)) {
+                gather_texcoord(texcoords, at.a, t.stride, here, k.map_a);
+                gather_texcoord(texcoords, at.b, t.stride, here, k.map_b);
+                gather_texcoord(texcoords, at.c, t.stride, here, k.map_c);
             }
         };
         if (branch(lane < -1)) {
             BlockPair p = block_pair<Mapped>(c, block, lane, normals_at);
             Scale scale = scale_of(c, r);
-            sint instance = load(field(as<BlockHeader>(words), &BlockHeader::instance));
+            sint instance = load(field(header, &BlockHeader::instance));
             svec origin = load_svec(field(c.instances + instance, &InstanceRecord::origin));
             vvec from = r.origin - broadcast(origin);
-            find_between(p, scale, from, lane, at_a, t.stride, normals_at, here, k.a, k.at_a);
-            find_between(p, scale, from, lane, at_b, t.stride, normals_at, here, k.b, k.at_b);
-            find_between(p, scale, from, lane, at_c, t.stride, normals_at, here, k.c, k.at_c);
+            find_between(p, scale, from, lane, at.a, t.stride, normals_at, here, k.a, k.at_a);
+            find_between(p, scale, from, lane, at.b, t.stride, normals_at, here, k.b, k.at_b);
+            find_between(p, scale, from, lane, at.c, t.stride, normals_at, here, k.c, k.at_c);
             k.normal = select(here, blend(k.at_a, k.at_b, k.at_c, h), k.normal);
             if constexpr (Mapped) { // as they are at the anchors
-                sint after = load(field(as<BlockHeader>(words), &BlockHeader::stride)) * 3;
-                find_texcoords(words + normals_at + after);
+                find_texcoords(normals + stride * 3);
+                if (branch(on_grid)) {
+                    pointer<float> shaded = ensure_shaded(c, header, normals, shading);
+                    find_shaded(shaded, stride, shading, h, at, here, known);
+                }
             }
             continue;
         }
-        pointer<float> vertices = words + block_header_words;
-        pointer<float> normals = words + normals_at;
-        pointer<float> texcoords = normals;
-        if constexpr (Mapped) {
-            sint after = load(field(as<BlockHeader>(words), &BlockHeader::stride)) * 3;
-            texcoords = normals + after;
-        }
+        [[maybe_unused]] pointer<float> texcoords = normals;
+        [[maybe_unused]] pointer<float> shaded = normals;
+        if constexpr (Mapped)
+            texcoords = normals + stride * 3;
         if (branch(lane >= 0)) {
             pointer<float> slot = blended_slot(c, lane, block);
             vertices = slot + (slot_block + block_header_words);
             if (branch(normals_at != 0))
                 normals = blended_normals<Mapped>(c, block, normals, slot);
             texcoords = slot + slot_texcoords;
+            shaded = slot + slot_shaded;
+        } else if constexpr (Mapped) {
+            if (branch(on_grid))
+                shaded = ensure_shaded(c, header, normals, shading);
         }
         if constexpr (Mapped) {
             find_texcoords(texcoords);
+            if (branch(on_grid))
+                find_shaded(shaded, stride, shading, h, at, here, known);
         }
-        vvec a = gather_vec(vertices, at_a, t.stride, here);
-        vvec b = gather_vec(vertices, at_b, t.stride, here);
-        vvec d = gather_vec(vertices, at_c, t.stride, here);
+        vvec a = gather_vec(vertices, at.a, t.stride, here);
+        vvec b = gather_vec(vertices, at.b, t.stride, here);
+        vvec d = gather_vec(vertices, at.c, t.stride, here);
         k.a = select(here, a, k.a);
         k.b = select(here, b, k.b);
         k.c = select(here, d, k.c);
         if (branch(normals_at != 0)) {
-            vvec na = gather_vec(normals, at_a, t.stride, here);
-            vvec nb = gather_vec(normals, at_b, t.stride, here);
-            vvec nc = gather_vec(normals, at_c, t.stride, here);
+            vvec na = gather_vec(normals, at.a, t.stride, here);
+            vvec nb = gather_vec(normals, at.b, t.stride, here);
+            vvec nc = gather_vec(normals, at.c, t.stride, here);
             k.at_a = select(here, na, k.at_a);
             k.at_b = select(here, nb, k.at_b);
             k.at_c = select(here, nc, k.at_c);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "razor/kernels/glossy.h"
-#include "razor/kernels/mapped.h"
+#include "razor/kernels/shade.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -35,23 +35,26 @@ struct Onward {
 template <bool Mapped>
 inline Glossy find_lobes(const Context& c, Surface& s, const Beyond& b, const Onward& onward,
                          Colours& colours) {
-    Materials of = materials_of(c, b, s.hit);
-    colours.albedo = of.colour(&MaterialRecord::albedo);
-    colours.emission = of.colour(&MaterialRecord::emission);
-    vfloat metallic = of.number(&MaterialRecord::metallic);
-    vfloat roughness = of.number(&MaterialRecord::roughness);
+    Materials of = materials_of(c, b.material, s.hit);
+    vfloat metallic, roughness;
+    if constexpr (Mapped) {
+        count_evaluations(c, of, b.known);
+        colours.albedo = mapped_colour_of(c, of, &MaterialRecord::albedo, map_albedo, b.map, b.known);
+        colours.emission = mapped_colour_of(c, of, &MaterialRecord::emission, map_emission, b.map, b.known);
+        metallic = mapped_metallic(c, of, b.map, b.known);
+        roughness = mapped_roughness(c, of, b.map, b.known);
+    } else {
+        colours.albedo = of.colour(&MaterialRecord::albedo);
+        colours.emission = of.colour(&MaterialRecord::emission);
+        metallic = of.number(&MaterialRecord::metallic);
+        roughness = of.number(&MaterialRecord::roughness);
+    }
     vfloat specular = of.number(&MaterialRecord::specular);
     vfloat reflection = of.number(&MaterialRecord::normal_reflection);
     vfloat ior = of.number(&MaterialRecord::ior);
     vfloat transmission = of.number(&MaterialRecord::transmission);
     vfloat coat = of.number(&MaterialRecord::coat);
     vfloat coat_roughness = of.number(&MaterialRecord::coat_roughness);
-    if constexpr (Mapped) {
-        colours.albedo = times(colours.albedo, of.mapped(c, map_albedo, b.map));
-        colours.emission = times(colours.emission, of.mapped(c, map_emission, b.map));
-        metallic = metallic * of.mapped(c, map_metallic, b.map).z;
-        roughness = roughness * of.mapped(c, map_roughness, b.map).y;
-    }
     vfloat one(1.0F);
     vfloat zero(0.0F);
     vfloat most = max(metallic, specular);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "razor/kernels/light.h"
-#include "razor/kernels/mapped.h"
+#include "razor/kernels/shade.h"
 #include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/sky_map.h"
 
@@ -34,14 +34,14 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     if (branch(none(hit)))
         return;
     Beyond beyond;
-    Surface s = find_surface < Mapped ? look_mapped : look_matte > (c, r, h, beyond);
+    Surface s = find_surface < Mapped ? look_mapped : look_matte > (c, r, h, true, beyond);
     s.pixel = pixel;
     s.sample = sample;
     if constexpr (Mapped) {
-        Materials of = materials_of(c, beyond, hit);
-        vvec own = of.colour(&MaterialRecord::albedo);
-        s.albedo = times(own, of.mapped(c, map_albedo, beyond.map));
-        bend_normals(c, beyond, s);
+        Materials of = materials_of(c, beyond.material, hit);
+        count_evaluations(c, of, beyond.known);
+        s.albedo = mapped_colour_of(c, of, &MaterialRecord::albedo, map_albedo, beyond.map, beyond.known);
+        bend_normals(c, of, beyond, s);
     }
     sums.normal = sums.normal + select(hit, s.shading, {zero, zero, zero});
     sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});

@@ -54,7 +54,7 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
     b.quads_u = load(field(header, &BlockHeader::quads_u));
     b.stride = load(field(header, &BlockHeader::stride));
     pointer<float> out = as<float>(c.grids + line) + normals_at;
-    if (branch(d.shading_planes != 0)) {
+    if (branch(texcoord_arrays(d.shading) != 0)) {
         sint shift = load(field(c.instances + instance, &InstanceRecord::texture_faces));
         make_texcoords(c, g, d, b, shift, out + b.stride * 3);
     }

@@ -139,12 +139,12 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         if (branch(none(hit)))
             return;
         Beyond beyond;
-        Surface s = find_surface < Mapped ? look_glossy_mapped : look_glossy > (c, r, h, beyond);
+        Surface s = find_surface < Mapped ? look_glossy_mapped : look_glossy > (c, r, h, n == 0, beyond);
         s.hit = hit;
         s.pixel = pixel + vint(n * std::int32_t(bounce_step));
         s.sample = sample;
         if constexpr (Mapped)
-            bend_normals(c, beyond, s);
+            bend_normals(c, materials_of(c, beyond.material, hit), beyond, s);
         Onward onward{n < bounces, n < diffuse_bounces};
         Colours colours;
         Glossy g = find_lobes<Mapped>(c, s, beyond, onward, colours);

@@ -4,6 +4,7 @@
 #include "razor/frame/kernel_table.h"
 #include "razor/kernels/differentials.h"
 #include "razor/kernels/hit_triangles.h"
+#include "razor/kernels/mapped.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -81,6 +82,7 @@ struct Beyond {
     vvec position; // moved off the surface to the side that the viewer is not on
     vfloat curvature; // see curvature_of()
     vint material;    // its number
+    Shaded known;     // what textures make of it, where that was found at vertices
 };
 
 /// Of the faces hit; `record`: word of their instances.
@@ -99,16 +101,17 @@ inline vint face_material(const Context& c, const Hits& h, const vint& record, c
     return gather(materials, face, m);
 }
 
-/// `beyond` is filled in for looks that need it.
+/// `beyond` is filled in for looks that need it. `on_grids`: the rays are the camera's, and find what
+/// textures make of surfaces at the vertices of their grids.
 template <Look L>
-[[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h,
+[[gnu::noinline]] inline Surface find_surface(const Context& c, const Rays& r, const Hits& h, sbool on_grids,
                                               Beyond& beyond) {
     phase_scope phase(phase_shade);
     Surface s;
     s.hit = h.patch >= vint(0);
     constexpr bool mapped = L == look_mapped || L == look_glossy_mapped;
     constexpr bool glossy = L == look_glossy || L == look_glossy_mapped;
-    Corners k = find_triangles<mapped, glossy>(c, r, h, s.hit);
+    Corners k = find_triangles<mapped, glossy>(c, r, h, s.hit, on_grids, beyond.known);
     vvec toward = r.direction * vfloat(-1.0F);
     vvec edge1 = k.b - k.a;
     vvec edge2 = k.c - k.a;
@@ -164,6 +167,7 @@ template <Look L>
         vmask of_face = s.hit & (beyond.material < vint(0));
         if (branch(any(of_face)))
             beyond.material = select(of_face, face_material(c, h, record, of_face), beyond.material);
+        beyond.known.normal = beyond.known.normal * side;
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;
@@ -182,6 +186,19 @@ template <Look L>
         beyond.before = madd(max(back, rounding), toward, p);
     }
     return s;
+}
+
+/// Shading normals as normal maps bend them.
+inline void bend_normals(const Context& c, const Materials& of, const Beyond& b, Surface& s) {
+    vmask there = b.known.knows(map_normal);
+    s.shading = select(there, normalise(b.known.normal, s.shading), s.shading);
+    vint map = of.map(map_normal, s.hit);
+    vmask has = s.hit & (map >= vint(0));
+    has = has & !there;
+    if (branch(none(has)))
+        return;
+    vvec bent = bend_normal(c, of, map, b.map, s.shading * b.side, has) * b.side;
+    s.shading = select(has, normalise(bent, s.shading), s.shading);
 }
 
 } // namespace shade_kernel

@@ -47,6 +47,8 @@ inline Block begin_block(const Context& c, const Dicing& d, const Shape& s, sint
     store_release(field(h, &BlockHeader::normals), absent);
     store_release(field(h, &BlockHeader::children), absent);
     store_release(field(h, &BlockHeader::seen), absent);
+    if (branch(s.shaded_at != 0))
+        store_release(as<shared_int>(b.words + s.shaded_at), absent);
     // Only sides on the patch's border can hang.
     sbool border[4] = {row == 0, column == s.columns - 1, row == s.rows - 1, column == 0};
     sint hangs = 0;

@@ -3,7 +3,7 @@
 // them. At hits and not at vertices, as flat patches have none inside.
 #pragma once
 
-#include "razor/kernels/shade.h"
+#include "razor/kernels/mapping.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {

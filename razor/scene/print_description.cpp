@@ -111,8 +111,9 @@ std::string to_toml(const SceneDescription& description) {
     if (const Crop& crop = settings.crop; crop != Crop{}) {
         fmt::format_to(out, "crop = [{}, {}, {}, {}]\n", crop.x, crop.y, crop.width, crop.height);
     }
-    fmt::format_to(out, "edge_pixels = {}\nlod = {}\n", toml_number(settings.edge_pixels),
-                   toml_text(word_of(lod_words, settings.lod)));
+    fmt::format_to(out, "edge_pixels = {}\nlod = {}\nshading = {}\n", toml_number(settings.edge_pixels),
+                   toml_text(word_of(lod_words, settings.lod)),
+                   toml_text(word_of(shading_words, settings.shading)));
     text += to_toml(settings.filter);
     if (description.camera_from) {
         print_camera(text, description.camera, *description.camera_from);

@@ -159,8 +159,13 @@ struct Crop {
     bool operator==(const Crop&) const = default;
 };
 
+/// Where what textures make of surfaces is found: at vertices of the grids that camera rays hit, as far as
+/// surfaces have any, and at other hits; or at hits only.
+enum class Shading : std::uint8_t { grids, hits };
+
 struct Settings {
     LevelOfDetail lod{};
+    Shading shading = Shading::grids;
     int width = 512, height = 512; // pixels
     Crop crop{};                   // what is rendered of them; without width and height: all
     Filter filter{};               // what pixels are of the light about them

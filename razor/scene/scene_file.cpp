@@ -54,6 +54,7 @@ Settings read_settings(TomlTable table) {
     settings.seed = table.whole("seed", settings.seed, seed_range);
     settings.edge_pixels = table.number("edge_pixels", settings.edge_pixels, edge_pixels_range);
     settings.lod = choose(table, "lod", settings.lod, lod_words);
+    settings.shading = choose(table, "shading", settings.shading, shading_words);
     table.finish();
     return settings;
 }

@@ -39,6 +39,11 @@ inline constexpr std::array<Word<FilterKind>, 5> filter_words{{
     {"lanczos", FilterKind::lanczos},
 }};
 
+inline constexpr std::array<Word<Shading>, 2> shading_words{{
+    {"grids", Shading::grids},
+    {"hits", Shading::hits},
+}};
+
 inline constexpr std::array<Word<Projection>, 2> projection_words{{
     {"perspective", Projection::perspective},
     {"orthographic", Projection::orthographic},
