@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Writes the four benchmark scenes beside itself: courtyard, interior, forest and showcase (.toml), all animated.
+"""Writes the four benchmark scenes beside itself: courtyard, interior, forest and showcase (.toml), all animated; and the
+same with patterns and bumps on most surfaces (-textured.toml).
 
     configs/scenes/benchmark.py            # writes them
     configs/scenes/benchmark.py --check    # says which of them are not what it would write
@@ -8,6 +9,7 @@ They stand in for the kinds of scenes that ray tracers are measured by: many wal
 of which one room is seen, a forest, smooth creased shapes. All is made of shapes that Razor makes by itself. Lengths are
 metres, times seconds.
 """
+import itertools
 import math
 import os
 import random
@@ -17,8 +19,11 @@ import sys
 class Scene:
     """Text of a scene file, table by table."""
 
-    def __init__(self, name, about, scheme):
+    def __init__(self, name, about, scheme, textured):
         self.scheme = scheme
+        self.textured = textured
+        if textured:
+            name, about = f"{name}-textured", about + ["With patterns and bumps."]
         self.text = [f"# {line}" for line in about] + [f'name = "{name}"']
 
     def table(self, header, **values):
@@ -117,6 +122,23 @@ def facing(way, centre, across, up, radiance):
             "radiance": radiance}
 
 
+# Of materials: the pattern, how much darker and brighter than the material it gets, how high it is, and what else it is.
+PATTERNS = {
+    "paving": ("noise", 0.5, 0.02, {"size": 0.3}), "wall": ("bricks", 0.35, 0.03, {"size": 0.6, "amount": 0.06}),
+    "stone": ("turbulence", 0.4, 0.02, {"size": 0.25}), "cloth": ("checker", 0.5, 0.0, {"size": 0.06}),
+    "linen": ("noise", 0.25, 0.0, {"size": 0.05, "octaves": 3}), "rust": ("noise", 0.6, 0.0, {"size": 0.12}),
+    "plaster": ("noise", 0.12, 0.01, {"size": 0.4}), "floor": ("wood", 0.35, 0.0, {"size": 0.08, "amount": 0.6}),
+    "wood": ("wood", 0.4, 0.0, {"size": 0.05, "amount": 0.8}), "carpet": ("checker", 0.3, 0.0, {"size": 0.2}),
+    "soil": ("noise", 0.7, 0.1, {"size": 0.6}), "bark": ("turbulence", 0.6, 0.03, {"size": 0.12}),
+    "needles": ("noise", 0.5, 0.0, {"size": 0.3, "octaves": 3}), "leaves": ("noise", 0.5, 0.0, {"size": 0.2, "octaves": 3}),
+    "grass": ("noise", 0.5, 0.0, {"size": 0.1, "octaves": 3}), "fur": ("turbulence", 0.6, 0.0, {"size": 0.1}),
+    "marble": ("marble", 0.4, 0.0, {"size": 0.5, "amount": 2.5}), "jade": ("marble", 0.5, 0.0, {"size": 0.6, "amount": 1.5}),
+    "copper": ("noise", 0.5, 0.03, {"size": 0.15}), "ivory": ("wood", 0.15, 0.0, {"size": 0.1, "amount": 1.0}),
+    "ink": ("turbulence", 0.8, 0.05, {"size": 0.25}), "saffron": ("noise", 0.4, 0.04, {"size": 0.12}),
+    "rose": ("turbulence", 0.5, 0.0, {"size": 0.2}), "hall": ("checker", 0.2, 0.0, {"size": 1.0}),
+}
+
+
 def head(scene, camera, lights, background, materials, size=(1024, 1024)):
     """A frame takes 36 rays a pixel where nothing faces away: 4 samples, each with 4 to each of two lights."""
     scene.table("[settings]", size=list(size), samples=4, light_samples=4, sky_samples=0)
@@ -125,12 +147,22 @@ def head(scene, camera, lights, background, materials, size=(1024, 1024)):
     scene.table("[sky]", radiance=background)
     for light in lights:
         scene.table("[[light]]", **light)
+    patterns = {name: PATTERNS[name] for name in materials if name in PATTERNS and scene.textured}
+    for name, (pattern, depth, bump, values) in patterns.items():
+        albedo = materials[name]
+        scene.table("[[texture]]", name=name, pattern=pattern, low=[round(x * (1 - depth), 3) for x in albedo],
+                    high=[round(min(x * (1 + depth), 1), 3) for x in albedo], **values)
     for name, albedo in materials.items():
-        scene.table("[[material]]", name=name, albedo=albedo)
+        if name not in patterns:
+            scene.table("[[material]]", name=name, albedo=albedo)
+        elif patterns[name][2] == 0:
+            scene.table("[[material]]", name=name, albedo_map=name)
+        else:
+            scene.table("[[material]]", name=name, albedo_map=name, bump_map=name, bump=patterns[name][2])
 
 
-def courtyard():
-    scene = Scene("courtyard", ["64 figures walk in a walled court. Written by benchmark.py."], "bilinear")
+def courtyard(textured=False):
+    scene = Scene("courtyard", ["64 figures walk in a walled court. Written by benchmark.py."], "bilinear", textured)
     head(scene, {"position": [10.6, 4.3, 11.0], "target": [0.0, 0.3, 0.0], "fov": 54},
          [{"corner": [-26.0, 30.0, 8.0], "edge_u": [6.0, 6.0, 0.0], "edge_v": [-3.5355, 3.5355, 6.0], "radiance": [190, 170, 140]},
           facing([-3, -6, -4], [14.0, 30.0, 18.0], 8.0, 1.0, [1.0, 1.15, 1.35])],
@@ -178,9 +210,9 @@ def courtyard():
     return scene
 
 
-def interior():
+def interior(textured=False):
     scene = Scene("interior", ["A house of twenty rooms with two people in each; the camera is in one room. Written by benchmark.py."],
-                  "bilinear")
+                  "bilinear", textured)
     head(scene, {"position": [14.7, 1.8, 9.7], "target": [11.4, 0.95, 6.2], "fov": 64},
          [{"corner": [13.9, 2.93, 6.7], "edge_u": [0.0, 0.0, 1.6], "edge_v": [-2.4, 0.0, 0.0], "radiance": [8.5, 7.8, 6.6]},
           {"corner": [14.8, 0.9, 9.88], "edge_u": [-4.6, 0.0, 0.0], "edge_v": [0.0, 1.9, 0.0], "radiance": [1.7, 1.9, 2.2]}],
@@ -248,8 +280,8 @@ def ground(x, z):
     return height, rise_x, rise_z
 
 
-def forest():
-    scene = Scene("forest", ["A forest on hills: trees and plants that sway, creatures that pass. Written by benchmark.py."], "catmark")
+def forest(textured=False):
+    scene = Scene("forest", ["A forest on hills: trees and plants that sway, creatures that pass. Written by benchmark.py."], "catmark", textured)
     head(scene, {"position": [3.0, 3.4, 27.0], "target": [-1.0, 2.2, 0.0], "fov": 48},
          [{"corner": [-52.0, 46.0, 30.0], "edge_u": [12.0, 10.0, 0.0], "edge_v": [-4.0, 4.8, 14.0], "radiance": [130, 115, 90]},
           facing([-1, -3, -4], [12.0, 40.0, 48.0], 6.0, 1.0, [6.0, 7.0, 8.3])],
@@ -337,8 +369,8 @@ def forest():
     return scene
 
 
-def showcase():
-    scene = Scene("showcase", ["Creased subdivision surfaces on turning plinths. Written by benchmark.py."], "catmark")
+def showcase(textured=False):
+    scene = Scene("showcase", ["Creased subdivision surfaces on turning plinths. Written by benchmark.py."], "catmark", textured)
     head(scene, {"position": [0.0, 4.6, 11.6], "target": [0.0, 1.1, -0.5], "fov": 43},
          [{"corner": [-5.5, 8.5, 3.5], "edge_u": [3.4, 0.0, 0.0], "edge_v": [0.0, -1.6, 3.2], "radiance": [28, 26, 23]},
           facing([-3, -2, -4], [8.0, 6.0, 11.0], 2.0, 0.25, [1.2, 1.3, 1.5])],
@@ -372,9 +404,9 @@ def main():
         sys.exit("usage: benchmark.py [--check]")
     folder = os.path.dirname(os.path.abspath(__file__))
     stale = []
-    for scene in (courtyard, interior, forest, showcase):
-        file = os.path.join(folder, f"{scene.__name__}.toml")
-        text = scene().write()
+    for scene, textured in itertools.product((courtyard, interior, forest, showcase), (False, True)):
+        file = os.path.join(folder, f"{scene.__name__}{'-textured' if textured else ''}.toml")
+        text = scene(textured).write()
         if not sys.argv[1:]:
             with open(file, "w") as out:
                 out.write(text)

@@ -56,6 +56,23 @@ template <class Visit> void each_material(const Scene& scene, const Instance& i,
         known(material);
 }
 
+/// What takes an instance's own coordinates to its mesh's. Of what has collapsed there is none: all zeros.
+SolidRecord solid_record(const Instance& i, const glm::dvec3& mesh_origin) {
+    SolidRecord r{};
+    const double volume = glm::determinant(i.linear);
+    const glm::dmat3 back = glm::inverse(i.linear);
+    const glm::dvec3 shift = mesh_origin - back * glm::dvec3(i.offset);
+    if (!std::isnormal(volume) || !std::isfinite(glm::dot(shift, shift)))
+        return r;
+    for (int k = 0; k < 3; ++k) {
+        for (int column = 0; column < 3; ++column)
+            r.row[k][column] = static_cast<float>(back[column][k]);
+        r.row[k][3] = static_cast<float>(shift[k]);
+    }
+    r.shrink = static_cast<float>(1 / std::cbrt(std::abs(volume)));
+    return r;
+}
+
 } // namespace
 
 std::int32_t Frame::Impl::shading_of(const Scene& scene, const Instance& i) const {
@@ -64,6 +81,8 @@ std::int32_t Frame::Impl::shading_of(const Scene& scene, const Instance& i) cons
     if (scene.settings.shading == Shading::grids)
         bits = i.material < 0 ? face_map_bits[static_cast<std::size_t>(i.mesh)]
                               : materials.map_bits[static_cast<std::size_t>(i.material)];
+    if ((bits >> map_bump & 1) != 0)
+        bits |= 1 << map_normal;
     for (int map = 0; map < map_count; ++map)
         arrays += (bits >> map & 1) != 0 ? shaded_arrays(map) : 0;
     return pack_shading(texcoords, arrays, bits);
@@ -88,7 +107,7 @@ void Frame::Impl::take_materials(const Scene& scene) {
         const Mesh& own = scene.meshes[mesh];
         std::size_t textured = used.size();
         each_material(scene, i, [&](std::size_t m) {
-            if (materials.map_bits[m] != 0)
+            if (materials.needs_texcoords[m])
                 textured = m;
         });
         if (textured == used.size() || texture_cage_of[mesh] >= 0)
@@ -145,6 +164,8 @@ void Frame::Impl::place_scene(const Scene& scene) {
     new (header) FrameHeader{};
     header->instances.set(region<InstanceRecord>("scene graph", -1, geometry.instances.size()));
     header->cluster_instance.set(region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters)));
+    if (materials.solid)
+        header->solids.set(region<SolidRecord>("materials", -1, geometry.instances.size()));
     fill_instances(scene);
     place_materials(scene);
 }
@@ -264,6 +285,8 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
     r.material = i.material;
     const int cage = texture_cage_of[mesh];
     r.shading = shading_of(scene, i);
+    if (SolidRecord* solids = header->solids.get())
+        solids[n] = solid_record(i, geometry.mesh_origins[mesh]);
     if (cage >= 0)
         r.texture_faces = static_cast<std::int32_t>(first_face[static_cast<std::size_t>(cage)]) -
                           static_cast<std::int32_t>(first_face[mesh]);

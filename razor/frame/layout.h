@@ -486,8 +486,9 @@ struct FrameHeader {
     isa::ref<MaterialRecord> materials; // where the plan needs them; likewise:
     isa::ref<MapRecord> maps;
     isa::ref<TextureRecord> textures;
-    isa::ref<SkyRecord> sky_map;           // null: the sky is the same everywhere
-    isa::ref<std::int32_t> texels;         // of all textures
+    isa::ref<SolidRecord> solids;  // of each instance, where some texture is a pattern of objects; else null
+    isa::ref<SkyRecord> sky_map;   // null: the sky is the same everywhere
+    isa::ref<std::int32_t> texels; // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
     std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
     std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h

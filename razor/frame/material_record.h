@@ -15,10 +15,11 @@ struct alignas(line_bytes) MaterialRecord {
     float coat, coat_roughness;
     float emission[3];
     float normal_scale;
-    std::int32_t map[5];   // of each MaterialMap: a MapRecord, or -1
+    float bump;            // how high a bump map's 1 lies over its 0, in units of the object
+    std::int32_t map[6];   // of each MaterialMap: a MapRecord, or -1
     float alpha_cutoff;    // 0: nothing is cut out
     std::int32_t map_bits; // of the maps that it has: 1 << MaterialMap
-    std::int32_t padding[10];
+    std::int32_t padding[8];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
@@ -28,13 +29,15 @@ enum MaterialMap : std::int32_t {
     map_roughness,
     map_emission,
     map_normal,
+    map_bump,
     map_count
 };
 
 /// What textures make of a surface at vertices of its grids, before any ray is shaded there (phase one): an
 /// instance's maps of which some material has one, as bits 1 << MaterialMap, and the arrays that each needs.
+/// Bump maps bend normals, as normal maps do, which then have a bit.
 constexpr int shaded_arrays(int map) {
-    return map == map_metallic || map == map_roughness ? 1 : 3;
+    return map == map_bump ? 0 : map == map_metallic || map == map_roughness ? 1 : 3;
 }
 inline constexpr int most_shaded_arrays = 11;
 
@@ -53,6 +56,12 @@ template <class Int> constexpr Int shaded_bits(Int shading) {
     return shading >> 8;
 }
 
+constexpr std::int32_t map_bit(int map) {
+    return std::int32_t{1} << map;
+}
+inline constexpr std::int32_t normal_bits = 3 * map_bit(map_normal); // what bends normals
+static_assert(map_bump == map_normal + 1);
+
 /// A texture where a material uses it: at (row_u . (u, v, 1), row_v . (u, v, 1)).
 struct MapRecord {
     float row_u[3], row_v[3];
@@ -63,14 +72,40 @@ static_assert(sizeof(MapRecord) == line_bytes / 2);
 
 enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
 
+/// A picture, or what razor/kernels/pattern.h makes.
+enum TextureKind : std::int32_t {
+    texture_image,
+    texture_checker,
+    texture_bricks,
+    texture_noise,
+    texture_turbulence,
+    texture_marble,
+    texture_wood
+};
+/// What patterns are functions of: texture coordinates, or points of objects.
+enum TextureSpace : std::int32_t { texture_of_surface, texture_of_object };
+
 /// Where the texels of each level lie, as razor/scene/texture.h says, counted from FrameHeader::texels.
 struct alignas(line_bytes) TextureRecord {
     std::int32_t levels, wrap_u, wrap_v;
     float size;           // sqrt(width * height) of the finest level
     std::int32_t opacity; // words from each level's texels to its opacity; 0: all is opaque
-    std::int32_t padding[11];
+    std::int32_t kind;    // a TextureKind. Of patterns:
+    std::int32_t space, octaves;
+    float gain, per_cell, amount; // see Pattern; cells a unit
+    std::int32_t padding[5];
     std::int32_t first[16], width[16], height[16];
+    float low[3], high[3]; // colours
+    std::int32_t padding2[10];
 };
-static_assert(sizeof(TextureRecord) == 4 * line_bytes);
+static_assert(sizeof(TextureRecord) == 5 * line_bytes);
+
+/// From an instance's own coordinates to those of its object, for patterns: row . (p, 1).
+struct alignas(line_bytes) SolidRecord {
+    float row[3][4];
+    float shrink; // of lengths
+    std::int32_t padding[3];
+};
+static_assert(sizeof(SolidRecord) == line_bytes);
 
 } // namespace razor

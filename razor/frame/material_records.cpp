@@ -28,13 +28,14 @@ MaterialRecord material_record(const Material& m) {
     r.coat = m.coat;
     r.coat_roughness = m.coat_roughness;
     r.normal_scale = m.normal_scale;
+    r.bump = m.bump;
     std::fill(std::begin(r.map), std::end(r.map), -1);
     return r;
 }
 
 /// In the order of MaterialMap.
 std::array<const TextureMap*, map_count> maps_of(const Material& m) {
-    return {&m.albedo_map, &m.metallic_map, &m.roughness_map, &m.emission_map, &m.normal_map};
+    return {&m.albedo_map, &m.metallic_map, &m.roughness_map, &m.emission_map, &m.normal_map, &m.bump_map};
 }
 
 MapRecord map_record(const TextureMap& map, std::int32_t texture) {
@@ -52,6 +53,23 @@ constexpr std::int32_t wrap_of(Wrap wrap) {
     return wrap == Wrap::repeat ? wrap_repeat : wrap == Wrap::clamp ? wrap_clamp : wrap_mirror;
 }
 
+TextureRecord pattern_record(const Pattern& p) {
+    TextureRecord r{};
+    constexpr std::array kinds{texture_checker,    texture_bricks, texture_noise,
+                               texture_turbulence, texture_marble, texture_wood};
+    r.kind = kinds[static_cast<std::size_t>(p.kind)];
+    r.space = p.space == PatternSpace::object ? texture_of_object : texture_of_surface;
+    r.per_cell = static_cast<float>(1 / p.size);
+    r.octaves = p.octaves;
+    r.gain = p.gain;
+    r.amount = p.amount;
+    for (int k = 0; k < 3; ++k) {
+        r.low[k] = p.low[k];
+        r.high[k] = p.high[k];
+    }
+    return r;
+}
+
 class Tables {
 public:
     explicit Tables(const Scene& scene) : scene_(scene), number_(scene.textures.size(), -1) {}
@@ -59,18 +77,25 @@ public:
     void add(const Material& m, bool used) {
         MaterialRecord r = material_record(m);
         const auto maps = maps_of(m);
+        bool texcoords = false;
         for (std::size_t k = 0; used && k < maps.size(); ++k)
             if (maps[k]->texture >= 0) {
                 r.map[k] = static_cast<std::int32_t>(t.maps.size());
                 t.maps.push_back(map_record(*maps[k], texture(maps[k]->texture)));
                 r.map_bits |= 1 << k;
+                const std::optional<Pattern>& pattern = pattern_of(*maps[k]);
+                if (pattern && pattern->space == PatternSpace::object)
+                    t.solid = true;
+                else
+                    texcoords = true;
             }
-        if (r.map[map_albedo] >= 0 && m.alpha_cutoff > 0) {
+        if (r.map[map_albedo] >= 0 && m.alpha_cutoff > 0 && !pattern_of(m.albedo_map)) {
             const std::int32_t number = t.maps[static_cast<std::size_t>(r.map[map_albedo])].texture;
             add_opacity(m.albedo_map.texture, t.textures[static_cast<std::size_t>(number)]);
             r.alpha_cutoff = m.alpha_cutoff;
         }
         t.map_bits.push_back(r.map_bits);
+        t.needs_texcoords.push_back(texcoords);
         t.materials.push_back(r);
     }
 
@@ -88,12 +113,20 @@ public:
     MaterialTables t;
 
 private:
+    const std::optional<Pattern>& pattern_of(const TextureMap& map) const {
+        return scene_.textures[static_cast<std::size_t>(map.texture)].pattern;
+    }
+
     std::int32_t texture(int index) {
         std::int32_t& number = number_[static_cast<std::size_t>(index)];
         if (number >= 0)
             return number;
         number = static_cast<std::int32_t>(t.textures.size());
         const Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
+        if (texture.pattern) {
+            t.textures.push_back(pattern_record(*texture.pattern));
+            return number;
+        }
         const std::vector<TextureLevel>& levels = texture.pyramid->levels;
         TextureRecord r{};
         r.levels = static_cast<std::int32_t>(levels.size());

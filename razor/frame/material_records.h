@@ -12,7 +12,9 @@ namespace razor {
 /// Of the materials that something drawn has; others take no room but their records.
 struct MaterialTables {
     Look look = look_matte;
-    std::vector<int> map_bits; // of each material, the maps that it has: 1 << MaterialMap
+    std::vector<int> map_bits;         // of each material, the maps that it has: 1 << MaterialMap
+    std::vector<bool> needs_texcoords; // likewise, whether some of them is other than a pattern of objects
+    bool solid = false;                // some map is a pattern of objects
     std::vector<MaterialRecord> materials;
     std::vector<MapRecord> maps;
     std::vector<TextureRecord> textures;

@@ -99,6 +99,11 @@ Scene scaled(Scene scene, double factor) {
         if (light.kind == LightKind::point || light.kind == LightKind::spot) // W / sr, over distances squared
             light.radiance *= static_cast<float>(factor * factor);
     }
+    for (Material& material : scene.materials)
+        material.bump *= static_cast<float>(factor);
+    for (Texture& texture : scene.textures)
+        if (texture.pattern && texture.pattern->space == PatternSpace::object)
+            texture.pattern->size *= factor;
     scale(scene.camera, factor);
     if (scene.dicing_camera)
         scale(*scene.dicing_camera, factor);

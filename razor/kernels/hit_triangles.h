@@ -44,7 +44,8 @@ inline void copy_corners(pointer<float> own, sint quads_u, sint quads_v, sint st
     for (sint a = 0; branch(a < arrays); ++a) {
         for (int k = 0; k < 4; ++k) {
             sint vertex = corner_vertex(k, quads_u, quads_v);
-            store(out + vertex, load(own + vertex));
+            sfloat value = load(own + vertex);
+            store(out + vertex, value);
         }
         own = own + stride;
         out = out + stride;
@@ -78,7 +79,9 @@ inline void find_attributes(const Context& c, pointer<BlockHeader> block, pointe
     sint stride = load(field(block, &BlockHeader::stride));
     found[0] = {normals + stride * 3, slot + slot_texcoords, texcoord_arrays(shading)};
     sint number = load(as<std::int32_t>(slot) + slot_field);
-    if (branch((shaded_bits(shading) != 0) & (number == camera_number)))
+    sbool shaded = shaded_bits(shading) != 0;
+    shaded = shaded & (number == camera_number);
+    if (branch(shaded))
         found[1] = {ensure_shaded(c, block, normals, shading), slot + slot_shaded, shaded_arrays_in(shading)};
 }
 

@@ -44,9 +44,48 @@ inline vfloat asked_at(const Rays& r, const vvec& way) {
 struct Mapping {
     vpoint at;
     vfloat footprint; // the area, in texture coordinates, that the ray asked for
-    vvec along_u;     // directions on the surface: unit, at right angles to the normal
+    vfloat across;    // of texture coordinates along two sides of the triangle: their parallelogram
+    vvec along_u;     // how points move with texture coordinates, times `across`
     vvec along_v;
+    vfloat asked;  // the area that the ray asked for on the surface
+    vint instance; // word of its record
+    // Where some texture is a pattern of objects:
+    vvec solid;        // the point, in its object
+    vfloat solid_area; // `asked`, in the object's units
 };
+
+/// Points of instances, or with `rest` 0 directions, in their objects.
+inline vvec to_object(pointer<SolidRecord> solids, const vint& record, const vvec& p, const vfloat& rest,
+                      const vmask& m) {
+    pointer<float> words = as<float>(solids);
+    vvec out;
+    vfloat* const to[3] = {&out.x, &out.y, &out.z};
+    for (int k = 0; k < 3; ++k) {
+        vfloat shift = gather(words + (4 * k + 3), record, m);
+        vfloat sum = shift * rest;
+        sum = fma(gather(words + 4 * k, record, m), p.x, sum);
+        sum = fma(gather(words + (4 * k + 1), record, m), p.y, sum);
+        *to[k] = fma(gather(words + (4 * k + 2), record, m), p.z, sum);
+    }
+    return out;
+}
+/// Word of an instance's SolidRecord.
+inline vint solid_of(const vint& instance) {
+    static_assert(sizeof(InstanceRecord) == 2 * sizeof(SolidRecord));
+    return instance >> 1;
+}
+
+/// Where points lie in their objects, if some texture is a pattern of those. `p`: instances' coordinates.
+inline void map_solid(const Context& c, const vint& instance, const vvec& p, const vmask& m, Mapping& map) {
+    map.instance = instance;
+    pointer<SolidRecord> solids = load(field(c.frame, &FrameHeader::solids));
+    if (branch(is_null(solids)))
+        return;
+    vint record = solid_of(instance);
+    map.solid = to_object(solids, record, p, vfloat(1.0F), m);
+    vfloat shrink = gather(field(solids, &SolidRecord::shrink), record, m);
+    map.solid_area = map.asked * (shrink * shrink);
+}
 
 inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const vvec& edge2,
                        const vvec& area, const vfloat& target, const vfloat& cosine) {
@@ -64,9 +103,10 @@ inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const
     surface = max(surface, 1.0e-36F);
     // Across the ray it asks for a square; on the surface that is as much longer as it is inclined.
     vfloat inclined = max(cosine, 0.05F);
-    vfloat asked = (target * target) / inclined;
-    asked = asked / surface;
-    map.footprint = abs(across) * asked;
+    map.asked = (target * target) / inclined;
+    vfloat share = map.asked / surface;
+    map.across = abs(across);
+    map.footprint = map.across * share;
     vfloat sign = select(across < vfloat(0.0F), vfloat(-1.0F), vfloat(1.0F));
     vvec tangent = edge2 * v1;
     map.along_u = (edge1 * v2 - tangent) * sign;

@@ -101,6 +101,20 @@ inline vint face_material(const Context& c, const Hits& h, const vint& record, c
     return gather(materials, face, m);
 }
 
+/// Of what is shaded at vertices and what at hits: all of the first where rays ask for edges as long as the
+/// block's or longer, as they do of levels that are chosen for them; where a block is as fine as its mesh
+/// gets, or one level serves all, less of it the finer they ask.
+inline vfloat share_of_vertices(const Context& c, const vint& block, const vfloat& target, const vmask& m) {
+    constexpr int absolute_word = offsetof(BlockHeader, absolute) / 4;
+    vint absolute = gather(as<std::int32_t>(c.grids) + absolute_word, block, m);
+    vint exponent = absolute + vint(127);
+    vfloat edge = as_float(exponent << 23);
+    constexpr float per_edge = 1 / (shaded_edge - least_shaded_edge);
+    vfloat asked = target / edge;
+    vfloat share = fma(asked, vfloat(per_edge), vfloat(-least_shaded_edge * per_edge));
+    return min(max(share, 0.0F), 1.0F);
+}
+
 /// `beyond` is filled in for looks that need it. `on_grids`: the rays are the camera's, and find what
 /// textures make of surfaces at the vertices of their grids.
 template <Look L>
@@ -168,6 +182,8 @@ template <Look L>
         if (branch(any(of_face)))
             beyond.material = select(of_face, face_material(c, h, record, of_face), beyond.material);
         beyond.known.normal = beyond.known.normal * side;
+        beyond.known.share = share_of_vertices(c, block, target, s.hit);
+        map_solid(c, record, p, s.hit, beyond.map);
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;
@@ -190,14 +206,17 @@ template <Look L>
 
 /// Shading normals as normal maps bend them.
 inline void bend_normals(const Context& c, const Materials& of, const Beyond& b, Surface& s) {
-    vmask there = b.known.knows(map_normal);
-    s.shading = select(there, normalise(b.known.normal, s.shading), s.shading);
-    vint map = of.map(map_normal, s.hit);
-    vmask has = s.hit & (map >= vint(0));
-    has = has & !there;
+    vint maps = of.whole(&MaterialRecord::map_bits) & vint(normal_bits);
+    vmask has = s.hit & (maps > vint(0));
     if (branch(none(has)))
         return;
-    vvec bent = bend_normal(c, of, map, b.map, s.shading * b.side, has) * b.side;
+    vvec bent = s.shading;
+    vmask open = has & b.known.open(map_normal);
+    if (branch(any(open))) {
+        vvec own = s.shading * b.side;
+        bent = select(open, mapped_normal(c, of, b.map, own, open) * b.side, bent);
+    }
+    bent = b.known.mixed(map_normal, b.known.normal, bent);
     s.shading = select(has, normalise(bent, s.shading), s.shading);
 }
 

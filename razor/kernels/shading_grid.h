@@ -11,6 +11,10 @@
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
 
+/// Of a block's edge length: for what rays ask for from so much on, values at its vertices serve alone, and
+/// up to so much not at all. Levels are chosen so that edges are at most sqrt(2) times as long as asked for.
+inline constexpr float shaded_edge = 0.7F, least_shaded_edge = 0.35F;
+
 /// Whether something is shaded at the vertices of this block.
 inline sbool has_shaded_grid(const Context& c, pointer<BlockHeader> block, sint shading) {
     if (branch(shaded_bits(shading) == 0))
@@ -52,7 +56,8 @@ inline GridPoints grid_points(pointer<BlockHeader> block, sint from) {
     vint one(1);
     p.beside = p.at + select(column < vint(quads_u), one, vint(-1));
     vint width = vint(quads_u + 1);
-    p.above = p.at + select(row < vint(quads_v), width, vint(0) - width);
+    vint down = vint(0) - width;
+    p.above = p.at + select(row < vint(quads_v), width, down);
     return p;
 }
 
@@ -77,11 +82,13 @@ inline Corners grid_corners(pointer<float> vertices, pointer<float> normals, sin
 }
 
 /// Where vertices lie on textures, as finely as rays of the camera see them there. `p`: scene coordinates.
-inline Mapping map_vertices(const Context& c, const Corners& k, const vvec& p) {
+inline Mapping map_vertices(const Context& c, const Corners& k, const vvec& p, sint absolute) {
     Rays camera;
     ask_for_camera(c, camera);
     vvec way = p - camera.field_origin;
     vfloat target = filtered_target(c, asked_at(camera, way), way);
+    sfloat edge = power_of_two(absolute) * shaded_edge;
+    target = max(target, vfloat(edge)); // nothing finer than the block can show
     vvec toward = load_broadcast_vec(field(c.frame, &FrameHeader::line_of_sight)) * vfloat(-1.0F);
     sint orthographic = load(field(c.frame, &FrameHeader::orthographic));
     if (branch(orthographic == 0))
@@ -114,6 +121,7 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
     sint patch = load(field(block, &BlockHeader::patch));
     sint material = material_of_patch(c, instance, patch);
     sint bits = shaded_bits(shading);
+    sint absolute = load(field(block, &BlockHeader::absolute));
     sint moved = load(field(c.instances + instance, &InstanceRecord::moved));
     vfloat side = vfloat(select(moved < 0, sfloat(-1.0F), sfloat(1.0F)));
     vvec origin = load_broadcast_vec(field(c.instances + instance, &InstanceRecord::origin));
@@ -121,36 +129,35 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
     Shaded unknown = nothing_shaded();
     for (sint from = 0; branch(from < stride); from += isa::width) {
         vmask m = first_lanes(stride - from);
-        Corners k =
-            grid_corners(vertices, normals, stride, texcoord_arrays(shading), grid_points(block, from), m);
-        Mapping at = map_vertices(c, k, k.a + origin);
+        GridPoints points = grid_points(block, from);
+        Corners k = grid_corners(vertices, normals, stride, texcoord_arrays(shading), points, m);
+        Mapping at = map_vertices(c, k, k.a + origin, absolute);
+        map_solid(c, vint(instance << 5), k.a, m, at);
         Materials of = materials_of(c, vint(material), m);
         tally(c.counters->shading_evaluations, count(m));
         tally(c.counters->grid_evaluations, count(m));
         tally(c.counters->grid_lanes, sint(isa::width));
         pointer<float> to = out;
-        if (branch((bits & (1 << map_albedo)) != 0)) {
+        if (branch((bits & map_bit(map_albedo)) != 0)) {
             vvec albedo = mapped_colour_of(c, of, &MaterialRecord::albedo, map_albedo, at, unknown);
             to = store_shaded(to, stride, from, albedo, m);
         }
-        if (branch((bits & (1 << map_metallic)) != 0)) {
-            store_vector(to + from, mapped_metallic(c, of, at, unknown), m);
+        if (branch((bits & map_bit(map_metallic)) != 0)) {
+            vfloat metallic = mapped_metallic(c, of, at, unknown);
+            store_vector(to + from, metallic, m);
             to = to + stride;
         }
-        if (branch((bits & (1 << map_roughness)) != 0)) {
-            store_vector(to + from, mapped_roughness(c, of, at, unknown), m);
+        if (branch((bits & map_bit(map_roughness)) != 0)) {
+            vfloat roughness = mapped_roughness(c, of, at, unknown);
+            store_vector(to + from, roughness, m);
             to = to + stride;
         }
-        if (branch((bits & (1 << map_emission)) != 0)) {
+        if (branch((bits & map_bit(map_emission)) != 0)) {
             vvec emission = mapped_colour_of(c, of, &MaterialRecord::emission, map_emission, at, unknown);
             to = store_shaded(to, stride, from, emission, m);
         }
-        if (branch((bits & (1 << map_normal)) != 0)) {
-            vint map = of.map(map_normal, m);
-            vmask has = m & (map >= vint(0));
-            vvec own = k.normal * side;
-            vvec bent = bend_normal(c, of, map, at, own, has);
-            bent = select(has, normalise(bent, own), own) * side;
+        if (branch((bits & map_bit(map_normal)) != 0)) {
+            vvec bent = mapped_normal(c, of, at, k.normal * side, m) * side;
             store_shaded(to, stride, from, bent, m);
         }
     }
@@ -196,19 +203,19 @@ inline void find_shaded(pointer<float> values, sint stride, sint shading, const 
                         const vmask& m, Shaded& out) {
     sint bits = shaded_bits(shading);
     out.bits = select(m, vint(bits), out.bits);
-    if (branch((bits & (1 << map_albedo)) != 0))
+    if (branch((bits & map_bit(map_albedo)) != 0))
         values = shaded_vec(values, stride, h, at, m, out.albedo);
-    if (branch((bits & (1 << map_metallic)) != 0)) {
+    if (branch((bits & map_bit(map_metallic)) != 0)) {
         out.metallic = select(m, between_corners(values, h, at.a, at.b, at.c, m), out.metallic);
         values = values + stride;
     }
-    if (branch((bits & (1 << map_roughness)) != 0)) {
+    if (branch((bits & map_bit(map_roughness)) != 0)) {
         out.roughness = select(m, between_corners(values, h, at.a, at.b, at.c, m), out.roughness);
         values = values + stride;
     }
-    if (branch((bits & (1 << map_emission)) != 0))
+    if (branch((bits & map_bit(map_emission)) != 0))
         values = shaded_vec(values, stride, h, at, m, out.emission);
-    if (branch((bits & (1 << map_normal)) != 0))
+    if (branch((bits & map_bit(map_normal)) != 0))
         shaded_vec(values, stride, h, at, m, out.normal);
 }
 

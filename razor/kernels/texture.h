@@ -3,7 +3,7 @@
 // them. At hits and not at vertices, as flat patches have none inside.
 #pragma once
 
-#include "razor/kernels/mapping.h"
+#include "razor/kernels/pattern.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -100,6 +100,15 @@ template <bool Opacity>
     Sampled t;
     sint number = load(field(map, &MapRecord::texture));
     t.record = load(field(c.frame, &FrameHeader::textures)) + number;
+    sint kind = load(field(t.record, &TextureRecord::kind));
+    if (branch(kind != texture_image)) {
+        if constexpr (Opacity) {
+            vfloat all(1.0F);
+            return {all, all, all};
+        } else {
+            return sample_pattern(map, t.record, hit);
+        }
+    }
     t.texels = load(field(c.frame, &FrameHeader::texels));
     if constexpr (Opacity) {
         sint opacity = load(field(t.record, &TextureRecord::opacity));

@@ -93,7 +93,17 @@ void print_material(std::string& text, const Scene& scene, const Material& mater
                    faces == 0 ? "not used" : counted(faces, "face"));
 }
 
+void print_pattern(std::string& text, const Texture& texture, const Pattern& p, bool used) {
+    fmt::format_to(std::back_inserter(text), "  {}: {}, by {} coordinates, cells of {}{}\n",
+                   printable(texture.name, 100), word_of(pattern_words, p.kind),
+                   word_of(pattern_space_words, p.space), p.size, used ? "" : ", not used");
+}
+
 void print_texture(std::string& text, const Texture& texture, bool used) {
+    if (texture.pattern) {
+        print_pattern(text, texture, *texture.pattern, used);
+        return;
+    }
     const TextureLevel& finest = texture.pyramid->levels.front();
     fmt::format_to(std::back_inserter(text), "  {}: {} x {}, {}, {}{}, {}{}, {}{}{}\n",
                    printable(texture.name, 100), finest.width, finest.height,
@@ -127,6 +137,14 @@ Json to_json(const Scene& scene, const Material& material, std::int64_t faces) {
 }
 
 Json to_json(const Texture& texture, bool used) {
+    if (texture.pattern) {
+        const Pattern& p = *texture.pattern;
+        return {{"name", texture.name},  {"pattern", word_of(pattern_words, p.kind)},
+                {"size", p.size},        {"space", word_of(pattern_space_words, p.space)},
+                {"low", to_json(p.low)}, {"high", to_json(p.high)},
+                {"octaves", p.octaves},  {"gain", p.gain},
+                {"amount", p.amount},    {"used", used}};
+    }
     const TextureLevel& finest = texture.pyramid->levels.front();
     return {{"name", texture.name},
             {"file", texture.file},

@@ -67,6 +67,11 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--edge-pixels", edge_pixels_, "target length of tessellated edges, in pixels")
         ->type_name("X");
     app.add_option(
+           "--shading", shading_,
+           "where textures are evaluated: grids (at vertices of what camera rays hit, as far as there "
+           "are some; the default) or hits")
+        ->type_name("WHERE");
+    app.add_option(
            "--lod", lod_,
            "levels of detail: recursive (every ray its own), discrete (the same without blending), "
            "patch (one level a patch and ray), paper (pairs of levels along each ray), camera (all rays the "
@@ -130,6 +135,9 @@ SceneDescription SceneOptions::describe_moving() const {
         }
         if (!edge_pixels_.empty()) {
             settings.edge_pixels = parse_number("--edge-pixels", edge_pixels_, edge_pixels_range);
+        }
+        if (!shading_.empty()) {
+            settings.shading = parse_word("--shading", shading_, shading_words);
         }
         if (!lod_.empty()) {
             settings.lod = parse_lod(lod_);

@@ -28,7 +28,7 @@ public:
 
 private:
     std::string scene_, size_, crop_, samples_, filter_, filter_radius_, light_samples_, sky_samples_,
-        bounces_, diffuse_bounces_, seed_, edge_pixels_, lod_, scheme_, frame_, up_ = "y";
+        bounces_, diffuse_bounces_, seed_, edge_pixels_, lod_, shading_, scheme_, frame_, up_ = "y";
     bool no_floor_ = false, everything_ = false;
 };
 

@@ -35,6 +35,8 @@ struct Material {
     TextureMap albedo_map{}, metallic_map{}, roughness_map{}, emission_map{};
     TextureMap normal_map{}; // tangent-space normals, 2 rgb - 1
     float normal_scale = 1;  // of their x and y
+    TextureMap bump_map{};   // heights, by luminance
+    float bump = 0;          // how high its 1 lies over its 0, in units of the object
     float alpha_cutoff = 0;  // what albedo_map's opacity is below is not there; 0: all is
     bool two_sided = true;   // else seen from the front only
 

@@ -47,6 +47,7 @@ template <class Visit, class... Materials> void visit_material_fields(Visit visi
     visit("coat_roughness", unit_range, m.coat_roughness...);
     visit("emission", radiance_range, m.emission...);
     visit("normal_scale", normal_scale_range, m.normal_scale...);
+    visit("bump", coordinate_range, m.bump...);
     visit("alpha_cutoff", unit_range, m.alpha_cutoff...);
 }
 
@@ -57,6 +58,7 @@ template <class Visit, class... Materials> void visit_material_maps(Visit visit,
     visit("roughness_map", m.roughness_map...);
     visit("emission_map", m.emission_map...);
     visit("normal_map", m.normal_map...);
+    visit("bump_map", m.bump_map...);
 }
 
 } // namespace razor

@@ -38,6 +38,15 @@ std::string to_toml(const TextureMap& map, const std::string& texture) {
 } // namespace
 
 std::string to_toml(const Texture& texture) {
+    if (texture.pattern) {
+        const Pattern& p = *texture.pattern;
+        return fmt::format(
+            "\n[[texture]]\nname = {}\npattern = {}\nspace = {}\nsize = {}\nlow = {}\nhigh = {}\n"
+            "octaves = {}\ngain = {}\namount = {}\n",
+            toml_text(texture.name), toml_text(word_of(pattern_words, p.kind)),
+            toml_text(word_of(pattern_space_words, p.space)), toml_number(p.size), toml_value(p.low),
+            toml_value(p.high), p.octaves, toml_value(p.gain), toml_value(p.amount));
+    }
     return fmt::format("\n[[texture]]\nname = {}\nfile = {}\ncolor_space = {}\nwrap = {}\n",
                        toml_text(texture.name), toml_text(texture.file),
                        toml_text(word_of(color_space_words, texture.linear)),

@@ -23,6 +23,10 @@ inline constexpr Range unit_range{0, 1};          // of what is a part of all
 inline constexpr Range ior_range{1, 3};
 inline constexpr Range normal_scale_range{-100, 100};
 inline constexpr Range texcoord_range{-1e6, 1e6}; // of what maps texture coordinates
+inline constexpr Range pattern_size_range{1e-12, 1e12};
+inline constexpr Range octaves_range{1, 24};
+inline constexpr Range gain_range{0, 1};
+inline constexpr Range amount_range{0, 1e3};
 inline constexpr Range radiance_range{0, 1e9};
 inline constexpr Range intensity_range{0, 1e30};    // W / sr: of large scenes, as squared lengths
 inline constexpr Range light_radius_range{0, 1e30}; // of disks and spheres

@@ -32,6 +32,26 @@ TextureMap read_map(TomlTable& table, std::string_view key, std::span<const std:
     return map;
 }
 
+Pattern read_pattern(TomlTable& table) {
+    Pattern p;
+    p.kind = choose(table, "pattern", p.kind, pattern_words);
+    const auto usual = [](PatternKind kind) {
+        return kind == PatternKind::bricks ? 0.05F : kind == PatternKind::marble ? 2.0F : 0.2F;
+    };
+    p.amount = usual(p.kind);
+    p.space = choose(table, "space", p.space, pattern_space_words);
+    p.size = table.number("size", p.size, pattern_size_range);
+    const auto colour = [&](std::string_view key, glm::vec3& c) {
+        c = glm::vec3(table.vector_or_number(key, glm::dvec3(c), unit_range));
+    };
+    colour("low", p.low);
+    colour("high", p.high);
+    p.octaves = table.whole("octaves", p.octaves, octaves_range);
+    p.gain = static_cast<float>(table.number("gain", double{p.gain}, gain_range));
+    p.amount = static_cast<float>(table.number("amount", double{p.amount}, amount_range));
+    return p;
+}
+
 } // namespace
 
 int read_texture_name(TomlTable& table, std::string_view key, std::span<const std::string> textures) {
@@ -46,6 +66,19 @@ int read_texture_name(TomlTable& table, std::string_view key, std::span<const st
 Texture read_texture(TomlTable& table, const std::filesystem::path& folder, TextureCache& cache) {
     Texture texture;
     texture.name = table.text("name", "");
+    if (table.has("pattern")) {
+        texture.pattern = read_pattern(table);
+        table.may_have("file");
+        if (table.has("file")) {
+            table.fail("file", "a texture is a pattern or a file's picture; leave one out");
+        }
+        table.finish();
+        if (texture.name.empty()) {
+            table.fail("name", "a texture without a name; write name = \"...\"");
+        }
+        return texture;
+    }
+    table.may_have("pattern");
     const std::string file = table.text("file", "");
     texture.linear = choose(table, "color_space", false, color_space_words);
     texture.wrap_u = texture.wrap_v = choose(table, "wrap", Wrap::repeat, wrap_words);
@@ -98,6 +131,9 @@ Material read_material(TomlTable& table, std::span<const std::string> textures) 
             }
         },
         material);
+    if (material.bump_map.texture >= 0 && !table.has("bump")) {
+        table.fail("bump_map", "a bump map without a height; write bump = 0.05, in units of the object");
+    }
     material.two_sided = table.flag("two_sided", material.two_sided);
     table.finish();
     if (material.name.empty()) {

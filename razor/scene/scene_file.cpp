@@ -155,6 +155,9 @@ void read_sky(TomlTable& table, std::span<const std::string> textures, SceneDesc
     table.may_have("map");
     if (table.has("map")) {
         scene.sky_map.texture = read_texture_name(table, "map", textures);
+        if (scene.textures[static_cast<std::size_t>(scene.sky_map.texture)].pattern) {
+            table.fail("map", "a pattern cannot be the sky's map; give a texture with a file");
+        }
         scene.sky_map.rotation = table.number("rotation", scene.sky_map.rotation, angle_range);
         scene.sky = glm::vec3(1);
     }

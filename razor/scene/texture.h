@@ -1,8 +1,12 @@
-// Pictures on surfaces, as the renderer reads them: pyramids of ever coarser levels.
+// Textures on surfaces, as the renderer reads them: pictures, as pyramids of ever coarser levels, or
+// patterns.
 #pragma once
+
+#include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +35,28 @@ struct TexturePyramid {
     std::vector<TextureLevel> levels; // of most_texture_levels at most, each half as large, rounded up
 };
 
+/// What a texture may be instead of a picture: see razor/kernels/pattern.h.
+enum class PatternKind : std::uint8_t { checker, bricks, noise, turbulence, marble, wood };
+/// What patterns are functions of: points of the object as its mesh has them, or texture coordinates.
+enum class PatternSpace : std::uint8_t { object, texture };
+
+struct Pattern {
+    PatternKind kind = PatternKind::noise;
+    PatternSpace space = PatternSpace::object;
+    double size = 1;           // of a cell: check, brick, or feature of noise
+    glm::vec3 low{0}, high{1}; // linear colours: of 0 and 1, of mortar and bricks
+    int octaves = 6;           // of noise, and what is made of it
+    float gain = 0.5F;         // of each octave against the one before
+    float amount = 0;          // of bricks the mortar's width, of marble and wood how bent it is, in cells
+
+    bool operator==(const Pattern&) const = default;
+};
+
 struct Texture {
     std::string name;
-    std::string file;    // absolute path; empty: from within a model
-    bool linear = false; // what the file holds is no sRGB colour
+    std::optional<Pattern> pattern; // else a picture
+    std::string file;               // absolute path; empty: from within a model
+    bool linear = false;            // what the file holds is no sRGB colour
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     std::shared_ptr<const TexturePyramid> pyramid;
 };

@@ -39,6 +39,20 @@ inline constexpr std::array<Word<FilterKind>, 5> filter_words{{
     {"lanczos", FilterKind::lanczos},
 }};
 
+inline constexpr std::array<Word<PatternKind>, 6> pattern_words{{
+    {"checker", PatternKind::checker},
+    {"bricks", PatternKind::bricks},
+    {"noise", PatternKind::noise},
+    {"turbulence", PatternKind::turbulence},
+    {"marble", PatternKind::marble},
+    {"wood", PatternKind::wood},
+}};
+
+inline constexpr std::array<Word<PatternSpace>, 2> pattern_space_words{{
+    {"object", PatternSpace::object},
+    {"texture", PatternSpace::texture},
+}};
+
 inline constexpr std::array<Word<Shading>, 2> shading_words{{
     {"grids", Shading::grids},
     {"hits", Shading::hits},
