@@ -75,12 +75,14 @@ SolidRecord solid_record(const Instance& i, const glm::dvec3& mesh_origin) {
 
 } // namespace
 
+int Frame::Impl::map_bits_of(const Instance& i) const {
+    return i.material < 0 ? face_map_bits[static_cast<std::size_t>(i.mesh)]
+                          : materials.map_bits[static_cast<std::size_t>(i.material)];
+}
+
 std::int32_t Frame::Impl::shading_of(const Scene& scene, const Instance& i) const {
     const int texcoords = texture_cage_of[static_cast<std::size_t>(i.mesh)] >= 0 ? 2 : 0;
-    int bits = 0, arrays = 0;
-    if (scene.settings.shading == Shading::grids)
-        bits = i.material < 0 ? face_map_bits[static_cast<std::size_t>(i.mesh)]
-                              : materials.map_bits[static_cast<std::size_t>(i.material)];
+    int bits = scene.settings.shading == Shading::hits ? 0 : map_bits_of(i), arrays = 0;
     if ((bits >> map_bump & 1) != 0)
         bits |= 1 << map_normal;
     for (int map = 0; map < map_count; ++map)
@@ -100,6 +102,14 @@ void Frame::Impl::take_materials(const Scene& scene) {
         face_map_bits.push_back(0);
         for (const int m : mesh.face_materials)
             face_map_bits.back() |= materials.map_bits[static_cast<std::size_t>(m)];
+    }
+    std::vector<bool> diced(scene_meshes, false);
+    for (const Instance& i : geometry.instances) {
+        const auto mesh = static_cast<std::size_t>(i.mesh);
+        if (scene.settings.shading == Shading::diced && map_bits_of(i) != 0 && !diced[mesh]) {
+            diced[mesh] = true;
+            topologies[mesh] = analyse_topology(scene.meshes[mesh], true);
+        }
     }
     texture_cage_of.assign(scene_meshes, -1);
     for (const Instance& i : geometry.instances) {

@@ -141,18 +141,20 @@ inline vfloat blocks(const vfloat& x, const vfloat& width, const vfloat& margin)
     });
 }
 
-/// Stretcher bond, of bricks one cell long.
+/// Stretcher bond, of bricks one cell long. As checks do, one lies about the origin: planes through that, as
+/// floors often are, show no joint from within.
 inline vfloat bricks(const vvec& q, const vvec& width, const vfloat& mortar) {
     constexpr float height = 0.35F;
     constexpr float depth = 0.5F;
     vfloat half = mortar * 0.5F;
-    vfloat y = q.y * (1.0F / height);
+    vfloat y = fma(q.y, vfloat(1.0F / height), vfloat(0.5F));
     vfloat row = floor(y) * 0.5F;
     vfloat shift = row - floor(row); // 0 or 1/2
     vfloat high = width.y * (1.0F / height);
     vfloat rows = blocks(y, high, half * (1.0F / height));
-    vfloat columns = blocks(q.x + shift, width.x, half);
-    vfloat z = fma(q.z, vfloat(1.0F / depth), shift);
+    vfloat along = shift + vfloat(0.5F);
+    vfloat columns = blocks(q.x + along, width.x, half);
+    vfloat z = fma(q.z, vfloat(1.0F / depth), along);
     vfloat deep = width.z * (1.0F / depth);
     vfloat layers = blocks(z, deep, half * (1.0F / depth));
     return rows * columns * layers;
@@ -169,9 +171,10 @@ inline vfloat waves(const vfloat& x, const vfloat& width) {
 inline vfloat pattern_value(pointer<TextureRecord> t, sint kind, const vvec& q, const vvec& width) {
     vfloat amount = load_broadcast(field(t, &TextureRecord::amount));
     if (branch(kind == texture_checker)) {
-        vfloat product = checks(q.x, width.x);
-        product = product * checks(q.y, width.y);
-        product = product * checks(q.z, width.z);
+        vfloat middle(0.5F);
+        vfloat product = checks(q.x + middle, width.x);
+        product = product * checks(q.y + middle, width.y);
+        product = product * checks(q.z + middle, width.z);
         return fma(product, vfloat(-0.5F), vfloat(0.5F));
     }
     if (branch(kind == texture_bricks))

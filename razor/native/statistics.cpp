@@ -65,6 +65,8 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
         json["utilisation"][kind_names[k] + std::string("_packets")] =
             share(kind.rays, kind.packets * s.width_lanes);
     }
+    if (c.grid_lanes > 0)
+        json["utilisation"]["phase_one"] = share(c.grid_evaluations, c.grid_lanes);
     json["built"] = {{"trees", f.trees},
                      {"inner_nodes", f.inner_nodes},
                      {"leaves", f.leaves},

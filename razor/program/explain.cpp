@@ -75,6 +75,15 @@ std::string explain(const Scene& scene, const RenderStatistics& statistics) {
     never("opened, patches", f.patches - patches_opened, f.patches);
     never("split, kd nodes that were made", f.unsplit_nodes, nodes);
     never("shaded, blocks that were made", c.blocks_made - c.normal_blocks, c.blocks_made);
+    if (c.textured_hits > 0) {
+        const std::int64_t at_hits = c.shading_evaluations - c.grid_evaluations;
+        fmt::format_to(
+            out,
+            "textures: {} hits, evaluated {} times at vertices of grids ({:.1f} % of lanes at work) and {} "
+            "at hits: {:.3f} a hit\n",
+            c.textured_hits, c.grid_evaluations, percent(c.grid_evaluations, c.grid_lanes), at_hits,
+            static_cast<double>(c.shading_evaluations) / static_cast<double>(c.textured_hits));
+    }
     return text;
 }
 

@@ -68,8 +68,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
         ->type_name("X");
     app.add_option(
            "--shading", shading_,
-           "where textures are evaluated: grids (at vertices of what camera rays hit, as far as there "
-           "are some; the default) or hits")
+           "where textures are evaluated: grids (at vertices of what camera rays hit, as far as there are "
+           "some; the default), hits, or diced (as grids, flat faces being cut for it)")
         ->type_name("WHERE");
     app.add_option(
            "--lod", lod_,

@@ -160,8 +160,9 @@ struct Crop {
 };
 
 /// Where what textures make of surfaces is found: at vertices of the grids that camera rays hit, as far as
-/// surfaces have any, and at other hits; or at hits only.
-enum class Shading : std::uint8_t { grids, hits };
+/// surfaces have any, and at other hits; at hits only; or as with grids, flat faces being cut into grids,
+/// too.
+enum class Shading : std::uint8_t { grids, hits, diced };
 
 struct Settings {
     LevelOfDetail lod{};

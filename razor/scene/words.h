@@ -53,9 +53,10 @@ inline constexpr std::array<Word<PatternSpace>, 2> pattern_space_words{{
     {"texture", PatternSpace::texture},
 }};
 
-inline constexpr std::array<Word<Shading>, 2> shading_words{{
+inline constexpr std::array<Word<Shading>, 3> shading_words{{
     {"grids", Shading::grids},
     {"hits", Shading::hits},
+    {"diced", Shading::diced},
 }};
 
 inline constexpr std::array<Word<Projection>, 2> projection_words{{

@@ -46,7 +46,7 @@ void append_triangle(const Adjacency& adjacency, int face, int sub, const std::a
     topology.patches.push_back(patch);
 }
 
-void append_face(const Mesh& mesh, const Adjacency& adjacency, int face, Topology& topology) {
+void append_face(const Mesh& mesh, const Adjacency& adjacency, int face, bool diced, Topology& topology) {
     const int first = adjacency.first(face), size = adjacency.size(face);
     const bool deforms = !mesh.rest.empty();
     const std::vector<glm::dvec3>& points = deforms ? mesh.rest : mesh.points;
@@ -55,7 +55,7 @@ void append_face(const Mesh& mesh, const Adjacency& adjacency, int face, Topolog
         polygon.push_back(points[static_cast<std::size_t>(adjacency.point(first + i))]);
     }
     const std::vector<glm::dvec2> flat = project_if_planar(polygon);
-    if (flat.empty()) {
+    if (flat.empty() || (diced && is_convex(flat))) {
         if (size == 4) {
             append_quad(adjacency, face, PatchKind::bilinear, topology);
         } else {
@@ -105,14 +105,14 @@ std::vector<glm::dvec2> project_if_planar(std::span<const glm::dvec3> polygon) {
 }
 
 void append_bilinear_patches(const Mesh& mesh, const Adjacency& adjacency, const std::vector<bool>& drawn,
-                             Topology& topology) {
+                             bool diced, Topology& topology) {
     topology.controls = mesh.face_vertices;
     for (int f = 0; f < adjacency.face_count(); ++f) {
         FaceRecord& record = topology.faces[static_cast<std::size_t>(f)];
         record.control_first = adjacency.first(f);
         record.control_count = adjacency.size(f);
         if (drawn[static_cast<std::size_t>(f)]) {
-            append_face(mesh, adjacency, f, topology);
+            append_face(mesh, adjacency, f, diced, topology);
         }
     }
 }

@@ -21,8 +21,9 @@ inline constexpr double planar_tolerance = 1e-4;
 /// if it is not planar. Triangles and polygons without area are planar.
 std::vector<glm::dvec2> project_if_planar(std::span<const glm::dvec3> polygon);
 
-/// Patches of every drawn face, spokes of non-planar n-gons, and FaceRecords whose controls are the corners.
+/// Patches of every drawn face, spokes of n-gons that are not flat, and FaceRecords whose controls are the
+/// corners. `diced`: planar convex faces are cut as others are.
 void append_bilinear_patches(const Mesh& mesh, const Adjacency& adjacency, const std::vector<bool>& drawn,
-                             Topology& topology);
+                             bool diced, Topology& topology);
 
 } // namespace razor

@@ -26,7 +26,7 @@ bool same_topology(const Mesh& a, const Mesh& b, double factor) {
            (!cuts || (alike(a.rest, b.rest) && (!a.rest.empty() || alike(a.points, b.points))));
 }
 
-Topology analyse_topology(const Mesh& mesh) {
+Topology analyse_topology(const Mesh& mesh, bool diced) {
     const Adjacency adjacency = build_adjacency(mesh);
     const std::vector<bool> drawn = faces_with_limit_surface(mesh);
     Topology topology;
@@ -36,7 +36,7 @@ Topology analyse_topology(const Mesh& mesh) {
     }
     build_edge_curves(adjacency, drawn, topology);
     if (mesh.scheme == Scheme::bilinear) {
-        append_bilinear_patches(mesh, adjacency, drawn, topology);
+        append_bilinear_patches(mesh, adjacency, drawn, diced, topology);
         return topology;
     }
     assign_face_classes(mesh, adjacency, drawn, topology);

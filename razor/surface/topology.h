@@ -46,6 +46,7 @@ bool same_topology(const Mesh& a, const Mesh& b, double factor);
 /// `mesh` must be valid. Throws UserError for cages that cannot be rendered (naming the face and the cause).
 /// A flat triangle's sides 0, 1 and 3 are its sides from corner 0 to 1, 1 to 2 and 0 to 2; side 2 has no
 /// length. A side that no cage edge runs along has curve -1.
-Topology analyse_topology(const Mesh& mesh);
+/// `diced`: planar convex faces of a bilinear mesh have grids, not two triangles whatever the level.
+Topology analyse_topology(const Mesh& mesh, bool diced = false);
 
 } // namespace razor

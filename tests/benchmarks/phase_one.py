@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""phase_one.py [OPTIONS] [SCENE.toml ...] [-- OPTION ...]: what shading at vertices of grids takes, and what at hits.
+"""phase_one.py [OPTIONS] [SCENE.toml ...] [-- OPTION ...]: what shading at vertices of grids takes, over that at hits.
 
     tests/benchmarks/phase_one.py
     tests/benchmarks/phase_one.py configs/scenes/forest-textured.toml -- --size 256x256 --spp 4
 
 Each scene (the four benchmark scenes with patterns, where none is given) with textures evaluated at vertices of grids, as far as
-surfaces have any, and at hits only. A table: evaluations a pixel either way and their ratio; how many lanes of those at
-vertices are at work; native processor time either way (the least of --runs); how far the pictures' albedo is apart (root mean
-square). What follows -- goes to each run, in place of --size 512x512 --spp 16.
+surfaces have any; with flat faces cut into grids for it; and at hits only. A table: evaluations at hits; what part of that the
+other two ways take, how many lanes of those at vertices are at work, and their native processor time over that at hits (the
+least of --runs); how far the albedo of the second and the last way is apart (root mean square). What follows -- goes to each run, in
+place of --size 512x512 --spp 16.
 """
 import argparse
 import json
@@ -55,31 +56,34 @@ def rendered(options, scene, where, picture, folder):
 
 
 def row_of(options, scene, folder):
-    pictures = {where: os.path.join(folder, f"{where}.exr") for where in ("grids", "hits")}
+    pictures = {where: os.path.join(folder, f"{where}.exr") for where in ("diced", "grids", "hits")}
     counters, seconds = {}, {}
     for where, picture in pictures.items():
         counters[where], seconds[where] = rendered(options, scene, where, picture, folder)
     report = os.path.join(folder, "compare.json")
-    call([options.renderer, "compare", pictures["grids"], pictures["hits"], "--json", report])
+    call([options.renderer, "compare", pictures["diced"], pictures["hits"], "--json", report])
     with open(report, encoding="utf-8") as file:
         channels = json.load(file)["channels"]
     apart = [c["rmse"] for c in channels if c["name"].startswith("albedo.")]
-    grids = counters["grids"]
-    return {"scene": os.path.basename(scene).removesuffix(".toml"), "hits": grids["textured_hits"],
-            "evaluations": grids["shading_evaluations"],
-            "ratio": grids["shading_evaluations"] / max(grids["textured_hits"], 1),
-            "lanes": grids["grid_evaluations"] / max(grids["grid_lanes"], 1), "time": seconds["grids"] / seconds["hits"],
-            "apart": (sum(x * x for x in apart) / len(apart)) ** 0.5}
+    one_by_one = counters["hits"]["shading_evaluations"]
+    row = {"scene": os.path.basename(scene).removesuffix(".toml"), "hits": one_by_one}
+    for where in ("grids", "diced"):
+        c = counters[where]
+        row[where] = {"ratio": c["shading_evaluations"] / max(one_by_one, 1), "lanes": c["grid_evaluations"] / max(c["grid_lanes"], 1),
+                      "time": seconds[where] / seconds["hits"]}
+    row["apart"] = (sum(x * x for x in apart) / len(apart)) ** 0.5
+    return row
 
 
 def main():
     options = read_options()
-    print(f"{'scene':22}{'textured hits':>14}{'evaluations':>13}{'ratio':>8}{'lanes':>8}{'time':>8}{'albedo apart':>14}")
+    print(f"{'':20}{'evaluated':>12}    at vertices, if there are some  flat faces cut for it\n{'scene':20}{'at hits':>12}"
+          f"{'  evaluated   lanes    time' * 2}  albedo apart")
     with tempfile.TemporaryDirectory() as folder:
         for scene in options.scenes:
             r = row_of(options, scene, folder)
-            print(f"{r['scene']:22}{r['hits']:14}{r['evaluations']:13}{r['ratio']:8.3f}{r['lanes']:8.3f}{r['time']:8.3f}"
-                  f"{r['apart']:14.5f}", flush=True)
+            figures = "".join(f"{r[w]['ratio']:11.3f}{r[w]['lanes']:8.3f}{r[w]['time']:8.3f}" for w in ("grids", "diced"))
+            print(f"{r['scene']:20}{r['hits']:12}{figures}{r['apart']:14.5f}", flush=True)
     return 0
 
 

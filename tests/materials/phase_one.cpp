@@ -102,7 +102,7 @@ TEST(PhaseOne, ComesToWhatHitsFind) {
 TEST(PhaseOne, TakesAThirdOfTheEvaluations) {
     const Scene scene = all_maps(160);
     const Counters c = rendered(scene).statistics.frame.counters;
-    EXPECT_GT(c.textured_hits, 100000);
+    EXPECT_GT(c.textured_hits, 30000);
     EXPECT_EQ(c.textured_hits, c.camera_hits + c.bounce_hits);
     Scene matte = scene;
     matte.settings.bounces = 0;

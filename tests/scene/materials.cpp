@@ -144,6 +144,11 @@ TEST(Materials, PrintedSceneIsTheSame) {
         text += "[[material]]\nname = \"m" + std::to_string(i) +
                 "\"\nnormal_map = { texture = \"bricks\", scale = [0.1, 1], offset = [-0.3, 7], rotation = " +
                 std::to_string(i * 37.712345 - 500) + " }\n";
+    for (const char* const kind : {"checker", "bricks", "noise", "turbulence", "marble", "wood"})
+        text +=
+            std::string("[[texture]]\nname = \"") + kind + "\"\npattern = \"" + kind +
+            "\"\nspace = \"texture\"\nsize = 0.3\nlow = [0.1, 0, 1]\nhigh = 0.25\noctaves = 9\ngain = 0.7\n";
+    text += "[[material]]\nname = \"bumpy\"\nbump_map = \"wood\"\nbump = -0.07\nalbedo_map = \"marble\"\n";
     text += box + "material = \"glass\"\n";
     const SceneDescription description = parsed(text, folder.path());
     const std::string printed = to_toml(description);
@@ -152,6 +157,30 @@ TEST(Materials, PrintedSceneIsTheSame) {
     EXPECT_EQ(to_toml(again), printed);
     EXPECT_EQ(again.settings.bounces, 9);
     EXPECT_EQ(again.settings.diffuse_bounces, 3);
+}
+
+TEST(Materials, PatternsAreTextures) {
+    const SceneDescription d =
+        parsed("[[texture]]\nname = \"a\"\npattern = \"bricks\"\n"
+               "[[texture]]\nname = \"b\"\npattern = \"noise\"\nspace = \"texture\"\n"
+               "size = 3\nlow = 0.5\nhigh = [1, 0, 0]\noctaves = 2\ngain = 0.25\namount = 7\n"
+               "[[material]]\nname = \"m\"\nalbedo_map = \"a\"\nbump_map = \"b\"\nbump = 0.1\n" +
+               box);
+    Pattern bricks{.kind = PatternKind::bricks};
+    bricks.amount = 0.05F;
+    EXPECT_EQ(d.textures.at(0).pattern, bricks);
+    const Pattern noise{.kind = PatternKind::noise,
+                        .space = PatternSpace::texture,
+                        .size = 3,
+                        .low = glm::vec3(0.5F),
+                        .high = {1, 0, 0},
+                        .octaves = 2,
+                        .gain = 0.25F,
+                        .amount = 7};
+    EXPECT_EQ(d.textures.at(1).pattern, noise);
+    EXPECT_EQ(d.materials.at(0).bump_map, (TextureMap{.texture = 1}));
+    EXPECT_EQ(d.materials.at(0).bump, 0.1F);
+    EXPECT_EQ(d.materials.at(0).albedo, glm::vec3(1));
 }
 
 TEST(Materials, TheSkyHasAMap) {
@@ -222,6 +251,19 @@ TEST(Materials, MistakesNamePlaceCauseAndMend) {
          "s.toml:5:8: the name 't' is used twice"},
         {"[sky]\nmap = \"x\"\n" + box, "s.toml:2:7: there is no texture 'x'; write a [[texture]]"},
         {"[sky]\nmap = \"brick\"\n" + known + box, "sky.map 'brick' is unknown; did you mean 'bricks'?"},
+        {"[[texture]]\nname = \"t\"\npattern = \"noize\"\n" + box,
+         "texture.pattern 'noize' is unknown; did you mean 'noise'?"},
+        {"[[texture]]\nname = \"t\"\npattern = \"noise\"\nfile = \"a.png\"\n" + box,
+         "a texture is a pattern or a file's picture; leave one out"},
+        {"[[texture]]\nname = \"t\"\npattern = \"noise\"\nsize = 0\n" + box,
+         "texture.size = 0 is out of range"},
+        {"[[texture]]\nname = \"t\"\npattern = \"noise\"\noctaves = 25\n" + box,
+         "texture.octaves = 25 is out of range"},
+        {known + head + "bump_map = \"bricks\"\n" + box, "a bump map without a height; write bump = 0.05"},
+        {"[sky]\nmap = \"t\"\n[[texture]]\nname = \"t\"\npattern = \"noise\"\n" + box,
+         "a pattern cannot be the sky's map"},
+        {"[settings]\nshading = \"grid\"\n" + box,
+         "settings.shading 'grid' is unknown; did you mean 'grids'?"},
         {"[sky]\nradiance = 1\nrotation = 9\n" + box, "unknown key 'sky.rotation'"},
         {"[settings]\nbounces = 65\n" + box,
          "settings.bounces = 65 is out of range; write a number from 0 to 64"},

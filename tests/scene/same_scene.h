@@ -81,6 +81,7 @@ inline void expect_same(const Scene& a, const Scene& b) {
     for (std::size_t i = 0; i < a.textures.size(); ++i) {
         EXPECT_EQ(a.textures[i].name, b.textures[i].name);
         EXPECT_EQ(a.textures[i].file, b.textures[i].file);
+        EXPECT_EQ(a.textures[i].pattern, b.textures[i].pattern);
         EXPECT_EQ(a.textures[i].linear, b.textures[i].linear);
         EXPECT_EQ(a.textures[i].wrap_u, b.textures[i].wrap_u);
         EXPECT_EQ(a.textures[i].wrap_v, b.textures[i].wrap_v);
