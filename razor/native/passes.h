@@ -3,28 +3,12 @@
 #pragma once
 
 #include "razor/frame/frame.h"
+#include "razor/native/pass_figures.h"
 
 #include <functional>
 #include <vector>
 
 namespace razor {
-
-struct PassFigures {
-    int passes = 0;
-    int samples = 0;           // of each pixel, in all
-    double seconds = 0;        // of rendering, what is done after each pass included
-    double error = 0;          // of luminance, root mean square over the pixels; after one pass: unknown, 0
-    double relative_error = 0; // the same over the mean luminance
-};
-
-struct PassOptions {
-    int samples = 0; // of each pixel in a pass; 0: there are no passes
-    /// Passes go on as long as one like the last will end by then, and one is made in any case. 0: until the
-    /// settings' samples are taken.
-    double seconds = 0;
-    /// After each pass, from the calling thread: the film of all samples so far.
-    std::function<void(const Film&, const PassFigures&)> passed;
-};
 
 /// How far pictures are off, from how far their passes differ: the variance of the mean of batches (weighted
 /// by their samples) of each pixel's luminance. Passes share a sequence that fills what earlier ones left

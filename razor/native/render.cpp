@@ -143,31 +143,38 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
     fresh_ = true;
 }
 
-RenderResult NativeRenderer::render(const std::function<void(double)>& progress) {
+RenderResult NativeRenderer::render(const RenderCalls& calls) {
+    RenderOptions options = options_;
+    if (calls.progress)
+        options.progress = calls.progress;
+    if (calls.cancel != nullptr)
+        options.cancel = calls.cancel;
+    if (calls.passed)
+        options.passes.passed = calls.passed;
     RenderResult r;
     r.statistics.isa = kernels_.name;
     r.statistics.width_lanes = kernels_.width;
-    r.statistics.threads = options_.threads;
+    r.statistics.threads = options.threads;
     r.statistics.load_seconds = load_seconds_;
-    for (int n = 0; n < options_.frames; ++n) {
+    for (int n = 0; n < options.frames; ++n) {
         if (!fresh_)
             frame_->reset();
         fresh_ = false;
-        if (options_.tiles > 0)
-            frame_->take_tiles(0, options_.tiles);
+        if (options.tiles > 0)
+            frame_->take_tiles(0, options.tiles);
         std::function<void(double)> part;
-        if (progress)
-            part = [&](double fraction) { progress((n + fraction) / options_.frames); };
-        r.statistics.times.push_back(render_frame(*frame_, kernels_, options_, settings_.samples, part));
+        if (options.progress)
+            part = [&](double fraction) { options.progress((n + fraction) / options.frames); };
+        r.statistics.times.push_back(render_frame(*frame_, kernels_, options, settings_.samples, part));
     }
     r.statistics.frame = frame_->statistics();
     r.statistics.budget = frame_->budget();
     r.statistics.duplicates = frame_->duplicates();
     r.film = frame_->film();
     r.statistics.visible = visible_surface(r.film, camera_, settings_);
-    if (!options_.layers.empty()) {
+    if (!options.layers.empty()) {
         const auto begin = Clock::now();
-        const SurveyOptions asked{options_.layers, &kernels_, options_.touched, options_.cancel};
+        const SurveyOptions asked{options.layers, &kernels_, options.touched, options.cancel};
         if (!survey(*frame_, shown_part(settings_), asked, r.film))
             throw Cancelled{};
         r.statistics.survey_seconds = seconds_since(begin);
@@ -176,7 +183,7 @@ RenderResult NativeRenderer::render(const std::function<void(double)>& progress)
 }
 
 RenderResult render_native(const Scene& scene, const RenderOptions& options) {
-    return NativeRenderer(scene, options, false).render(options.progress);
+    return NativeRenderer(scene, options, false).render();
 }
 
 } // namespace razor

@@ -4,6 +4,7 @@
 #include "razor/frame/frame.h"
 #include "razor/image/image.h"
 #include "razor/native/passes.h"
+#include "razor/native/render_calls.h"
 #include "razor/native/visible.h"
 #include "razor/scene/scene.h"
 #include "razor/survey/survey.h"
@@ -78,8 +79,6 @@ struct RenderResult {
     RenderStatistics statistics;
 };
 
-struct Cancelled {};
-
 /// Renders a scene, and if it `moves` the same scene in other poses, whose topology is analysed once.
 class NativeRenderer {
 public:
@@ -89,8 +88,10 @@ public:
     /// UserError for scenes that cannot be rendered. `changes`: what of it is other than when this was last
     /// called, or the constructor (see Frame::pose()); null: anything.
     void pose(const Scene& scene, const SceneChanges* changes = nullptr);
-    /// options.frames times. `progress` as of the options, whose own is not called.
-    RenderResult render(const std::function<void(double fraction)>& progress = {});
+    /// options.frames times. `calls` take the place of the options' own, each that is given.
+    RenderResult render(const RenderCalls& calls = {});
+    /// Of the kernels: "avx2".
+    std::string isa() const { return kernels_.name; }
 
 private:
     void load(const Scene& scene, const SceneChanges* changes);

@@ -1,10 +1,10 @@
 #include "razor/program/layer_options.h"
 
+#include "razor/api/layers.h"
 #include "razor/image/output.h"
 #include "razor/program/arguments.h"
 #include "razor/program/touch_meter.h"
 #include "razor/scene/error.h"
-#include "razor/scene/nearest.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -15,11 +15,6 @@ namespace razor {
 namespace {
 
 constexpr Range values_range{-1e30, 1e30};
-
-/// Layers that every picture has are missing where they are infinite.
-bool is_missing_in(const Layer* layer, float value) {
-    return layer != nullptr && is_missing(*layer, value);
-}
 
 } // namespace
 
@@ -66,20 +61,7 @@ void LayerOptions::ask(RenderOptions& options, const std::vector<std::string>& o
 }
 
 std::string LayerOptions::shown_name() const {
-    std::vector<std::string> names;
-    for (const Layer& layer : all_layers()) {
-        if (shown_ == group_name(layer.group) || shown_ == layer.name)
-            return std::string(layer.name);
-        names.emplace_back(layer.name);
-    }
-    for (const Plane& plane : make_film(1, 1).planes) {
-        if (shown_ == plane.name)
-            return plane.name;
-        names.push_back(plane.name);
-    }
-    const std::vector<std::string_view> known(names.begin(), names.end());
-    throw UserError(fmt::format("--false-colour '{}' is no layer; did you mean {}? There are: {}",
-                                printable(shown_), nearest(shown_, known), fmt::join(names, ", ")));
+    return api::plane_name("--false-colour", shown_);
 }
 
 std::optional<ValueRange> LayerOptions::stated_range() const {
@@ -98,12 +80,7 @@ std::optional<ValueRange> LayerOptions::stated_range() const {
 }
 
 Film LayerOptions::shown(const Film& film) const {
-    const std::string name = shown_name();
-    const Layer* const layer = find_layer(name);
-    const Plane& plane = *film.find(name);
-    const auto missing = [layer](float value) { return is_missing_in(layer, value); };
-    const ValueRange range = stated_range().value_or(range_of(plane, missing));
-    return false_coloured(film, plane, layer != nullptr && layer->names, range, missing);
+    return api::in_colours(film, shown_name(), stated_range());
 }
 
 std::string LayerOptions::legend(const Film& film) const {
@@ -113,8 +90,7 @@ std::string LayerOptions::legend(const Film& film) const {
     const Layer* const layer = find_layer(name);
     if (layer != nullptr && layer->names)
         return fmt::format("{}: a colour for each number; black: nothing\n", name);
-    const auto missing = [layer](float value) { return is_missing_in(layer, value); };
-    const ValueRange range = stated_range().value_or(range_of(*film.find(name), missing));
+    const ValueRange range = stated_range().value_or(api::plane_range(film, name));
     return fmt::format("{}: {:.6g} (dark) to {:.6g} (bright); black: nothing\n", name, range.low, range.high);
 }
 

@@ -2,7 +2,6 @@
 
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
-#include "razor/native/targets.h"
 #include "razor/program/arguments.h"
 #include "razor/program/explain.h"
 #include "razor/program/frame_trace.h"
@@ -21,6 +20,7 @@
 #include <filesystem>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace razor {
 namespace {
@@ -114,7 +114,7 @@ void RenderCommand::add_to(CLI::App& app) {
     render.add_flag("--quiet", quiet_, "show no progress");
 }
 
-int RenderCommand::run() const {
+RenderOptions RenderCommand::options() const {
     RenderOptions options;
     options.threads = threads_.empty() ? std::max(1, static_cast<int>(std::thread::hardware_concurrency()))
                                        : parse_whole("--threads", threads_, threads_range);
@@ -130,7 +130,11 @@ int RenderCommand::run() const {
     if (resume_ && !sequence) {
         throw UserError("--resume without --frames; leave it out");
     }
-    const FrameRange frames = sequence ? parse_frames(frames_) : FrameRange{scene_.frame(), scene_.frame()};
+    if (sequence) {
+        parse_frames(frames_);
+    } else {
+        scene_.frame();
+    }
     if (!print_config_ && outputs_.empty() && statistics_.empty() && trace_.empty() && !explain_) {
         throw UserError("no output; add -o FILE.exr or -o FILE.png");
     }
@@ -162,12 +166,19 @@ int RenderCommand::run() const {
         throw UserError("layers are of whole frames; leave out --progressive and --time, or --layers and "
                         "--false-colour");
     }
+    return options;
+}
+
+int RenderCommand::run() const {
+    RenderOptions options = this->options();
+    const bool sequence = !frames_.empty();
+    const FrameRange frames = sequence ? parse_frames(frames_) : FrameRange{scene_.frame(), scene_.frame()};
     options.cancel = &watch_interrupts();
     if (print_config_) {
         fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
         return 0;
     }
-    MovingScene moving(sequence ? scene_.describe_moving() : scene_.describe());
+    api::Scene scene(sequence ? scene_.describe_moving() : scene_.describe());
     for (const std::string& output : outputs_) {
         check_numbered("-o", output, frames);
         check_output(numbered(output, frames.first));
@@ -176,9 +187,11 @@ int RenderCommand::run() const {
         check_numbered("--stats", statistics_, frames);
         check_writable(numbered(statistics_, frames.first));
     }
-
+    std::optional<FrameTrace> trace;
     if (!trace_.empty()) {
         check_writable(trace_);
+        trace.emplace(trace_, scene.toml());
+        trace->record_by(options);
     }
 
     Progress progress(!quiet_);
@@ -189,22 +202,36 @@ int RenderCommand::run() const {
         return std::all_of(outputs_.begin(), outputs_.end(), exists) &&
                (statistics_.empty() || exists(statistics_));
     };
-    std::unique_ptr<NativeRenderer> renderer;
+    api::Renderer renderer(std::move(scene), options, sequence);
     int written = 0;
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         if (resume_ && is_there(frame)) {
             continue;
         }
-        options.progress = [&](double fraction) {
+        if (sequence) {
+            renderer.go_to_frame(frame);
+        }
+        RenderCalls calls;
+        calls.progress = [&](double fraction) {
             progress.show((frame - frames.first + fraction) / frames.count());
         };
-        if (!render(renderer, moving, frame, options, progress, written)) {
+        if (progressive_) {
+            calls.passed = write_passes(renderer, frame, written);
+        }
+        if (!render(renderer, frame, calls, progress)) {
             fmt::print(stderr, "{}razor: interrupted; {}\n", progress.shown() ? "\r\x1b[K" : "",
                        sequence ? fmt::format(
                                       "frame {} and what follows are not written; go on with --resume", frame)
                        : written > 0 ? fmt::format("the pictures are of {} samples a pixel", written)
                                      : "nothing written");
             return interrupted_exit;
+        }
+    }
+    if (trace) {
+        const OutputGuard guard;
+        const std::string told = trace->finish();
+        if (!quiet_) {
+            fmt::print("{}\n", told);
         }
     }
     return 0;
@@ -228,13 +255,9 @@ PassOptions RenderCommand::passes() const {
     return passes;
 }
 
-void RenderCommand::write_pictures(int frame, const Film& film, const std::string& config,
-                                   std::string_view isa, const PassFigures& passes) const {
-    ImageAttributes attributes{
-        {"razor.version", std::string(version())}, {"razor.scene", config}, {"razor.isa", std::string(isa)}};
-    if (passes.passes > 0) {
-        attributes.emplace_back("razor.samples", fmt::format("{}", passes.samples));
-    }
+void RenderCommand::write_pictures(const api::Renderer& renderer, int frame, const Film& film,
+                                   const PassFigures& passes) const {
+    const ImageAttributes attributes = renderer.attributes(passes);
     const Film colours = layers_.shows() ? layers_.shown(film) : Film();
     for (const std::string& output : outputs_) {
         write_image(numbered(output, frame), layers_.shows() && is_png(output) ? colours : film, attributes,
@@ -242,47 +265,29 @@ void RenderCommand::write_pictures(int frame, const Film& film, const std::strin
     }
 }
 
-void RenderCommand::write_passes(PassOptions& passes, int frame, const std::string& config,
-                                 std::string_view isa, int& written) const {
+Passed RenderCommand::write_passes(const api::Renderer& renderer, int frame, int& written) const {
     using Clock = std::chrono::steady_clock;
     // Writing takes no more than about a tenth of the time.
-    passes.passed = [=, this, &written, next = Clock::time_point{}](const Film& film,
-                                                                    const PassFigures& figures) mutable {
+    return [this, &renderer, frame, &written,
+            next = Clock::time_point{}](const Film& film, const PassFigures& figures) mutable {
         const auto begin = Clock::now();
         if (begin < next) {
             return;
         }
         const OutputGuard guard;
-        write_pictures(frame, film, config, isa, figures);
+        write_pictures(renderer, frame, film, figures);
         written = figures.samples;
         const auto end = Clock::now();
         next = end + 10 * (end - begin);
     };
 }
 
-bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
-                           const RenderOptions& options, const Progress& progress, int& written) const {
+bool RenderCommand::render(api::Renderer& renderer, int frame, const RenderCalls& calls,
+                           const Progress& progress) const {
     const auto start = std::chrono::steady_clock::now();
-    std::string config;
-    RenderResult result;
-    std::optional<FrameTrace> trace;
+    const Film* film = nullptr;
     try {
-        moving.go_to_frame(frame);
-        config = to_toml(moving.description());
-        if (renderer) {
-            renderer->pose(moving.scene(), moving.changes());
-        } else {
-            RenderOptions all = options;
-            if (!trace_.empty()) {
-                trace.emplace(trace_, config);
-                trace->record_by(all);
-            }
-            if (progressive_) {
-                write_passes(all.passes, frame, config, native_target(options.isa).name, written);
-            }
-            renderer = std::make_unique<NativeRenderer>(moving.scene(), all, !frames_.empty());
-        }
-        result = renderer->render(options.progress);
+        film = &renderer.render(calls);
     } catch (const Cancelled&) {
         return false;
     } catch (const UserError& error) {
@@ -294,41 +299,51 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     const OutputGuard guard;
-    const std::string traced = trace ? trace->finish() : "";
-    const PassFigures passes = result.statistics.times.back().passes;
-    write_pictures(frame, result.film, config, result.statistics.isa, passes);
+    write_pictures(renderer, frame, *film, renderer.statistics().passes);
     if (!statistics_.empty()) {
-        const nlohmann::ordered_json report{{"program", "razor"},
-                                            {"version", version()},
-                                            {"options",
-                                             {{"threads", result.statistics.threads},
-                                              {"isa", result.statistics.isa},
-                                              {"workers_a_tree", options.share},
-                                              {"eager", options.eager},
-                                              {"memory_bytes", options.memory_bytes},
-                                              {"repeat", options.frames},
-                                              {"frame", frame}}},
-                                            {"scene", config},
-                                            {"seconds", seconds},
-                                            {"statistics", nlohmann::ordered_json(result.statistics)}};
-        write_text_file(numbered(statistics_, frame), report.dump(2) + "\n");
+        write_statistics(renderer, frame, seconds);
     }
-    const FrameStatistics& built = result.statistics.frame;
+    tell(renderer, frame, seconds, *film, progress);
+    return true;
+}
+
+void RenderCommand::write_statistics(const api::Renderer& renderer, int frame, double seconds) const {
+    const RenderStatistics& figures = renderer.figures();
+    const RenderOptions& asked = renderer.options();
+    const nlohmann::ordered_json report{{"program", "razor"},
+                                        {"version", version()},
+                                        {"options",
+                                         {{"threads", figures.threads},
+                                          {"isa", figures.isa},
+                                          {"workers_a_tree", asked.share},
+                                          {"eager", asked.eager},
+                                          {"memory_bytes", asked.memory_bytes},
+                                          {"repeat", asked.frames},
+                                          {"frame", frame}}},
+                                        {"scene", renderer.scene_text()},
+                                        {"seconds", seconds},
+                                        {"statistics", nlohmann::ordered_json(figures)}};
+    write_text_file(numbered(statistics_, frame), report.dump(2) + "\n");
+}
+
+void RenderCommand::tell(const api::Renderer& renderer, int frame, double seconds, const Film& film,
+                         const Progress& progress) const {
+    const RenderStatistics& figures = renderer.figures();
+    const FrameStatistics& built = figures.frame;
     if (!frames_.empty() && !quiet_) {
         fmt::print(stderr, "{}", progress.shown() ? "\r\x1b[K" : "");
         fmt::print("frame {}: {:.3f} s, of which {:.3f} s to load; {} instances and {} clusters touched, "
                    "{:.2f} million rays, {:.1f} MB built, slowest tile {:.1f} ms{}\n",
-                   frame, seconds, result.statistics.load_seconds, built.touched.instances,
-                   built.touched.clusters, static_cast<double>(built.counters.rays) / 1e6,
-                   made_megabytes(result.statistics), 1e3 * built.slowest_tile_seconds,
-                   memory_text(result.statistics.budget));
+                   frame, seconds, figures.load_seconds, built.touched.instances, built.touched.clusters,
+                   static_cast<double>(built.counters.rays) / 1e6, made_megabytes(figures),
+                   1e3 * built.slowest_tile_seconds, memory_text(figures.budget));
         std::fflush(stdout);
     } else if (progress.shown()) {
-        fmt::print(
-            stderr, "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
-            result.film.width, result.film.height, seconds, built.first_packet_seconds, built.refit_seconds);
+        fmt::print(stderr,
+                   "\r\x1b[K{} x {} pixels in {:.2f} s; first packet after {:.4f} s (refit {:.4f} s)\n",
+                   film.width, film.height, seconds, built.first_packet_seconds, built.refit_seconds);
     }
-    if (passes.passes > 0 && !quiet_) {
+    if (const PassFigures& passes = figures.times.back().passes; passes.passes > 0 && !quiet_) {
         fmt::print(
             "{} samples a pixel in {} passes, {:.2f} s{}\n", passes.samples, passes.passes, passes.seconds,
             passes.passes == 1 ? ""
@@ -337,15 +352,11 @@ bool RenderCommand::render(std::unique_ptr<NativeRenderer>& renderer, MovingScen
         std::fflush(stdout);
     }
     if (!quiet_) {
-        fmt::print("{}", layers_.legend(result.film));
+        fmt::print("{}", layers_.legend(film));
     }
     if (explain_) {
-        fmt::print("{}", explain(moving.scene(), result.statistics));
+        fmt::print("{}", explain(renderer.posed(), figures));
     }
-    if (!traced.empty() && !quiet_) {
-        fmt::print("{}\n", traced);
-    }
-    return true;
 }
 
 } // namespace razor

@@ -1,16 +1,14 @@
 // razor render: a scene or a model to pictures and statistics.
 #pragma once
 
-#include "razor/image/tone.h"
+#include "razor/api/renderer.h"
 #include "razor/native/render.h"
 #include "razor/program/layer_options.h"
 #include "razor/program/progress.h"
 #include "razor/program/scene_options.h"
-#include "razor/scene/animation/moving_scene.h"
 
 #include <CLI/CLI.hpp>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,20 +23,23 @@ public:
     int run() const;
 
 private:
-    /// One frame to its files; false: interrupted, none is written. `renderer` is made by the first.
-    /// `written`: of how many samples a pixel the pictures in the files are meanwhile.
-    bool render(std::unique_ptr<NativeRenderer>& renderer, MovingScene& moving, int frame,
-                const RenderOptions& options, const Progress& progress, int& written) const;
+    /// What the options ask for. Throws UserError where they contradict each other.
+    RenderOptions options() const;
+    /// One frame to its files; false: interrupted, none is written.
+    bool render(api::Renderer& renderer, int frame, const RenderCalls& calls, const Progress& progress) const;
+    /// Of a frame that took so long, loading included.
+    void write_statistics(const api::Renderer& renderer, int frame, double seconds) const;
+    void tell(const api::Renderer& renderer, int frame, double seconds, const Film& film,
+              const Progress& progress) const;
 
     /// Of PNG files. Throws UserError.
     Tone tone() const;
     /// In which samples are taken, where that is asked for. Throws UserError.
     PassOptions passes() const;
-    void write_pictures(int frame, const Film& film, const std::string& config, std::string_view isa,
+    void write_pictures(const api::Renderer& renderer, int frame, const Film& film,
                         const PassFigures& passes) const;
-    /// Makes passes write their pictures.
-    void write_passes(PassOptions& passes, int frame, const std::string& config, std::string_view isa,
-                      int& written) const;
+    /// What writes the pictures of passes. `written`: of how many samples a pixel those in the files are.
+    Passed write_passes(const api::Renderer& renderer, int frame, int& written) const;
 
     SceneOptions scene_;
     LayerOptions layers_;

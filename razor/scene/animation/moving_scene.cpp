@@ -25,10 +25,17 @@ bool same_cage(const Mesh& a, const Mesh& b) {
            a.face_vertices == b.face_vertices;
 }
 
-/// Of objects that have keys, and so no matrix.
 bool same_transform(const Transform& a, const Transform& b) {
+    if (a.matrix || b.matrix) // then the vectors say nothing
+        return a.matrix && b.matrix && std::memcmp(&*a.matrix, &*b.matrix, sizeof(Affine)) == 0;
     return same_vectors(std::array{a.scale, a.rotate, a.translate},
                         std::array{b.scale, b.rotate, b.translate});
+}
+
+/// `Description`: a scene's, const or not.
+template <class Description> auto& object_of(Description& scene, const PlacementName& name) {
+    auto& objects = name.group < 0 ? scene.objects : scene.groups[at(name.group)].objects;
+    return objects[at(name.placement)];
 }
 
 } // namespace
@@ -56,28 +63,51 @@ void MovingScene::go_to(double seconds) {
     changes_.emplace();
     for (const std::size_t mesh : meshes_)
         move_mesh(mesh, seconds);
-    // What build_graph() makes of objects: of those of group g group g + 1 of the graph, of those of none the
-    // last placements of its first.
-    const std::size_t before = scene_.graph.groups.empty()
-                                   ? 0
-                                   : scene_.graph.groups.front().placements.size() - moving_.objects.size();
-    for (const auto& [group, object] : objects_)
-        if (group < 0)
-            move(posed_.objects[at(object)], moving_.objects[at(object)],
-                 {0, static_cast<std::int32_t>(before) + object}, seconds);
-        else
-            move(posed_.groups[at(group)].objects[at(object)], moving_.groups[at(group)].objects[at(object)],
-                 {group + 1, object}, seconds);
+    for (const PlacementName& object : objects_)
+        move(object, seconds);
+    for (const PlacementName& object : edited_)
+        move(object, seconds);
+    edited_.clear();
     pose_view(posed_, moving_, seconds);
     scene_.camera = posed_.camera;
     scene_.lights = posed_.lights;
+    scene_.dicing_camera = posed_.dicing_camera;
+    scene_.sky = posed_.sky;
     begun_ = true;
+}
+
+void MovingScene::take_over(const SceneDescription& edited, std::span<const PlacementName> objects) {
+    moving_.camera = edited.camera;
+    moving_.camera_keys = edited.camera_keys;
+    moving_.camera_from = edited.camera_from;
+    moving_.lights = edited.lights;
+    moving_.light_keys = edited.light_keys;
+    moving_.lights_from = edited.lights_from;
+    moving_.dicing_camera = posed_.dicing_camera = edited.dicing_camera;
+    moving_.sky = posed_.sky = edited.sky;
+    for (const PlacementName& name : objects) {
+        object_of(moving_, name).transform = object_of(edited, name).transform;
+        object_of(moving_, name).keys = object_of(edited, name).keys;
+        edited_.push_back(name);
+    }
 }
 
 void MovingScene::begin(double seconds) {
     changes_.reset();
+    edited_.clear();
     posed_ = pose_at(moving_, seconds);
     scene_ = build_scene(posed_);
+}
+
+void MovingScene::move(const PlacementName& object, double seconds) {
+    // What build_graph() makes of objects: of those of group g group g + 1 of the graph, of those of none the
+    // last placements of its first.
+    const auto before = static_cast<std::int32_t>(
+        scene_.graph.groups.empty() ? 0
+                                    : scene_.graph.groups.front().placements.size() - moving_.objects.size());
+    const PlacementName placed = object.group < 0 ? PlacementName{0, before + object.placement}
+                                                  : PlacementName{object.group + 1, object.placement};
+    move(object_of(posed_, object), object_of(moving_, object), placed, seconds);
 }
 
 void MovingScene::move(ObjectDescription& posed, const ObjectDescription& moving, const PlacementName& name,

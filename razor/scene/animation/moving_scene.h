@@ -5,6 +5,7 @@
 #include "razor/scene/scene_changes.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace razor {
@@ -19,6 +20,10 @@ public:
     void go_to(double seconds);
     void go_to_frame(int frame) { go_to(frame / moving_.frame_rate); }
 
+    /// Another edition of the scene: other cameras, lights, light of the sky, and transforms (with their
+    /// keys) of these objects, of group -1 those of none; all else as it was. Go to a moment next.
+    void take_over(const SceneDescription& edited, std::span<const PlacementName> objects);
+
     // After go_to(), until the next one:
     /// pose_at() of the moment ...
     const SceneDescription& description() const { return posed_; }
@@ -30,6 +35,7 @@ public:
 
 private:
     void begin(double seconds);
+    void move(const PlacementName& object, double seconds);
     void move(ObjectDescription& posed, const ObjectDescription& moving, const PlacementName& name,
               double seconds);
     void move_mesh(std::size_t mesh, double seconds);
@@ -41,6 +47,7 @@ private:
     // What has keys, or other shapes: objects of a group (-1: of none) by number.
     std::vector<PlacementName> objects_;
     std::vector<std::size_t> meshes_;
+    std::vector<PlacementName> edited_; // likewise; since the last moment
 };
 
 } // namespace razor

@@ -1,0 +1,47 @@
+# Installs the library, builds razor/api/example with it and nothing else, and runs that.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER}/out)
+
+function(run EXPECTED)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE CODE OUTPUT_VARIABLE OUT ERROR_VARIABLE ERR)
+  if(NOT CODE EQUAL EXPECTED)
+    message(FATAL_ERROR "${ARGN} ended with ${CODE}:\n${OUT}\n${ERR}")
+  endif()
+  set(OUT "${OUT}" PARENT_SCOPE)
+  set(ERR "${ERR}" PARENT_SCOPE)
+endfunction()
+
+set(EXAMPLE ${SOURCES}/razor/api/example)
+run(0 ${CMAKE_COMMAND} --install ${BUILD} --component library --prefix ${FOLDER}/installed)
+run(0 ${CMAKE_COMMAND} -S ${EXAMPLE} -B ${FOLDER}/build -DCMAKE_PREFIX_PATH=${FOLDER}/installed -DCMAKE_CXX_COMPILER=${CXX}
+      "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Wconversion -Werror" -DCMAKE_BUILD_TYPE=Release)
+run(0 ${CMAKE_COMMAND} --build ${FOLDER}/build)
+
+# What it includes of the project are public headers, and beside them the standard library and GLM alone.
+run(0 ${CXX} -std=c++20 -M -isystem ${FOLDER}/installed/include ${EXAMPLE}/turntable.cpp)
+foreach(HEAVY nlohmann toml fmt CLI tinygltf OpenEXR opensubdiv isa/ kernels/ frame/)
+  if(OUT MATCHES "/${HEAVY}")
+    message(FATAL_ERROR "a public header includes ${HEAVY}:\n${OUT}")
+  endif()
+endforeach()
+
+run(0 ${FOLDER}/build/turntable ${SOURCES}/configs/scenes/default.toml ${FOLDER}/out 3)
+if(NOT OUT MATCHES "frame 2: .* million rays")
+  message(FATAL_ERROR "the example said:\n${OUT}")
+endif()
+foreach(PICTURE turn_0 turn_1 turn_2 depths)
+  if(NOT EXISTS ${FOLDER}/out/${PICTURE}.png)
+    message(FATAL_ERROR "${PICTURE}.png was not written")
+  endif()
+endforeach()
+file(SHA256 ${FOLDER}/out/turn_0.png FIRST)
+file(SHA256 ${FOLDER}/out/turn_1.png SECOND)
+if(FIRST STREQUAL SECOND)
+  message(FATAL_ERROR "the camera did not move")
+endif()
+run(2 ${FOLDER}/build/turntable ${FOLDER}/none.toml ${FOLDER}/out)
+if(NOT ERR MATCHES "^turntable: [^\n]*none.toml: no such file[^\n]*\n$")
+  message(FATAL_ERROR "the example's mistake reads:\n${ERR}")
+endif()
+
+run(0 ${CMAKE_COMMAND} -S ${EXAMPLE} -B ${FOLDER}/beside -DRAZOR_SOURCES=${SOURCES} -DCMAKE_CXX_COMPILER=${CXX})

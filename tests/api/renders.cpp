@@ -1,0 +1,159 @@
+// Rendering by the library: cancelled and begun again, told of, in passes, on several threads.
+#include "tests/api/films.h"
+
+#include "razor/api/layers.h"
+#include "razor/image/exr.h"
+#include "tests/scene/temporary_folder.h"
+
+#include <atomic>
+#include <thread>
+
+namespace razor {
+namespace {
+
+using api::Renderer;
+using api::Scene;
+
+Scene slow_scene() {
+    Scene scene = Scene::parse(small_scene);
+    Settings settings = scene.settings();
+    settings.width = settings.height = 160;
+    settings.samples = 24;
+    scene.set_settings(settings);
+    return scene;
+}
+void make_fast(Scene& scene) {
+    Settings settings = scene.settings();
+    settings.width = settings.height = 48;
+    settings.samples = 4;
+    scene.set_settings(settings);
+}
+
+TEST(Renders, CanBeCancelledFromAnotherThread) {
+    for (const int pass_samples : {0, 4}) {
+        Renderer renderer(slow_scene(), {.threads = 2, .pass_samples = pass_samples});
+        std::atomic<bool> cancel{false}, begun{false};
+        const std::jthread other([&] {
+            begun.wait(false);
+            cancel = true;
+        });
+        const auto progress = [&](double fraction) {
+            EXPECT_GE(fraction, 0);
+            EXPECT_LE(fraction, 1);
+            if (fraction > 0) {
+                begun = true;
+                begun.notify_one();
+            }
+        };
+        EXPECT_THROW(renderer.render({.progress = progress, .cancel = &cancel}), Cancelled);
+        EXPECT_THROW(renderer.statistics(), std::logic_error) << "of no picture";
+        EXPECT_THROW(renderer.render({.cancel = &cancel}), Cancelled) << "the flag is still set";
+        // The very frame that was left half-way, then others.
+        Renderer fresh(renderer.scene(), {.threads = 1, .pass_samples = pass_samples});
+        expect_same_bits(renderer.render(), fresh.render(), "again");
+        make_fast(renderer.scene());
+        make_fast(fresh.scene());
+        expect_same_bits(renderer.render(), fresh.render(), "small");
+    }
+}
+
+TEST(Renders, TellOfPasses) {
+    Scene scene = Scene::parse(small_scene);
+    make_fast(scene);
+    Renderer renderer(scene, {.threads = 1, .pass_samples = 2});
+    int told = 0;
+    Film last;
+    const auto passed = [&](const Film& film, const PassFigures& figures) {
+        EXPECT_EQ(figures.samples, 2 * ++told);
+        last = film;
+        EXPECT_EQ(renderer.attributes(figures).back(),
+                  (std::pair<std::string, std::string>("razor.samples", std::to_string(2 * told))));
+    };
+    const Film& film = renderer.render({.passed = passed});
+    EXPECT_EQ(told, 2);
+    EXPECT_EQ(renderer.statistics().passes.samples, 4);
+    expect_same_bits(film, last, "last pass");
+    EXPECT_THROW(Renderer(scene, {.layers = "pick", .pass_samples = 2}), UserError);
+}
+
+TEST(Renders, AreIndependentOfEachOther) {
+    const Scene scene = Scene::parse(small_scene);
+    Renderer alone(scene, {.threads = 1});
+    const Film expected = alone.render();
+    std::vector<Film> films(4);
+    {
+        std::vector<std::jthread> threads;
+        for (Film& film : films)
+            threads.emplace_back([&scene, &film] {
+                Renderer renderer(scene, {.threads = 2, .share = 1});
+                renderer.render();
+                film = renderer.render(); // again, nothing changed
+            });
+    }
+    for (const Film& film : films)
+        expect_same_bits(film, expected, "at once");
+}
+
+TEST(Renders, HaveLayersAsTheirFilesDo) {
+    Renderer renderer(Scene::parse(small_scene), {.threads = 2, .layers = "pick,lod"});
+    const Film film = renderer.render();
+    const TemporaryFolder folder;
+    renderer.write(folder / "a.exr", film);
+    ImageAttributes attributes;
+    expect_same_bits(read_exr(folder / "a.exr", &attributes), film, "file");
+    EXPECT_EQ(attributes, (ImageAttributes{{"razor.isa", renderer.statistics().isa},
+                                           {"razor.scene", renderer.scene_text()},
+                                           {"razor.version", std::string(api::version())}}));
+
+    // Names of what pixels show: what vanishes where it is taken away.
+    const std::vector<std::string> instances = renderer.instances(), meshes = renderer.scene().meshes();
+    EXPECT_EQ(instances, (std::vector<std::string>{"floor", "wheel", "front/left", "front/right", "back/left",
+                                                   "back/right"}));
+    Renderer other(renderer.scene(), {.threads = 2, .layers = "pick"});
+    other.scene().set_transform("wheel", {.translate = {0, 1000, 0}});
+    const Film without = other.render();
+    int wheel = 0;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const float instance = film.find("pick.instance")->values[i],
+                    mesh = film.find("pick.mesh")->values[i];
+        const bool shows = instance >= 0 && instances.at(static_cast<std::size_t>(instance)) == "wheel";
+        EXPECT_EQ(shows, mesh >= 0 && meshes.at(static_cast<std::size_t>(mesh)) == "gear");
+        EXPECT_EQ(shows, without.find("pick.instance")->values[i] != instance) << i;
+        wheel += shows ? 1 : 0;
+    }
+    EXPECT_GT(wheel, 20);
+
+    const std::string plane = api::plane_name("layer", "lod");
+    EXPECT_EQ(plane, "lod.level");
+    const ValueRange range = api::plane_range(film, plane);
+    EXPECT_LT(range.low, range.high);
+    const Film colours = api::in_colours(film, plane);
+    expect_same_bits(colours, api::in_colours(film, plane, range), "range");
+    const Film names = api::in_colours(film, "pick.instance");
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) { // black is nothing
+        EXPECT_EQ(colours.find("G")->values[i] == 0, film.find(plane)->values[i] > 1e30F);
+        EXPECT_EQ(names.find("G")->values[i] == 0, film.find("pick.instance")->values[i] == -1);
+    }
+    EXPECT_THROW(api::plane_name("layer", "lot"), UserError);
+    EXPECT_THROW(api::in_colours(film, "kd.depth"), std::invalid_argument);
+}
+
+TEST(Renders, TellWhatTheyTook) {
+    Renderer renderer(Scene::parse(small_scene), {.threads = 2});
+    EXPECT_THROW(renderer.statistics(), std::logic_error);
+    renderer.render();
+    const api::Statistics s = renderer.statistics();
+    EXPECT_EQ(s.threads, 2);
+    EXPECT_EQ(s.instances, 6);
+    EXPECT_GT(s.rays, 48 * 32 * 2);
+    EXPECT_GT(s.patches_opened, 0);
+    EXPECT_LE(s.patches_opened, s.patches);
+    EXPECT_GT(s.blocks, 0);
+    EXPECT_GT(s.grid_bytes, 0);
+    EXPECT_GT(s.render_seconds, 0);
+    EXPECT_NE(s.plan.find("reflecting"), std::string::npos) << s.plan;
+    EXPECT_NE(renderer.statistics_json().find("\"rays\""), std::string::npos);
+}
+
+} // namespace
+} // namespace razor
