@@ -39,6 +39,9 @@ std::string plane_name(std::string_view option, std::string_view text) {
             return plane.name;
         names.push_back(plane.name);
     }
+    names.emplace_back("samples"); // of adaptive sampling
+    if (text == names.back())
+        return names.back();
     const std::vector<std::string_view> known(names.begin(), names.end());
     throw UserError(fmt::format("{} '{}' is no layer; did you mean {}? There are: {}", option,
                                 printable(text), nearest(text, known), fmt::join(names, ", ")));

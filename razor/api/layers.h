@@ -11,8 +11,8 @@
 
 namespace razor::api {
 
-/// The plane that "lod.level", or "lod" for its group's first, or "depth.Z" means. Throws UserError, which
-/// begins with `option`, and names all there are.
+/// The plane that "lod.level", or "lod" for its group's first, "depth.Z" or "samples" means. Throws
+/// UserError, which begins with `option`, and names all there are.
 std::string plane_name(std::string_view option, std::string_view text);
 /// From the least to the largest of its values that are finite and not missing.
 ValueRange plane_range(const Film& film, std::string_view plane);

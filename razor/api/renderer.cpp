@@ -120,7 +120,7 @@ ImageAttributes Renderer::attributes(const PassFigures& passes) const {
                                {"razor.scene", scene_text()},
                                {"razor.isa", state_->native->isa()}};
     if (passes.passes > 0)
-        attributes.emplace_back("razor.samples", fmt::format("{}", passes.samples));
+        attributes.emplace_back("razor.samples", fmt::format("{:.6g}", passes.mean_samples));
     return attributes;
 }
 void Renderer::write(const std::filesystem::path& file, const Film& film, const Tone& tone) const {

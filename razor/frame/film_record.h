@@ -19,6 +19,14 @@ enum FilmPlane : std::int32_t {
 inline constexpr int sum_planes = 11;          // beauty, normal, albedo, depth, how many hit something
 inline constexpr int weighted_sum_planes = 18; // these, then weighted beauty and albedo, weights
 
+/// Which camera samples of a screen tile's pixels a pass takes, where that is not the same for all tiles. The
+/// sums of what was taken before are in the first set of planes, or (`swapped` is not 0) in the second.
+struct TilePass {
+    std::int32_t first, end; // equal: none
+    std::int32_t packet_samples_log2;
+    std::int32_t swapped;
+};
+
 /// Where samples lie, and what they count: evenly in their pixel; as a FilterBin says, all alike; or some of
 /// them less than nothing.
 enum FilterUse : std::int32_t { filter_pixel = 0, filter_even = 1, filter_weighted = 2 };

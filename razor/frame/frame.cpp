@@ -84,6 +84,8 @@ Frame::Impl::Impl(const Scene& scene, const FrameOptions& o) : meshes(scene.mesh
 void Frame::Impl::reset() {
     *header->queues.get() = QueueRecord{};
     choose_samples(0, settings.samples);
+    tile_samples.clear();
+    header->tile_passes.set(nullptr);
     deal_tiles(0, header->tiles_x * header->tiles_y);
     for (int t = 0; t < trees; ++t) {
         TreeRecord& tree = header->trees.get()[t];
@@ -259,10 +261,45 @@ void Frame::take_tiles(int first, int end) {
 
 void Frame::take_samples(int first, int count) {
     Impl& f = *impl_;
-    if (!f.options.passes || (first != 0 && first != f.header->first_sample + f.header->samples))
+    if (!f.options.passes || !f.tile_samples.empty() ||
+        (first != 0 && first != f.header->first_sample + f.header->samples))
         throw std::invalid_argument("a frame's passes must follow each other");
     f.choose_samples(first, count);
     f.deal_tiles(0, f.header->tiles_x * f.header->tiles_y);
+}
+
+void Frame::take_samples(const KernelTable& kernels, std::span<const int> ends) {
+    Impl& f = *impl_;
+    const auto tiles = static_cast<std::size_t>(f.header->tiles);
+    if (!f.options.tile_passes || ends.size() != tiles)
+        throw std::invalid_argument("a frame's passes by tile need tile_passes, and a number for each tile");
+    if (f.tile_samples.empty()) {
+        f.tile_samples.assign(tiles, 0);
+        f.tiles_placed = tile_places(kernels);
+        std::fill_n(f.tile_passes, tiles, TilePass{});
+        f.header->tile_passes.set(f.tile_passes);
+    }
+    for (std::size_t t = 0; t < tiles; ++t) {
+        TilePass& pass = f.tile_passes[t];
+        if (ends[t] < f.tile_samples[t])
+            throw std::invalid_argument("a tile's passes must follow each other");
+        // What it added last is what it goes on from.
+        pass.swapped = pass.swapped != (pass.end > pass.first ? 1 : 0) ? 1 : 0;
+        pass.first = f.tile_samples[t];
+        pass.end = f.tile_samples[t] = ends[t];
+        pass.packet_samples_log2 = packet_samples_log2(pass.end - pass.first);
+    }
+    f.deal_tiles(0, f.header->tiles_x * f.header->tiles_y);
+}
+
+std::vector<TilePlace> Frame::tile_places(const KernelTable& kernels) {
+    const FrameHeader& h = *impl_->header;
+    std::vector<std::int32_t> places(2 * static_cast<std::size_t>(h.tiles));
+    kernels.place_tiles(impl_->arguments(0), places.data());
+    std::vector<TilePlace> tiles;
+    for (auto place = places.begin(); place != places.end(); place += 2)
+        tiles.push_back({h.first_column + place[0], h.first_row + place[1]});
+    return tiles;
 }
 
 void Frame::stop() {
@@ -408,9 +445,7 @@ FrameStatistics Frame::statistics() const {
 }
 
 std::vector<TileCost> Frame::tile_costs(const KernelTable& kernels) {
-    const FrameHeader& h = *impl_->header;
-    std::vector<std::int32_t> places(2 * static_cast<std::size_t>(h.tiles));
-    kernels.place_tiles(impl_->arguments(0), places.data());
+    const std::vector<TilePlace> places = tile_places(kernels);
     std::map<std::int64_t, TileLog::Cost> all;
     for (const TileLog& worker : impl_->tile_logs)
         for (const auto& [tile, cost] : worker.costs()) {
@@ -419,8 +454,8 @@ std::vector<TileCost> Frame::tile_costs(const KernelTable& kernels) {
         }
     std::vector<TileCost> costs;
     for (const auto& [tile, cost] : all) {
-        const std::int32_t* place = &places[2 * static_cast<std::size_t>(tile)];
-        costs.push_back({h.first_column + place[0], h.first_row + place[1], cost.counters, cost.seconds});
+        const TilePlace& place = places[static_cast<std::size_t>(tile)];
+        costs.push_back({place.column, place.row, cost.counters, cost.seconds});
     }
     return costs;
 }
@@ -443,6 +478,13 @@ Film Frame::film() const {
         for (int y = 0; y < part.height; ++y, row += h.width)
             to = std::copy_n(row, part.width, to);
         values += static_cast<std::ptrdiff_t>(h.width) * h.height;
+    }
+    if (!impl_->tile_samples.empty()) {
+        float* const samples = film.add("samples").values.data();
+        for (std::size_t t = 0; t < impl_->tile_samples.size(); ++t)
+            each_pixel(impl_->tiles_placed[t], part, [&](std::size_t pixel) {
+                samples[pixel] = static_cast<float>(impl_->tile_samples[t]);
+            });
     }
     if (impl_->unit != 1)
         for (float& depth : film.find("depth.Z")->values)

@@ -10,11 +10,13 @@
 #include "razor/frame/kernel_table.h"
 #include "razor/frame/layout.h"
 #include "razor/frame/tile_costs.h"
+#include "razor/frame/tile_place.h"
 #include "razor/image/image.h"
 #include "razor/scene/scene.h"
 #include "razor/scene/scene_changes.h"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,8 @@ struct FrameOptions {
     bool moves = false;
     /// Samples may be taken in passes: take_samples().
     bool passes = false;
+    /// ... of which each tile may take another number.
+    bool tile_passes = false;
     /// Kernels say of memory that is done with that its contents are dead (razor/kernels/dead.h).
     bool discards = false;
     /// Keep what each screen tile costs: see Frame::tile_costs().
@@ -122,6 +126,12 @@ public:
     /// surfaces of a tile share what they ask for (razor/kernels/leave.h): those come in the order of samples
     /// then. Else as take_tiles(), of all tiles. Only with FrameOptions::passes.
     void take_samples(int first, int count);
+    /// Of each screen tile, by its number, up to so many of each pixel's camera samples in all, from those
+    /// that it has; none where it has as many. Else as take_samples() of all; until the next reset() this
+    /// one alone may be called. The film has a plane `samples` then. Only with FrameOptions::tile_passes.
+    void take_samples(const KernelTable& kernels, std::span<const int> ends);
+    /// Where each screen tile is, by its number.
+    std::vector<TilePlace> tile_places(const KernelTable& kernels);
     /// Runs one worker's share; every worker of options.workers must run, each in its own thread or fibre.
     /// Throws UserError if an arena is exhausted, or a memory budget too small for one screen tile.
     void render(const KernelTable& kernels, int worker);

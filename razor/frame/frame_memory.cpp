@@ -36,13 +36,16 @@ std::int32_t hashed(int seed) {
     return static_cast<std::int32_t>(h ^ (h >> 16));
 }
 
-/// So many that packets divide the samples, and a lane is left for each of two pixels.
+} // namespace
+
 int packet_samples_log2(int samples) {
     int log2 = 0;
     while ((2 << log2) < ISA_WIDTH && samples % (2 << log2) == 0)
         ++log2;
     return log2;
 }
+
+namespace {
 
 /// Calls visit(m) with the number of each of the scene's materials that the instance has, once or more often.
 template <class Visit> void each_material(const Scene& scene, const Instance& i, const Visit& visit) {
@@ -469,6 +472,8 @@ void Frame::Impl::place_view(const Scene& scene) {
         for (isa::ref<float>* sums : {&header->sums_before, &header->sums_after})
             sums->set(region<float>("frame buffer", -1, pixels * static_cast<std::size_t>(planes)));
     }
+    if (options.tile_passes)
+        tile_passes = region<TilePass>("frame buffer", -1, static_cast<std::size_t>(screen_tiles(s)));
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
     fill_view(scene);

@@ -40,6 +40,10 @@ inline int colour(int owner, Coloured kind) {
     return (owner * 97 + kind * 411) % coloured_lines;
 }
 
+/// How many of a pixel's samples packets of camera rays take together: so many that packets divide them, and
+/// a lane is left for each of two pixels.
+int packet_samples_log2(int samples);
+
 struct Frame::Impl {
     /// Of valid meshes, in the frame's unit.
     Impl(const Scene& scene, const FrameOptions& options);
@@ -84,6 +88,9 @@ struct Frame::Impl {
     std::vector<isa::lap_timer> waits;   // likewise
     std::vector<TileLog> tile_logs;      // likewise, where they are asked for
     std::atomic<std::int64_t> dealt = 0; // strides
+    TilePass* tile_passes = nullptr;     // of each screen tile, where that is asked for
+    std::vector<int> tile_samples;       // that each has or is taking; empty: all the same
+    std::vector<TilePlace> tiles_placed; // with them
 
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];

@@ -462,6 +462,7 @@ struct FrameHeader {
     /// Planes of sums over the samples before first_sample, and those to be left for the next pass. Two sets,
     /// since what is begun again must find the first as it was. Null: there is no next pass.
     isa::ref<float> sums_before, sums_after;
+    isa::ref<TilePass> tile_passes;   // by the tiles' numbers; null: samples are as said above, of all tiles
     isa::ref<FilterBin> filter_table; // filter_bins of x, then of y
     isa::ref<std::int32_t> blend_table;
     float field_origin[3];            // of the field of all camera rays (razor/kernels/morph.h): where the

@@ -21,14 +21,44 @@ struct PacketShape {
     sint samples_log2, columns_log2, rows_log2;
 };
 
-inline PacketShape packet_shape(const Context& c) {
+inline PacketShape packet_shape(sint samples_log2) {
     constexpr int width_log2 = __builtin_ctz(isa::width);
     PacketShape s;
-    s.samples_log2 = load(field(c.frame, &FrameHeader::packet_samples_log2));
+    s.samples_log2 = samples_log2;
     sint pixels_log2 = sint(width_log2) - s.samples_log2;
     s.rows_log2 = pixels_log2 >> 1;
     s.columns_log2 = pixels_log2 - s.rows_log2;
     return s;
+}
+
+/// Which samples of a tile's pixels are taken, and where their sums are kept (null: nowhere).
+struct TileSamples {
+    sint first, end, packet_log2;
+    pointer<float> before, after;
+};
+
+inline TileSamples samples_of_tile(const Context& c, sint tile) {
+    TileSamples t;
+    t.first = load(field(c.frame, &FrameHeader::first_sample));
+    sint samples = load(field(c.frame, &FrameHeader::samples));
+    t.end = t.first + samples;
+    t.packet_log2 = load(field(c.frame, &FrameHeader::packet_samples_log2));
+    t.before = load(field(c.frame, &FrameHeader::sums_before));
+    t.after = load(field(c.frame, &FrameHeader::sums_after));
+    pointer<TilePass> passes = load(field(c.frame, &FrameHeader::tile_passes));
+    if (branch(!is_null(passes))) {
+        pointer<TilePass> own = passes + tile;
+        t.first = load(field(own, &TilePass::first));
+        t.end = load(field(own, &TilePass::end));
+        t.packet_log2 = load(field(own, &TilePass::packet_samples_log2));
+        sint swapped = load(field(own, &TilePass::swapped));
+        if (branch(swapped != 0)) {
+            pointer<float> before = t.before;
+            t.before = t.after;
+            t.after = before;
+        }
+    }
+    return t;
 }
 
 struct Camera {
@@ -111,14 +141,12 @@ inline namespace resolve_kernel {
 /// Adds what earlier passes left, and leaves the sum for the next; planes begin at `before` and `after`.
 class KeptSums {
 public:
-    KeptSums(const Context& c, const vint& pixel, const vmask& m)
-        : before_(load(field(c.frame, &FrameHeader::sums_before))),
-          after_(load(field(c.frame, &FrameHeader::sums_after))), pixel_(pixel), m_(m) {
+    KeptSums(const Context& c, const TileSamples& taken, const vint& pixel, const vmask& m)
+        : before_(taken.before), after_(taken.after), pixel_(pixel), m_(m) {
         sint width = load(field(c.frame, &FrameHeader::width));
         sint height = load(field(c.frame, &FrameHeader::height));
-        sint first = load(field(c.frame, &FrameHeader::first_sample));
         plane_ = width * height;
-        later_ = first > 0;
+        later_ = taken.first > 0;
     }
     void keep(PixelSums& sums) {
         keep_vector(sums.beauty);
@@ -157,25 +185,24 @@ private:
     sbool later_;
 };
 
-[[gnu::noinline]] inline void keep_sums(const Context& c, const vint& pixel, const vmask& m,
-                                        PixelSums& sums) {
+[[gnu::noinline]] inline void keep_sums(const Context& c, const TileSamples& taken, const vint& pixel,
+                                        const vmask& m, PixelSums& sums) {
     phase_scope phase(phase_resolve);
-    KeptSums kept(c, pixel, m);
+    KeptSums kept(c, taken, pixel, m);
     kept.keep(sums);
 }
 /// What stands for the pixels' sums, `sums` being those of samples that all count alike.
-[[gnu::noinline]] inline void finish_weighted(const Context& c, const PacketShape& shape, const vint& pixel,
-                                              sint samples, const vmask& m, WeightedSums& weighted,
-                                              PixelSums& sums) {
+[[gnu::noinline]] inline void finish_weighted(const Context& c, const PacketShape& shape,
+                                              const TileSamples& taken, const vint& pixel, const vmask& m,
+                                              WeightedSums& weighted, PixelSums& sums) {
     phase_scope phase(phase_resolve);
     weighted.even = sums;
     add_weighted_lanes(shape, weighted);
-    pointer<float> after = load(field(c.frame, &FrameHeader::sums_after));
-    if (branch(!is_null(after))) {
-        KeptSums kept(c, pixel, m);
+    if (branch(!is_null(taken.after))) {
+        KeptSums kept(c, taken, pixel, m);
         kept.keep_weighted(weighted);
     }
-    sums = sums_of(weighted, samples);
+    sums = sums_of(weighted, taken.end);
 }
 
 /// Means of the samples into the film. Pixels without a hit have infinite depth and a zero normal.
@@ -216,9 +243,11 @@ inline namespace shade_kernel {
 /// Sampler::add<F>(c, rays, pixel, sample, sums) traces a packet's camera rays and adds what they see.
 template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(const Context& c, sint tile) {
     phase_scope phase(phase_shade);
+    TileSamples taken = samples_of_tile(c, tile);
+    if (branch(taken.first == taken.end))
+        return;
     sint width = load(field(c.frame, &FrameHeader::width));
     sint height = load(field(c.frame, &FrameHeader::height));
-    sint samples = load(field(c.frame, &FrameHeader::samples));
     sint tiles_x = load(field(c.frame, &FrameHeader::tiles_x));
     sint tiles_y = load(field(c.frame, &FrameHeader::tiles_y));
     Camera camera = load_camera(c);
@@ -233,14 +262,11 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
     sint x1 = min(x0 + tile_side, width);
     sint y1 = min(y0 + tile_side, height);
     sint seed = load(field(c.frame, &FrameHeader::sample_seed));
-    sint first = load(field(c.frame, &FrameHeader::first_sample));
-    sint end = first + samples;
     sint filter = load(field(c.frame, &FrameHeader::filter_use));
     sbool filtered = filter != filter_pixel;
     sbool weighted = filter == filter_weighted;
-    pointer<float> sums_after = load(field(c.frame, &FrameHeader::sums_after));
-    sbool passes = !is_null(sums_after);
-    PacketShape shape = packet_shape(c);
+    sbool passes = !is_null(taken.after);
+    PacketShape shape = packet_shape(taken.packet_log2);
     sint packet_samples = sint(1) << shape.samples_log2;
     sint columns = sint(1) << shape.columns_log2;
     sint rows = sint(1) << shape.rows_log2;
@@ -261,7 +287,7 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
             WeightedSums weighted_sums;
             if (branch(weighted))
                 weighted_sums = no_weighted_sums();
-            for (sint s = first; branch(s < end); s += packet_samples) {
+            for (sint s = taken.first; branch(s < taken.end); s += packet_samples) {
                 vint sample = member + vint(s);
                 vpoint square = sample_square(place, sample, dimension_film);
                 vpoint at = square;
@@ -278,10 +304,10 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
                 sums = weighted_sums.even;
             add_lanes(shape, sums);
             if (branch(weighted))
-                finish_weighted(c, shape, pixel, end, one, weighted_sums, sums);
+                finish_weighted(c, shape, taken, pixel, one, weighted_sums, sums);
             else if (branch(passes))
-                keep_sums(c, pixel, one, sums);
-            resolve(c, sums, pixel, end, one);
+                keep_sums(c, taken, pixel, one, sums);
+            resolve(c, sums, pixel, taken.end, one);
         }
     }
 }

@@ -1,5 +1,7 @@
 #include "razor/native/passes.h"
 
+#include "razor/native/adaptive_sampling.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -48,8 +50,7 @@ double ErrorEstimate::relative_error() const {
     return sum > 0 ? error() * static_cast<double>(pixels) / sum : 0;
 }
 
-PassFigures take_passes(Frame& frame, const PassOptions& options, int samples,
-                        const std::function<void(const std::function<void(double)>&)>& run,
+PassFigures take_passes(Frame& frame, const PassOptions& options, int samples, const RunWorkers& run,
                         const std::function<void(double)>& progress) {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
@@ -70,6 +71,7 @@ PassFigures take_passes(Frame& frame, const PassOptions& options, int samples,
                                : (figures.samples + fraction * count) / static_cast<double>(samples));
         });
         figures.samples += count;
+        figures.mean_samples = figures.samples;
         ++figures.passes;
         const Film film = frame.film();
         estimate.add(film, figures.samples);
@@ -80,6 +82,42 @@ PassFigures take_passes(Frame& frame, const PassOptions& options, int samples,
             options.passed(film, figures);
         figures.seconds = now();
         last = figures.seconds - before;
+    }
+    return figures;
+}
+
+PassFigures take_adaptive_passes(Frame& frame, const KernelTable& kernels, const Settings& settings,
+                                 const PassOptions& options, const RunWorkers& run,
+                                 const std::function<void(double)>& progress) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const auto now = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    AdaptiveSampling sampling(frame.tile_places(kernels), shown_part(settings), settings.noise_threshold,
+                              settings.samples);
+    PassFigures figures;
+    double seconds_a_sample = 0;
+    while (sampling.next()) {
+        const double before = now();
+        const auto added = static_cast<double>(sampling.added());
+        if (options.seconds > 0 && figures.passes > 0 && before + seconds_a_sample * added > options.seconds)
+            break;
+        frame.take_samples(kernels, sampling.samples());
+        const auto [from, to] = sampling.progress();
+        run([&, from = from, to = to](double fraction) {
+            if (progress)
+                progress(std::max(from + fraction * (to - from),
+                                  options.seconds > 0 ? std::min(now() / options.seconds, 1.0) : 0.0));
+        });
+        const Film film = frame.film();
+        sampling.add(film);
+        const int passes = figures.passes + 1;
+        figures = sampling.figures();
+        figures.passes = passes;
+        figures.seconds = now();
+        if (options.passed)
+            options.passed(film, figures);
+        figures.seconds = now();
+        seconds_a_sample = (figures.seconds - before) / added;
     }
     return figures;
 }

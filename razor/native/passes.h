@@ -27,10 +27,19 @@ private:
     int samples_ = 0, passes_ = 0;
 };
 
-/// `run` makes all workers do their share of the tiles dealt, and throws what they throw; it is given whom to
-/// tell the fraction that is done. The frame's settings say how many `samples` there are.
-PassFigures take_passes(Frame& frame, const PassOptions& options, int samples,
-                        const std::function<void(const std::function<void(double)>&)>& run,
+/// Makes all workers do their share of the tiles dealt, and throws what they throw; given whom to tell the
+/// fraction that is done.
+using RunWorkers = std::function<void(const std::function<void(double)>& progress)>;
+
+/// The frame's settings say how many `samples` there are.
+PassFigures take_passes(Frame& frame, const PassOptions& options, int samples, const RunWorkers& run,
                         const std::function<void(double)>& progress);
+
+/// Passes by noise (razor/native/adaptive_sampling.h): as many samples as each tile needs for the settings'
+/// noise_threshold, at most the settings' samples. With options.seconds also no more than there is time for.
+/// `kernels` are those that `run` runs.
+PassFigures take_adaptive_passes(Frame& frame, const KernelTable& kernels, const Settings& settings,
+                                 const PassOptions& options, const RunWorkers& run,
+                                 const std::function<void(double)>& progress);
 
 } // namespace razor

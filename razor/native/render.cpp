@@ -1,8 +1,11 @@
 #include "razor/native/render.h"
 
 #include "razor/frame/tree_groups.h"
+#include "razor/native/adaptive_sampling.h"
 #include "razor/native/targets.h"
 #include "razor/scene/error.h"
+
+#include <fmt/format.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -75,8 +78,8 @@ void run_workers(Frame& frame, const std::function<void(int worker)>& work,
 
 namespace {
 
-FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOptions& options, int samples,
-                       const std::function<void(double)>& progress) {
+FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOptions& options,
+                       const Settings& settings, const std::function<void(double)>& progress) {
     FrameTime time;
     const double pages_before = frame.statistics().page_seconds;
     const auto begin = Clock::now();
@@ -91,8 +94,10 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
         else
             run_workers(frame, kernels, shown, options.cancel);
     };
-    if (options.passes.samples > 0)
-        time.passes = take_passes(frame, options.passes, samples, run, progress);
+    if (settings.noise_threshold > 0)
+        time.passes = take_adaptive_passes(frame, kernels, settings, options.passes, run, progress);
+    else if (options.passes.samples > 0)
+        time.passes = take_passes(frame, options.passes, settings.samples, run, progress);
     else
         run(progress);
     time.render_seconds = seconds_since(begin);
@@ -120,7 +125,26 @@ void NativeRenderer::pose(const Scene& scene, const SceneChanges* changes) {
     load(scene, changes);
 }
 
+namespace {
+
+/// Throws UserError where samples cannot be taken by noise.
+void check_noise_threshold(const Scene& scene, const RenderOptions& options) {
+    if (scene.settings.noise_threshold <= 0)
+        return;
+    if (scene.settings.samples <= pilot_samples)
+        throw UserError(fmt::format("{}: with a noise threshold samples are the most that a pixel may have, "
+                                    "and {} leave no choice: each has {} to begin with; give more (--spp)",
+                                    scene.name, scene.settings.samples, pilot_samples));
+    if (!options.layers.empty())
+        throw UserError("layers are of whole frames; leave them out, or the noise threshold");
+    if (options.frames > 1 || options.tiles > 0 || options.run)
+        throw UserError("a noise threshold is of one frame, all of it, rendered once; set it to 0");
+}
+
+} // namespace
+
 void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
+    check_noise_threshold(scene, options_);
     camera_ = scene.camera;
     settings_ = scene.settings;
     const auto begin = Clock::now();
@@ -136,7 +160,8 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
                                 .memory_bytes = options_.memory_bytes,
                                 .apart = options_.layers.has(LayerSource::touch),
                                 .moves = moves_,
-                                .passes = options_.passes.samples > 0,
+                                .passes = options_.passes.samples > 0 || settings_.noise_threshold > 0,
+                                .tile_passes = settings_.noise_threshold > 0,
                                 .tile_costs = options_.layers.has(LayerSource::tile)});
     }
     load_seconds_ = seconds_since(begin);
@@ -165,7 +190,7 @@ RenderResult NativeRenderer::render(const RenderCalls& calls) {
         std::function<void(double)> part;
         if (options.progress)
             part = [&](double fraction) { options.progress((n + fraction) / options.frames); };
-        r.statistics.times.push_back(render_frame(*frame_, kernels_, options, settings_.samples, part));
+        r.statistics.times.push_back(render_frame(*frame_, kernels_, options, settings_, part));
     }
     r.statistics.frame = frame_->statistics();
     r.statistics.budget = frame_->budget();

@@ -38,9 +38,9 @@ struct RenderOptions {
     TouchMeter touched{};       // for some of them
     /// Instead of those of `isa`; and what runs all workers of a frame with them, instead of run_workers().
     const KernelTable* kernels = nullptr;
-    std::function<void(Frame& frame, const std::function<void(double)>& progress)> run;
+    std::function<void(Frame& frame, const std::function<void(double)>& progress)> run{};
     /// Called now and then with the fraction of tiles begun, from the calling thread.
-    std::function<void(double fraction)> progress;
+    std::function<void(double fraction)> progress{};
     /// Set to true from anywhere to stop early; render_native then throws Cancelled.
     const std::atomic<bool>* cancel = nullptr;
 };

@@ -124,8 +124,11 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
     if (const PassFigures passes = s.times.empty() ? PassFigures{} : s.times.back().passes; passes.passes > 0)
         json["passes"] = {{"count", passes.passes},
                           {"samples", passes.samples},
+                          {"mean_samples", passes.mean_samples},
                           {"error", passes.error},
-                          {"relative_error", passes.relative_error}};
+                          {"relative_error", passes.relative_error},
+                          {"noise_threshold", passes.threshold},
+                          {"within_threshold", passes.within_threshold}};
 }
 
 } // namespace razor

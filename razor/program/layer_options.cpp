@@ -26,9 +26,11 @@ void LayerOptions::add_to(CLI::App& render) {
                     "(hits, shadow rays), time; all: these without time")
         ->type_name("LIST");
     render
-        .add_option("--false-colour", shown_,
-                    "PNG files show a layer in colours: one of a group of --layers, such as lod.level or "
-                    "steps.nodes (lod: its first), or depth.Z; numbers that are names have a colour each")
+        .add_option(
+            "--false-colour", shown_,
+            "PNG files show a layer in colours: one of a group of --layers, such as lod.level or "
+            "steps.nodes (lod: its first), or depth.Z, or samples (of --noise-threshold); numbers that "
+            "are names have a colour each")
         ->type_name("LAYER");
     render
         .add_option("--range", range_,

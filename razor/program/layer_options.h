@@ -20,6 +20,8 @@ public:
     bool given() const { return !layers_.empty() || !shown_.empty(); }
     /// Whether PNG files show a layer.
     bool shows() const { return !shown_.empty(); }
+    /// What adaptive sampling alone has.
+    bool shows_samples() const { return shown_ == "samples"; }
     /// Asks for the layers. Throws UserError for unknown ones, and where no picture would have them.
     void ask(RenderOptions& options, const std::vector<std::string>& outputs) const;
     /// The film's layer in false colours.

@@ -45,6 +45,19 @@ std::string memory_text(const BudgetStatistics& s) {
                        percent(s.regenerated_nodes, s.made_nodes));
 }
 
+std::string passes_text(const PassFigures& p) {
+    std::string text = fmt::format("{:.6g} samples a pixel", p.mean_samples);
+    if (p.threshold > 0)
+        text += fmt::format(", at most {},", p.samples);
+    text += fmt::format(" in {} passes, {:.2f} s", p.passes, p.seconds);
+    if (p.threshold > 0)
+        text += fmt::format("; {:.1f} % of pixels within noise {:g}", 100 * p.within_threshold, p.threshold);
+    if (p.passes > 1)
+        text += fmt::format("; estimated error of luminance {:.2g}, {:.2g} % of its mean", p.error,
+                            100 * p.relative_error);
+    return text;
+}
+
 constexpr Range threads_range{1, 1024};
 constexpr Range repeat_range{1, 1000000};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
@@ -162,7 +175,7 @@ RenderOptions RenderCommand::options() const {
             "--progressive writes one frame's pictures again and again; give -o FILE, and leave out "
             "--frames");
     }
-    if (options.passes.samples > 0 && layers_.given()) {
+    if (options.passes.samples > 0 && !options.layers.empty()) {
         throw UserError("layers are of whole frames; leave out --progressive and --time, or --layers and "
                         "--false-colour");
     }
@@ -179,6 +192,9 @@ int RenderCommand::run() const {
         return 0;
     }
     api::Scene scene(sequence ? scene_.describe_moving() : scene_.describe());
+    if (layers_.shows_samples() && scene.settings().noise_threshold <= 0) {
+        throw UserError("--false-colour samples is of samples taken by noise; add --noise-threshold X");
+    }
     for (const std::string& output : outputs_) {
         check_numbered("-o", output, frames);
         check_output(numbered(output, frames.first));
@@ -203,7 +219,7 @@ int RenderCommand::run() const {
                (statistics_.empty() || exists(statistics_));
     };
     api::Renderer renderer(std::move(scene), options, sequence);
-    int written = 0;
+    double written = 0;
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         if (resume_ && is_there(frame)) {
             continue;
@@ -222,7 +238,7 @@ int RenderCommand::run() const {
             fmt::print(stderr, "{}razor: interrupted; {}\n", progress.shown() ? "\r\x1b[K" : "",
                        sequence ? fmt::format(
                                       "frame {} and what follows are not written; go on with --resume", frame)
-                       : written > 0 ? fmt::format("the pictures are of {} samples a pixel", written)
+                       : written > 0 ? fmt::format("the pictures are of {:.6g} samples a pixel", written)
                                      : "nothing written");
             return interrupted_exit;
         }
@@ -265,7 +281,7 @@ void RenderCommand::write_pictures(const api::Renderer& renderer, int frame, con
     }
 }
 
-Passed RenderCommand::write_passes(const api::Renderer& renderer, int frame, int& written) const {
+Passed RenderCommand::write_passes(const api::Renderer& renderer, int frame, double& written) const {
     using Clock = std::chrono::steady_clock;
     // Writing takes no more than about a tenth of the time.
     return [this, &renderer, frame, &written,
@@ -276,7 +292,7 @@ Passed RenderCommand::write_passes(const api::Renderer& renderer, int frame, int
         }
         const OutputGuard guard;
         write_pictures(renderer, frame, film, figures);
-        written = figures.samples;
+        written = figures.mean_samples;
         const auto end = Clock::now();
         next = end + 10 * (end - begin);
     };
@@ -344,11 +360,7 @@ void RenderCommand::tell(const api::Renderer& renderer, int frame, double second
                    film.width, film.height, seconds, built.first_packet_seconds, built.refit_seconds);
     }
     if (const PassFigures& passes = figures.times.back().passes; passes.passes > 0 && !quiet_) {
-        fmt::print(
-            "{} samples a pixel in {} passes, {:.2f} s{}\n", passes.samples, passes.passes, passes.seconds,
-            passes.passes == 1 ? ""
-                               : fmt::format("; estimated error of luminance {:.2g}, {:.2g} % of its mean",
-                                             passes.error, 100 * passes.relative_error));
+        fmt::print("{}\n", passes_text(passes));
         std::fflush(stdout);
     }
     if (!quiet_) {

@@ -39,7 +39,7 @@ private:
     void write_pictures(const api::Renderer& renderer, int frame, const Film& film,
                         const PassFigures& passes) const;
     /// What writes the pictures of passes. `written`: of how many samples a pixel those in the files are.
-    Passed write_passes(const api::Renderer& renderer, int frame, int& written) const;
+    Passed write_passes(const api::Renderer& renderer, int frame, double& written) const;
 
     SceneOptions scene_;
     LayerOptions layers_;

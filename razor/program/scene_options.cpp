@@ -45,6 +45,11 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
                    "size")
         ->type_name("X,Y,W,H");
     app.add_option("--spp", samples_, "camera samples a pixel")->type_name("N");
+    app.add_option("--noise-threshold", noise_threshold_,
+                   "take samples where there is noise: of each screen tile until the error of its luminance "
+                   "is found to be no more than this times the luminance's square root, from 16 to --spp; "
+                   "0.02 is hardly seen; without it, or 0, --spp everywhere")
+        ->type_name("X");
     app.add_option(
            "--filter", filter_,
            "what pixels are of the light about them: box (the default, of the pixel alone), triangle, "
@@ -109,6 +114,10 @@ SceneDescription SceneOptions::describe_moving() const {
         }
         if (!samples_.empty()) {
             settings.samples = parse_whole("--spp", samples_, samples_range);
+        }
+        if (!noise_threshold_.empty()) {
+            settings.noise_threshold =
+                parse_number("--noise-threshold", noise_threshold_, noise_threshold_range);
         }
         if (!filter_.empty()) {
             settings.filter = preset_filter(parse_word("--filter", filter_, filter_words));

@@ -27,8 +27,9 @@ public:
     bool lod_given() const { return !lod_.empty(); }
 
 private:
-    std::string scene_, size_, crop_, samples_, filter_, filter_radius_, light_samples_, sky_samples_,
-        bounces_, diffuse_bounces_, seed_, edge_pixels_, lod_, shading_, scheme_, frame_, up_ = "y";
+    std::string scene_, size_, crop_, samples_, noise_threshold_, filter_, filter_radius_, light_samples_,
+        sky_samples_, bounces_, diffuse_bounces_, seed_, edge_pixels_, lod_, shading_, scheme_, frame_,
+        up_ = "y";
     bool no_floor_ = false, everything_ = false;
 };
 

@@ -171,13 +171,16 @@ struct Settings {
     Crop crop{};                   // what is rendered of them; without width and height: all
     Filter filter{};               // what pixels are of the light about them
     int samples = 4;               // camera samples a pixel
-    int light_samples = 4;         // shadow rays a hit to each light; 0: lights are left out
-    int sky_samples = 4;           // shadow rays a hit to the sky; 0: it lights nothing
-    int bounces = 4;               // reflections and refractions in a row that are followed
-    int diffuse_bounces = 0;       // the first so many of them also of light that goes in all directions
-    bool everything = false;       // kernels that can do all that a scene may need, whether this one does
-    int seed = 0;                  // another takes other samples of the same picture
-    double edge_pixels = 1.0;      // target edge length in pixels where a mesh states no length
+    /// Not 0: each screen tile takes as many as it needs for its noise to be no more, at most `samples`
+    /// (razor/native/adaptive_sampling.h says what is measured).
+    double noise_threshold = 0;
+    int light_samples = 4;    // shadow rays a hit to each light; 0: lights are left out
+    int sky_samples = 4;      // shadow rays a hit to the sky; 0: it lights nothing
+    int bounces = 4;          // reflections and refractions in a row that are followed
+    int diffuse_bounces = 0;  // the first so many of them also of light that goes in all directions
+    bool everything = false;  // kernels that can do all that a scene may need, whether this one does
+    int seed = 0;             // another takes other samples of the same picture
+    double edge_pixels = 1.0; // target edge length in pixels where a mesh states no length
 };
 
 /// What is rendered of the picture, all of it where no crop is set.

@@ -47,6 +47,8 @@ Settings read_settings(TomlTable table) {
         }
     }
     settings.samples = table.whole("samples", settings.samples, samples_range);
+    settings.noise_threshold =
+        table.number("noise_threshold", settings.noise_threshold, noise_threshold_range);
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
     settings.bounces = table.whole("bounces", settings.bounces, bounces_range);

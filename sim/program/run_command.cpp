@@ -266,6 +266,11 @@ int RunCommand::run() const {
             interval_.empty() ? 100000 : razor::parse_whole("--interval", interval_, {1000, 1e9}));
     run_options.frames = frames_.empty() ? 1 : razor::parse_whole("--frames", frames_, {1, 1000});
     const razor::SceneDescription description = scene_.describe();
+    if (description.settings.noise_threshold > 0) {
+        throw razor::UserError(
+            "a noise threshold takes samples in passes, and the machine renders a frame in one "
+            "go; give --noise-threshold 0");
+    }
     Counted counted;
     counted.last_tile = razor::screen_tiles(description.settings) - 1;
     if (!tiles_.empty()) {

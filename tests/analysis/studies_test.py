@@ -66,6 +66,19 @@ class Studies(unittest.TestCase):
         self.assertLess(rows["lazy"]["built_bytes"], rows["eager"]["built_bytes"])
         self.assertEqual(rows["lazy"]["instances_in_all"], rows["eager"]["instances_in_all"])
 
+    def test_samples_by_noise(self):
+        rows, table = self.run_study("sampling/adaptive.py", os.path.join(SCENES, "lights.toml"), "--size", "48x32", "--uniform",
+                                     "8,32", "--noise", "0.2,0.1", "--most", "128", "--reference", "256")
+        self.assertEqual(len(table.splitlines()), 5)
+        even, by_noise = rows[:2], rows[2:]
+        self.assertLess(even[1]["error"], even[0]["error"])
+        self.assertLess(by_noise[1]["noise"], by_noise[0]["noise"])
+        self.assertLess(by_noise[0]["samples"], by_noise[1]["samples"])
+        for row in by_noise:
+            self.assertLess(row["samples"], row["most"])
+            self.assertGreater(row["gain"], 0)
+        self.assertIn("no numbers", self.refused("sampling/adaptive.py", "x.toml", "--noise", "little"))
+
 
 if __name__ == "__main__":
     unittest.main()

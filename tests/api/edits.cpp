@@ -147,6 +147,14 @@ const std::vector<Edit>& edits() {
              s.seed = 5;
          })},
         {"filter", settings([](Settings& s) { s.filter = preset_filter(FilterKind::mitchell); })},
+        {"noise threshold", settings([](Settings& s) {
+             s.samples = 48;
+             s.noise_threshold = 0.1;
+         })},
+        {"samples everywhere", settings([](Settings& s) {
+             s.samples = 2;
+             s.noise_threshold = 0;
+         })},
         {"crop", settings([](Settings& s) {
              s.crop = {16, 0, 16, 32};
          })}};
@@ -269,9 +277,9 @@ TEST(Edits, ThatAreWrongAreRefused) {
     EXPECT_EQ(wrong([&] { scene.set_material(material); }),
               "small: material 'stone': ior is 4; it must lie between 1 and 3");
     material.ior = 1.5F;
-    material.albedo_map.texture = 0;
+    material.albedo_map.texture = 1;
     EXPECT_EQ(wrong([&] { scene.set_material(material); }),
-              "small: material 'stone': albedo_map is texture number 0, of 0; -1 is none");
+              "small: material 'stone': albedo_map is texture number 1, of 1; -1 is none");
     for (const auto& [what, change] : std::vector<std::pair<const char*, std::function<void(Settings&)>>>{
              {"width", [](Settings& s) { s.width = 0; }},
              {"samples", [](Settings& s) { s.samples = 0; }},

@@ -48,9 +48,13 @@ corner = [-2, 5, -1]
 edge_u = [2, 0, 0]
 edge_v = [0, 0, 2]
 radiance = 9
+[[texture]]
+name = "veins"
+pattern = "marble"
 [[material]]
 name = "stone"
 albedo = [0.5, 0.4, 0.3]
+albedo_map = "veins"
 [[material]]
 name = "metal"
 albedo = [0.9, 0.6, 0.3]

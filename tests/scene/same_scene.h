@@ -60,6 +60,7 @@ inline void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.settings.sky_samples, b.settings.sky_samples);
     EXPECT_EQ(a.settings.bounces, b.settings.bounces);
     EXPECT_EQ(a.settings.diffuse_bounces, b.settings.diffuse_bounces);
+    EXPECT_EQ(a.settings.noise_threshold, b.settings.noise_threshold);
     EXPECT_EQ(a.settings.seed, b.settings.seed);
     EXPECT_EQ(a.sky_map, b.sky_map);
     EXPECT_EQ(a.settings.edge_pixels, b.settings.edge_pixels);

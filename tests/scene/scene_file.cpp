@@ -49,6 +49,7 @@ TEST(SceneFile, ReadsEveryKey) {
         samples = 9
         light_samples = 2
         sky_samples = 3
+        noise_threshold = 0.02
         seed = 11
         edge_pixels = 0.5
         lod = "recursive"
@@ -94,6 +95,7 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(scene.settings.samples, 9);
     EXPECT_EQ(scene.settings.light_samples, 2);
     EXPECT_EQ(scene.settings.sky_samples, 3);
+    EXPECT_EQ(scene.settings.noise_threshold, 0.02);
     EXPECT_EQ(scene.settings.seed, 11);
     EXPECT_EQ(scene.settings.edge_pixels, 0.5);
     EXPECT_EQ(scene.settings.lod, Lod::recursive);
