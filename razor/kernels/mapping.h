@@ -52,6 +52,7 @@ struct Mapping {
     // Where some texture is a pattern of objects:
     vvec solid;        // the point, in its object
     vfloat solid_area; // `asked`, in the object's units
+    vvec solid_spread; // how far a square on the surface reaches along the object's axes, by its side
 };
 
 /// Points of instances, or with `rest` 0 directions, in their objects.
@@ -75,8 +76,10 @@ inline vint solid_of(const vint& instance) {
     return instance >> 1;
 }
 
-/// Where points lie in their objects, if some texture is a pattern of those. `p`: instances' coordinates.
-inline void map_solid(const Context& c, const vint& instance, const vvec& p, const vmask& m, Mapping& map) {
+/// Where points lie in their objects, if some texture is a pattern of those. `p`, and two sides of the
+/// triangles that they lie on: instances' coordinates.
+inline void map_solid(const Context& c, const vint& instance, const vvec& p, const vvec& edge1,
+                      const vvec& edge2, const vmask& m, Mapping& map) {
     map.instance = instance;
     pointer<SolidRecord> solids = load(field(c.frame, &FrameHeader::solids));
     if (branch(is_null(solids)))
@@ -85,6 +88,14 @@ inline void map_solid(const Context& c, const vint& instance, const vvec& p, con
     map.solid = to_object(solids, record, p, vfloat(1.0F), m);
     vfloat shrink = gather(field(solids, &SolidRecord::shrink), record, m);
     map.solid_area = map.asked * (shrink * shrink);
+    vfloat zero(0.0F);
+    vvec along1 = to_object(solids, record, edge1, zero, m);
+    vvec along2 = to_object(solids, record, edge2, zero, m);
+    vvec normal = normalise(cross(along1, along2), {zero, zero, zero});
+    vfloat one(1.0F);
+    map.solid_spread.x = sqrt(max(one - normal.x * normal.x, 0.0F));
+    map.solid_spread.y = sqrt(max(one - normal.y * normal.y, 0.0F));
+    map.solid_spread.z = sqrt(max(one - normal.z * normal.z, 0.0F));
 }
 
 inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const vvec& edge2,

@@ -182,6 +182,7 @@ inline vfloat pattern_value(pointer<TextureRecord> t, sint kind, const vvec& q, 
     sint octaves = load(field(t, &TextureRecord::octaves));
     sfloat gain = load(field(t, &TextureRecord::gain));
     vfloat widest = max(width.x, width.y);
+    widest = max(widest, width.z);
     if (branch(kind == texture_noise)) {
         vfloat sum = sum_octaves<false>(q, widest, octaves, gain);
         return min(max(fma(sum, vfloat(0.5F), vfloat(0.5F)), 0.0F), 1.0F);
@@ -209,7 +210,7 @@ inline vfloat pattern_value(pointer<TextureRecord> t, sint kind, const vvec& q, 
         q = hit.solid;
         vfloat wide = sqrt(hit.solid_area);
         wide = wide * vfloat(per_cell);
-        width = {wide, wide, wide};
+        width = hit.solid_spread * wide;
     } else {
         vvec row_u = load_broadcast_vec(field(map, &MapRecord::row_u));
         vvec row_v = load_broadcast_vec(field(map, &MapRecord::row_v));

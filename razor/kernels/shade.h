@@ -183,7 +183,7 @@ template <Look L>
             beyond.material = select(of_face, face_material(c, h, record, of_face), beyond.material);
         beyond.known.normal = beyond.known.normal * side;
         beyond.known.share = share_of_vertices(c, block, target, s.hit);
-        map_solid(c, record, p, s.hit, beyond.map);
+        map_solid(c, record, p, edge1, edge2, s.hit, beyond.map);
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;
@@ -206,7 +206,8 @@ template <Look L>
 
 /// Shading normals as normal maps bend them.
 inline void bend_normals(const Context& c, const Materials& of, const Beyond& b, Surface& s) {
-    vint maps = of.whole(&MaterialRecord::map_bits) & vint(normal_bits);
+    vint maps = of.whole(&MaterialRecord::map_bits);
+    maps = maps & vint(normal_bits);
     vmask has = s.hit & (maps > vint(0));
     if (branch(none(has)))
         return;

@@ -132,7 +132,9 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
         GridPoints points = grid_points(block, from);
         Corners k = grid_corners(vertices, normals, stride, texcoord_arrays(shading), points, m);
         Mapping at = map_vertices(c, k, k.a + origin, absolute);
-        map_solid(c, vint(instance << 5), k.a, m, at);
+        vvec beside = k.b - k.a;
+        vvec above = k.c - k.a;
+        map_solid(c, vint(instance << 5), k.a, beside, above, m, at);
         Materials of = materials_of(c, vint(material), m);
         tally(c.counters->shading_evaluations, count(m));
         tally(c.counters->grid_evaluations, count(m));
