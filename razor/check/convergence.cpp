@@ -103,6 +103,8 @@ ConvergenceReport measure_convergence(Scene scene, const KernelTable& kernels,
     scene.settings.edge_pixels /= finer;
     for (Mesh& mesh : scene.meshes)
         mesh.edge_length /= finer;
+    for (Material& material : scene.materials)
+        material.two_sided = true; // rays come from anywhere
     Frame frame(scene, {});
     Tracer tracer(frame, slice);
     const Target target = curved_part(frame);

@@ -103,7 +103,7 @@ void add_quad(const BlockView& b, int i, int j, std::vector<Triangle>& out) {
     FlatEdge diagonal{p00, p11, 0};
     int number = h.number * 128 + (j * block_quads + i) * 2;
     out.push_back({h.patch, number, h.instance, {p00, p10, p11}, {bottom, right, reversed(diagonal)}});
-    if (h.triangles > 1)
+    if (triangles_in(h.triangles) > 1)
         out.push_back(
             {h.patch, number + 1, h.instance, {p00, p11, p01}, {diagonal, reversed(top), reversed(left)}});
 }

@@ -70,7 +70,7 @@ FieldSurface::FieldSurface(Frame& frame) : origins_(instance_origins(frame)) {
         Grid g;
         g.instance = first.instance;
         g.first_level = h.instances.get()[first.instance].first_level;
-        g.triangles = first.triangles;
+        g.triangles = triangles_in(first.triangles);
         g.nu = first.exponent[0];
         g.nv = first.exponent[1];
         g.part = record.kind < PatchKind::flat_quad && (record.side_flags[0] & side_half) != 0;

@@ -126,14 +126,18 @@ Mesh closed_part(const Mesh& mesh, const MeshReport& report) {
     part.face_sizes.clear();
     part.face_vertices.clear();
     part.face_texcoords.clear();
+    part.face_materials.clear();
     part.holes.clear();
     std::vector<bool> kept(mesh.points.size(), false);
     std::size_t corner = 0;
     for (std::size_t f = 0; f < mesh.face_sizes.size(); ++f) {
         const int size = mesh.face_sizes[f];
         const bool keep = report.body_is_closed[static_cast<std::size_t>(report.body_of_face[f])];
-        if (keep)
+        if (keep) {
             part.face_sizes.push_back(size);
+            if (!mesh.face_materials.empty())
+                part.face_materials.push_back(mesh.face_materials[f]);
+        }
         for (int i = 0; i < size; ++i, ++corner) {
             if (!keep)
                 continue;
@@ -151,6 +155,8 @@ Mesh closed_part(const Mesh& mesh, const MeshReport& report) {
 
 Scene closed_part(const Scene& scene, const std::vector<MeshReport>& reports) {
     Scene part = scene;
+    for (Material& material : part.materials)
+        material.two_sided = true; // rays from inside are to meet it
     part.meshes.clear();
     std::vector<int> number;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {

@@ -244,7 +244,7 @@ private:
                 const std::array<std::array<int, 2>, 4> at{
                     {{i, j}, {i + step, j}, {i + step, j + step}, {i, j + step}}};
                 add_triangle(g, at[0], at[1], at[2]);
-                if (block.triangles > 1)
+                if (triangles_in(block.triangles) > 1)
                     add_triangle(g, at[0], at[2], at[3]);
             }
     }

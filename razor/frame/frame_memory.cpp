@@ -186,11 +186,12 @@ void Frame::Impl::place_scene(const Scene& scene) {
 void Frame::Impl::place_materials(const Scene& scene) {
     plan.look = materials.look;
     header->cutouts = materials.cutouts ? 1 : 0;
+    header->one_sided = materials.one_sided ? 1 : 0;
     int shaded = 0;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n)
         shaded = std::max(shaded, shaded_arrays_in(shading_of(scene, geometry.instances[n])));
     header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded);
-    if (plan.look == look_matte)
+    if (plan.look == look_matte && !materials.one_sided)
         return;
     const auto copy = [&](const auto& table, auto& to, const char* structure) {
         using Record = typename std::remove_reference_t<decltype(table)>::value_type;

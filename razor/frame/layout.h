@@ -225,7 +225,7 @@ struct alignas(line_bytes) BlockHeader {
     std::int32_t absolute;         // level: first_level + level
     std::int32_t column, row;      // of the block in its patch and level
     std::int32_t quads_u, quads_v; // 1, 2, 4 or 8
-    std::int32_t triangles;        // a quad: 2, or 1 for a flat triangle
+    std::int32_t triangles;        // see triangles_in
     std::int32_t stride;
     std::int32_t exponent[2]; // of the patch along u and v, at this level
     std::int32_t hangs;       // not 0 if any of hang[] is not
@@ -266,6 +266,19 @@ template <class Int> constexpr Int children_in(Int shape) {
 }
 template <class Int> constexpr Int lines_between(Int shape) {
     return shape >> 3;
+}
+/// Of a block, in one word: how many triangles a quad has (2, or 1 of a flat triangle), and from where they
+/// are seen.
+enum SeenFrom : std::int32_t {
+    seen_from_both_sides = 0,
+    seen_from_front = 1,         // from where their vertices run counter-clockwise
+    seen_from_mirrored_front = 2 // a mirror turned them over: from where they run clockwise
+};
+template <class Int> constexpr Int triangles_in(Int word) {
+    return word & 3;
+}
+template <class Int> constexpr Int seen_from(Int word) {
+    return word >> 2;
 }
 inline constexpr int ancestor_words = 24;
 inline constexpr int ancestor_box = ancestor_words;
@@ -493,6 +506,7 @@ struct FrameHeader {
     isa::ref<std::int32_t> face_materials; // of every face
     std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
     std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h
+    std::int32_t one_sided;   // not 0: some material is seen from the front only
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

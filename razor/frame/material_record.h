@@ -15,11 +15,12 @@ struct alignas(line_bytes) MaterialRecord {
     float coat, coat_roughness;
     float emission[3];
     float normal_scale;
-    float bump;            // how high a bump map's 1 lies over its 0, in units of the object
-    std::int32_t map[6];   // of each MaterialMap: a MapRecord, or -1
-    float alpha_cutoff;    // 0: nothing is cut out
-    std::int32_t map_bits; // of the maps that it has: 1 << MaterialMap
-    std::int32_t padding[8];
+    float bump;             // how high a bump map's 1 lies over its 0, in units of the object
+    std::int32_t map[6];    // of each MaterialMap: a MapRecord, or -1
+    float alpha_cutoff;     // 0: nothing is cut out
+    std::int32_t map_bits;  // of the maps that it has: 1 << MaterialMap
+    std::int32_t one_sided; // not 0: seen from the front only
+    std::int32_t padding[7];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;

@@ -29,6 +29,7 @@ MaterialRecord material_record(const Material& m) {
     r.coat_roughness = m.coat_roughness;
     r.normal_scale = m.normal_scale;
     r.bump = m.bump;
+    r.one_sided = is_one_sided(m) ? 1 : 0;
     std::fill(std::begin(r.map), std::end(r.map), -1);
     return r;
 }
@@ -176,6 +177,7 @@ MaterialTables tabulate_materials(const Scene& scene, const std::vector<bool>& u
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& m = scene.materials[i];
         tables.add(m, used[i]);
+        tables.t.one_sided = tables.t.one_sided || (used[i] && is_one_sided(m));
         glossy = glossy || (used[i] && !(is_matte(m) && m.emission == glm::vec3(0)));
         mapped = mapped || tables.t.map_bits.back() != 0;
     }

@@ -19,6 +19,7 @@ struct MaterialTables {
     std::vector<MapRecord> maps;
     std::vector<TextureRecord> textures;
     bool cutouts = false;
+    bool one_sided = false;
     std::int32_t sky_map = -1;                            // of the scene's sky, its record in `maps`
     std::vector<const std::vector<std::uint32_t>*> words; // of all textures' levels, one after the other
     std::size_t texels = 0;                               // of all

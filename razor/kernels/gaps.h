@@ -71,7 +71,8 @@ inline constexpr float gap_slacks =
 /// block, and is hit as a point of the sub-edge. Lengths of sub-edges add up to the ancestor's exactly, so
 /// that modulo 2 every point is covered as if the gap were filled with triangles: the surface is closed in
 /// every projection, folded or not.
-inline void fill_gap(const Group& g, const View& v, int s, sint hang, sint i, sint triangle, Hits& hits) {
+inline void fill_gap(const Group& g, const View& v, int s, sint hang, sint i, sint triangle,
+                     const vmask& seen, Hits& hits) {
     Edge whole = ancestor_edge(g, v, s, hang, i);
     Edge part;
     part.p = project_vertex(g, v, side_vertex(v, s, i));
@@ -81,7 +82,7 @@ inline void fill_gap(const Group& g, const View& v, int s, sint hang, sint i, si
     vmask steep = dy > dx;
     Along of_part = along(steep, part);
     vfloat zero(0.0F);
-    vmask inside = g.alive & (min(of_part.begin, of_part.end) <= zero);
+    vmask inside = seen & (min(of_part.begin, of_part.end) <= zero);
     inside = inside & (max(of_part.begin, of_part.end) >= zero);
     if (branch(none(inside)))
         return;
@@ -125,6 +126,19 @@ inline vmask near_gap(const Group& g, const View& v, const Border& border, int s
     return g.alive & (abs(side) <= most);
 }
 
+/// Rays that see the quad's triangle beside side s.
+inline vmask see_beside(const Group& g, const View& v, int s, sint low) {
+    sint high = low + v.quads_u + 1;
+    Projected a = project_vertex(g, v, low);
+    Projected b = project_vertex(g, v, s < 2 ? low + 1 : high + 1);
+    Projected c = project_vertex(g, v, s < 2 ? high + 1 : high);
+    vfloat ab = exact_edge_function(a, b);
+    vfloat bc = exact_edge_function(b, c);
+    vfloat det = ab + bc;
+    det = det + exact_edge_function(c, a);
+    return g.alive & is_seen(g, v, det);
+}
+
 /// For these, out of line: seldom called.
 [[gnu::noinline]] inline void fill_gaps(const Group& g, const View& v, sint i, sint j, Hits& hits) {
     Border border = border_of(v, i, j);
@@ -132,8 +146,11 @@ inline vmask near_gap(const Group& g, const View& v, const Border& border, int s
     sint triangle = (v.number << 7) + quad;
     for (int s = 0; s < 4; ++s) {
         if (branch(border.side[s] & (v.longest[s] > 0))) {
+            vmask seen = g.alive;
+            if (branch(v.from != seen_from_both_sides))
+                seen = see_beside(g, v, s, j * (v.quads_u + 1) + i);
             for (sint hang = max(v.hang[s], 1); branch(hang <= v.longest[s]); ++hang)
-                fill_gap(g, v, s, hang, s % 2 == 0 ? i : j, triangle, hits);
+                fill_gap(g, v, s, hang, s % 2 == 0 ? i : j, triangle, seen, hits);
         }
     }
 }

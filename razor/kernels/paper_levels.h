@@ -162,7 +162,9 @@ template <Features F, bool Mixed>
     v.line = listed.line;
     v.patch = load(field(header, &BlockHeader::patch));
     v.number = load(field(header, &BlockHeader::number));
-    v.triangles = load(field(header, &BlockHeader::triangles));
+    sint triangles = load(field(header, &BlockHeader::triangles));
+    v.triangles = triangles_in(triangles);
+    v.from = seen_from(triangles);
     v.quads_u = load(field(header, &BlockHeader::quads_u));
     v.quads_v = load(field(header, &BlockHeader::quads_v));
     v.cells_at = load(field(header, &BlockHeader::cells_at));

@@ -7,6 +7,26 @@
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
 
+/// What a block's BlockHeader::triangles has besides their number: of a material that is seen from the front
+/// only, from where they are seen.
+inline sint seen_sides(const Context& c, const Dicing& d) {
+    sint some = load(field(c.frame, &FrameHeader::one_sided));
+    if (branch(some == 0))
+        return 0;
+    pointer<InstanceRecord> instance = c.instances + d.instance;
+    sint material = load(field(instance, &InstanceRecord::material));
+    if (branch(material < 0)) {
+        pointer<std::int32_t> of_faces = load(field(c.frame, &FrameHeader::face_materials));
+        material = load(of_faces + d.face);
+    }
+    pointer<MaterialRecord> materials = load(field(c.frame, &FrameHeader::materials));
+    sint one_sided = load(field(materials + material, &MaterialRecord::one_sided));
+    sint moved = load(field(instance, &InstanceRecord::moved));
+    sint front = select(moved < 0, sint(seen_from_mirrored_front), sint(seen_from_front));
+    sint from = front << 2;
+    return select(one_sided != 0, from, sint(seen_from_both_sides));
+}
+
 /// The header of block (column, row) of the patch at `line`, but for what depends on its vertices.
 inline Block begin_block(const Context& c, const Dicing& d, const Shape& s, sint line, sint column, sint row,
                          sint parent) {
@@ -34,7 +54,8 @@ inline Block begin_block(const Context& c, const Dicing& d, const Shape& s, sint
     store(field(h, &BlockHeader::row), row);
     store(field(h, &BlockHeader::quads_u), s.quads_u);
     store(field(h, &BlockHeader::quads_v), s.quads_v);
-    store(field(h, &BlockHeader::triangles), s.triangles);
+    sint sides = seen_sides(c, d);
+    store(field(h, &BlockHeader::triangles), s.triangles + sides);
     store(field(h, &BlockHeader::stride), s.stride);
     store(field(h, &BlockHeader::exponent), d.nu);
     store(field(h, &BlockHeader::exponent) + 1, d.nv);

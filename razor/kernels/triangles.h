@@ -75,6 +75,7 @@ struct View {
     pointer<float> words;
     vfloat ox, oy, oz;
     sint line, patch, number, triangles;
+    sint from; // a SeenFrom
     sint quads_u, quads_v;
     sint cells_at, ancestors_at, hang[4], hangs;
     /// log2 of the sub-edges on the longest edge that a coarser block may have in their place; hang or more.
@@ -132,8 +133,18 @@ inline vmask counted(const View&, const vmask& hit, const vfloat&) {
     return hit;
 }
 
-/// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense.
-template <class Seen>
+/// Whether rays come from where a triangle is seen; `det`: twice its area as they see it, positive where its
+/// vertices run counter-clockwise about the axis that the rays are sheared along.
+inline vmask is_seen(const Group& g, const View& v, const vfloat& det) {
+    vint sides = as_int(det) ^ as_int(g.scale_z);
+    vmask front = sides < vint(0);
+    vmask mirrored = vmask(v.from == seen_from_mirrored_front);
+    return front ^ mirrored;
+}
+
+/// Takes the hits of triangle (a, b, c) with edge functions U (opposite a), V, W, all in one sense: of
+/// counter-clockwise triangles, or Reversed.
+template <bool Reversed, class Seen>
 [[gnu::always_inline]] inline void accept(const Group& g, const Seen& v, vmask inside, vfloat U, vfloat V,
                                           vfloat W, const Projected& a, const Projected& b,
                                           const Projected& c, sint triangle, Hits& hits) {
@@ -147,6 +158,8 @@ template <class Seen>
     vmask hit = nearer(g, v, inside, t, number, hits);
     hit = counted(v, hit, t);
     if (branch(any(hit))) {
+        if (branch(v.from != seen_from_both_sides))
+            hit = hit & is_seen(g, v, Reversed ? -det : det);
         vfloat u = V * inverse;
         vfloat w = W * inverse;
         record(v, hit, t, u, w, number, hits);
@@ -179,7 +192,7 @@ template <class Seen>
         vfloat right = exact_edge_function(p10, p11);
         vfloat bottom = exact_edge_function(p00, p10);
         inside0 = inside0 & agree(right, minus, bottom);
-        accept(g, v, inside0, right, minus, bottom, p00, p10, p11, triangle, hits);
+        accept<false>(g, v, inside0, right, minus, bottom, p00, p10, p11, triangle, hits);
     }
     sbool second = v.triangles > 1;
     if (branch(second & any(inside1))) {
@@ -187,7 +200,7 @@ template <class Seen>
         vfloat top = exact_edge_function(p01, p11);
         vfloat left = exact_edge_function(p00, p01);
         inside1 = inside1 & agree(top, left, minus);
-        accept(g, v, inside1, top, left, minus, p00, p11, p01, triangle + 1, hits);
+        accept<true>(g, v, inside1, top, left, minus, p00, p11, p01, triangle + 1, hits);
     }
 }
 

@@ -38,7 +38,7 @@ struct Material {
     TextureMap bump_map{};   // heights, by luminance
     float bump = 0;          // how high its 1 lies over its 0, in units of the object
     float alpha_cutoff = 0;  // what albedo_map's opacity is below is not there; 0: all is
-    bool two_sided = true;   // else seen from the front only
+    bool two_sided = true;   // else seen from the front only: see is_one_sided()
 
     bool operator==(const Material&) const = default;
 };
@@ -46,6 +46,12 @@ struct Material {
 /// Reflects light in all directions alike, and nothing else.
 inline bool is_matte(const Material& m) {
     return m.metallic == 0 && m.specular == 0 && m.transmission == 0 && m.coat == 0;
+}
+
+/// Is there only for rays that come from the front, where its vertices run counter-clockwise. What lets light
+/// through has two sides whatever is stated: light leaves it by the other.
+inline bool is_one_sided(const Material& m) {
+    return !m.two_sided && m.transmission == 0;
 }
 
 } // namespace razor
