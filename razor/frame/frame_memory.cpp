@@ -204,6 +204,9 @@ void Frame::Impl::place_materials(const Scene& scene) {
     copy(materials.materials, header->materials, "materials");
     copy(materials.maps, header->maps, "materials");
     copy(materials.textures, header->textures, "materials");
+    header->sheens = materials.sheens ? 1 : 0;
+    if (materials.sheens)
+        copy(materials.sheen_albedo, header->sheen_albedo, "materials");
     if (materials.texels > 0) {
         auto* texel = region<std::int32_t>("textures", -1, materials.texels);
         header->texels.set(texel);

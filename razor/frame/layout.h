@@ -507,6 +507,9 @@ struct FrameHeader {
     std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
     std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h
     std::int32_t one_sided;   // not 0: some material is seen from the front only
+    std::int32_t sheens;      // not 0: some material has sheen
+    isa::ref<float>
+        sheen_albedo; // sheen_steps a kind of sheen (razor/frame/sheen_albedo.h); first that of none
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

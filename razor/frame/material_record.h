@@ -20,7 +20,9 @@ struct alignas(line_bytes) MaterialRecord {
     float alpha_cutoff;     // 0: nothing is cut out
     std::int32_t map_bits;  // of the maps that it has: 1 << MaterialMap
     std::int32_t one_sided; // not 0: seen from the front only
-    std::int32_t padding[7];
+    float sheen[3], sheen_alpha;
+    std::int32_t sheen_table; // its albedo: words of FrameHeader::sheen_albedo from there
+    std::int32_t padding[2];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;

@@ -1,5 +1,6 @@
 #include "razor/frame/material_records.h"
 
+#include "razor/frame/sheen_albedo.h"
 #include "razor/scene/error.h"
 
 #include <fmt/core.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace razor {
 namespace {
@@ -17,6 +19,7 @@ MaterialRecord material_record(const Material& m) {
     for (int k = 0; k < 3; ++k) {
         r.albedo[k] = m.albedo[k];
         r.emission[k] = m.emission[k];
+        r.sheen[k] = m.sheen[k];
     }
     r.metallic = m.metallic;
     r.roughness = m.roughness;
@@ -30,6 +33,8 @@ MaterialRecord material_record(const Material& m) {
     r.normal_scale = m.normal_scale;
     r.bump = m.bump;
     r.one_sided = is_one_sided(m) ? 1 : 0;
+    const float rough = std::max(m.sheen_roughness, least_sheen_roughness);
+    r.sheen_alpha = rough * rough;
     std::fill(std::begin(r.map), std::end(r.map), -1);
     return r;
 }
@@ -73,7 +78,10 @@ TextureRecord pattern_record(const Pattern& p) {
 
 class Tables {
 public:
-    explicit Tables(const Scene& scene) : scene_(scene), number_(scene.textures.size(), -1) {}
+    explicit Tables(const Scene& scene) : scene_(scene), number_(scene.textures.size(), -1) {
+        t.sheen_albedo.assign(sheen_steps, 0.0F);
+        t.sheens = scene.settings.everything;
+    }
 
     void add(const Material& m, bool used) {
         MaterialRecord r = material_record(m);
@@ -95,6 +103,8 @@ public:
             add_opacity(m.albedo_map.texture, t.textures[static_cast<std::size_t>(number)]);
             r.alpha_cutoff = m.alpha_cutoff;
         }
+        if (used && has_sheen(m))
+            add_sheen(r);
         t.map_bits.push_back(r.map_bits);
         t.needs_texcoords.push_back(texcoords);
         t.materials.push_back(r);
@@ -144,6 +154,18 @@ private:
         return number;
     }
 
+    /// Tables of one width are made once.
+    void add_sheen(MaterialRecord& r) {
+        t.sheens = true;
+        const auto [known, is_new] =
+            sheens_.try_emplace(r.sheen_alpha, static_cast<std::int32_t>(t.sheen_albedo.size()));
+        if (is_new) {
+            const std::vector<float> table = sheen_albedo(r.sheen_alpha);
+            t.sheen_albedo.insert(t.sheen_albedo.end(), table.begin(), table.end());
+        }
+        r.sheen_table = known->second;
+    }
+
     void add_words(const std::vector<std::uint32_t>& words) {
         t.texels += words.size();
         t.words.push_back(&words);
@@ -165,7 +187,8 @@ private:
     }
 
     const Scene& scene_;
-    std::vector<std::int32_t> number_; // of each texture, its record
+    std::vector<std::int32_t> number_;     // of each texture, its record
+    std::map<float, std::int32_t> sheens_; // by width
 };
 
 } // namespace

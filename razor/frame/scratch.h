@@ -90,7 +90,7 @@ enum BeamLine : int {
 };
 /// Light gathered for each lane by lobes (razor/kernels/glossy.h) other than the first.
 inline constexpr int packet_lobes = (packet_beam + 3 * beam_axis + 15) / 16 * 16;
-inline constexpr int most_lobes = 12; // four, each in red, green and blue where light has many colours
+inline constexpr int most_lobes = 15; // five, each in red, green and blue where light has many colours
 inline constexpr int packet_floats = packet_lobes + (most_lobes - 1) * ISA_WIDTH;
 
 /// So much further lies the scratch for tiles that are rendered in place of a wait (render_meanwhile() in

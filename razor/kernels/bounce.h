@@ -3,7 +3,7 @@
 #pragma once
 
 #include "razor/kernels/leave.h"
-#include "razor/kernels/material.h"
+#include "razor/kernels/sheen.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -21,6 +21,25 @@ struct BaseSample {
     vfloat density;
     vmask passes; // through the surface
 };
+
+/// Of what a surface reflects or lets through, the share that what covers it leaves in that direction.
+inline vfloat left_below(const Cloth& g, const Surface& s, const vvec& direction, const vmask& m) {
+    vfloat cosine = abs(dot(s.shading, direction));
+    return sheen_part(g, s, direction, cosine, m).kept;
+}
+/// What is scattered that way for light that comes with that cosine.
+inline vvec scattered(const Glossy& g, const Surface&, const Colours& colours, const vvec&,
+                      const vfloat& cosine, const vfloat& rest, const vmask&) {
+    vfloat kept = kept_below(g, cosine);
+    return colours.diffuse * (kept / rest);
+}
+inline vvec scattered(const Cloth& g, const Surface& s, const Colours& colours, const vvec& direction,
+                      const vfloat& cosine, const vfloat& rest, const vmask& m) {
+    SheenPart top = sheen_part(g, s, direction, cosine, m);
+    vfloat kept = kept_below(g, cosine) * top.kept;
+    vvec below = colours.diffuse * (kept / rest);
+    return madd(top.reflected / rest, g.sheen, below);
+}
 
 /// `choice`: in [0, 1), by which it is reflected or passes.
 inline BaseSample sample_base(const Surface& s, const Beyond& b, const Glossy& g, const Colours& colours,
@@ -144,8 +163,11 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
     }
 }
 
+/// Response: Glossy or Cloth.
+template <class Response>
 [[gnu::noinline]] inline Bounce sample_bounce(const Context& c, const Surface& s, const Beyond& b,
-                                              const Glossy& g, const Colours& colours, const Onward& onward) {
+                                              const Response& g, const Colours& colours,
+                                              const Onward& onward) {
     phase_scope phase(phase_shade);
     vfloat zero(0.0F);
     vpoint square = sample_square(s.pixel, s.sample, dimension_lobe);
@@ -157,6 +179,8 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
     of_base = of_base & !of_coat;
     vvec h = sample_facing(s, g, g.alpha, square);
     BaseSample way = sample_base(s, b, g, colours, h, which.v);
+    if constexpr (Response::lobes > Glossy::lobes)
+        way.factor = way.factor * left_below(g, s, way.direction, s.hit);
     if (branch(any(s.hit & of_coat))) {
         BaseSample on_top;
         sample_coat(s, g, sample_facing(s, g, g.coat_alpha, square), on_top);
@@ -174,9 +198,9 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
     if (branch(any(s.hit & out.diffuse))) {
         vfloat cosine;
         vvec direction = sample_cosine(s.shading, square, cosine);
-        vfloat kept = kept_below(g, cosine);
+        vvec factor = scattered(g, s, colours, direction, cosine, rest, s.hit);
         way.direction = select(out.diffuse, direction, way.direction);
-        way.factor = select(out.diffuse, colours.diffuse * (kept / rest), way.factor);
+        way.factor = select(out.diffuse, factor, way.factor);
         way.density = select(out.diffuse, cosine * 0.318309886183790672F, way.density);
         way.passes = way.passes & !out.diffuse;
     }

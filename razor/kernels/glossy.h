@@ -28,7 +28,6 @@ struct Matte {
 /// What lobes are multiplied with: diffuse reflection; the base at normal incidence; at grazing incidence;
 /// the coat.
 enum Lobe : int { lobe_diffuse = 0, lobe_normal = 1, lobe_grazing = 2, lobe_coat = 3, lobe_count = 4 };
-static_assert(3 * lobe_count == most_lobes);
 
 /// Of a hit: all that does not depend on where light comes from.
 struct Glossy {

@@ -13,34 +13,43 @@ inline namespace shade_kernel {
 
 /// What the lobes make of light of that colour. In the order of operations that matte surfaces have where all
 /// other lobes are nothing: then it is the same, to the last bit.
-inline vvec coloured(const Gathered<Glossy>& light, const vvec& radiance, const Colours& colours) {
+template <class Response>
+inline vvec coloured(const Gathered<Response>& light, const vvec& radiance, const Response& g,
+                     const Colours& colours) {
     vvec diffuse = times(radiance * light.lobe[lobe_diffuse], colours.diffuse);
     vfloat grazing = light.lobe[lobe_grazing] * colours.grazing;
     vfloat white = grazing + light.lobe[lobe_coat];
     vvec bright = madd(light.lobe[lobe_normal], colours.normal, {white, white, white});
-    return diffuse + times(radiance, bright);
+    vvec all = diffuse + times(radiance, bright);
+    if constexpr (Response::lobes > Glossy::lobes)
+        all = all + times(radiance * light.lobe[lobe_sheen], g.sheen);
+    return all;
 }
 
 /// The same of light of many colours.
-inline vvec coloured(const GatheredColours<Glossy>& light, const Colours& colours) {
+template <class Response>
+inline vvec coloured(const GatheredColours<Response>& light, const Response& g, const Colours& colours) {
     vvec diffuse = times(light.of(lobe_diffuse), colours.diffuse);
     vvec white = light.of(lobe_coat);
     vvec grazing = light.of(lobe_grazing);
     white = madd(colours.grazing, grazing, white);
     vvec normal = times(light.of(lobe_normal), colours.normal);
-    return diffuse + (normal + white);
+    vvec all = diffuse + (normal + white);
+    if constexpr (Response::lobes > Glossy::lobes)
+        all = all + times(light.of(lobe_sheen), g.sheen);
+    return all;
 }
 
 /// Adds all light that reaches the hit and is reflected towards the viewer, who gets `carried` of it.
 /// `fewer`: one shadow ray to each light.
-template <Features F, bool Mapped>
-inline void add_light(const Context& c, const Surface& s, const Glossy& g, const Colours& colours,
+template <Features F, bool Mapped, class Response>
+inline void add_light(const Context& c, const Surface& s, const Response& g, const Colours& colours,
                       const vvec& carried, sbool fewer, vvec& beauty) {
     vfloat zero(0.0F);
-    const auto add = [&](const Gathered<Glossy>& gathered, const vvec& radiance, sint stated, sint taken) {
+    const auto add = [&](const Gathered<Response>& gathered, const vvec& radiance, sint stated, sint taken) {
         sfloat number = to_float(taken);
         vvec arriving = radiance * vfloat(to_float(stated) / number);
-        vvec seen = times(coloured(gathered, arriving, colours), carried);
+        vvec seen = times(coloured(gathered, arriving, g, colours), carried);
         beauty = beauty + select(s.hit, seen, {zero, zero, zero});
     };
     sint lights = load(field(c.frame, &FrameHeader::light_count));
@@ -48,7 +57,7 @@ inline void add_light(const Context& c, const Surface& s, const Glossy& g, const
     for (sint n = 0; branch(n < lights); ++n) {
         sint stated = load(field(light, &LightRecord::samples));
         sint taken = select(fewer, sint(1), stated);
-        Gathered<Glossy> gathered = gather_light<F, Mapped>(c, s, light, g, taken);
+        Gathered<Response> gathered = gather_light<F, Mapped>(c, s, light, g, taken);
         add(gathered, load_broadcast_vec(field(light, &LightRecord::radiance)), stated, taken);
         light = light + 1;
     }
@@ -58,16 +67,16 @@ inline void add_light(const Context& c, const Surface& s, const Glossy& g, const
         if constexpr (Mapped) {
             pointer<SkyRecord> map = load(field(c.frame, &FrameHeader::sky_map));
             if (branch(!is_null(map))) {
-                GatheredColours<Glossy> gathered = gather_mapped_sky<F>(c, map, s, g, taken);
+                GatheredColours<Response> gathered = gather_mapped_sky<F>(c, map, s, g, taken);
                 vvec radiance = load_broadcast_vec(field(c.frame, &FrameHeader::sky));
                 sfloat number = to_float(taken);
                 radiance = radiance * vfloat(to_float(sky_samples) / number);
-                vvec seen = times(times(coloured(gathered, colours), radiance), carried);
+                vvec seen = times(times(coloured(gathered, g, colours), radiance), carried);
                 beauty = beauty + select(s.hit, seen, {zero, zero, zero});
                 return;
             }
         }
-        Gathered<Glossy> gathered = gather_light<F, Mapped>(c, s, TowardsSky{}, g, taken);
+        Gathered<Response> gathered = gather_light<F, Mapped>(c, s, TowardsSky{}, g, taken);
         add(gathered, load_broadcast_vec(field(c.frame, &FrameHeader::sky)), sky_samples, taken);
     }
 }
@@ -100,6 +109,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
     vvec background = load_broadcast_vec(field(c.frame, &FrameHeader::background));
     sint bounces = load(field(c.frame, &FrameHeader::bounces));
     sint diffuse_bounces = load(field(c.frame, &FrameHeader::diffuse_bounces));
+    sbool sheens = load(field(c.frame, &FrameHeader::sheens)) != 0;
     vvec carried{one, one, one};
     Bounce bounce;
     bounce.rays = camera;
@@ -145,6 +155,8 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         s.sample = sample;
         if constexpr (Mapped)
             bend_normals(c, materials_of(c, beyond.material, hit), beyond, s);
+        if (branch(sheens))
+            face_sheen(c, beyond, s);
         Onward onward{n < bounces, n < diffuse_bounces};
         Colours colours;
         Glossy g = find_lobes<Mapped>(c, s, beyond, onward, colours);
@@ -152,10 +164,17 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             note_first(s, h, colours.albedo, sums);
         vvec emitted = times(colours.emission, carried);
         sums.beauty = sums.beauty + select(hit, emitted, black);
-        add_light<F, Mapped>(c, s, g, colours, carried, n > 0, sums.beauty);
+        const auto go_on = [&](const auto& response) {
+            add_light<F, Mapped>(c, s, response, colours, carried, n > 0, sums.beauty);
+            if (branch(n < bounces))
+                bounce = sample_bounce(c, s, beyond, response, colours, onward);
+        };
+        if (branch(sheens))
+            go_on(cover(c, s, beyond, g, colours, onward));
+        else
+            go_on(g);
         if (branch(n == bounces))
             return;
-        bounce = sample_bounce(c, s, beyond, g, colours, onward);
         carried = select(bounce.rays.active, times(carried, bounce.carried), black);
         if (branch(none(bounce.rays.active)))
             return;

@@ -22,15 +22,17 @@ struct TextureMap {
 struct Material {
     std::string name;
     glm::vec3 albedo{0.7F, 0.7F,
-                     0.7F};      // in [0, 1]: of diffuse reflection, or of a metal's at normal incidence
-    float metallic = 0;          // in [0, 1]
-    float roughness = 0.5F;      // in [0, 1]; its square is the width of the GGX distribution
-    float specular = 0;          // in [0, 1]: weight of a dielectric's reflection; 0 (and no metal): matte
-    float ior = 1.5F;            // index of refraction of a dielectric, in [1, 3]
-    float transmission = 0;      // in [0, 1]: of what a dielectric does not reflect, so much goes through
-    float coat = 0;              // in [0, 1]: weight of a clear coat of index 1.5 on top
-    float coat_roughness = 0;    // in [0, 1]
-    glm::vec3 emission{0, 0, 0}; // radiance from both sides
+                     0.7F};       // in [0, 1]: of diffuse reflection, or of a metal's at normal incidence
+    float metallic = 0;           // in [0, 1]
+    float roughness = 0.5F;       // in [0, 1]; its square is the width of the GGX distribution
+    float specular = 0;           // in [0, 1]: weight of a dielectric's reflection; 0 (and no metal): matte
+    float ior = 1.5F;             // index of refraction of a dielectric, in [1, 3]
+    float transmission = 0;       // in [0, 1]: of what a dielectric does not reflect, so much goes through
+    float coat = 0;               // in [0, 1]: weight of a clear coat of index 1.5 on top
+    float coat_roughness = 0;     // in [0, 1]
+    glm::vec3 sheen{0, 0, 0};     // in [0, 1]: of what fibres reflect at grazing angles, below the coat
+    float sheen_roughness = 0.5F; // in [0, 1]; below 0.1 as 0.1
+    glm::vec3 emission{0, 0, 0};  // radiance from both sides
     /// Maps multiply what is above: albedo and emission by colour, metallic by blue, roughness by green.
     TextureMap albedo_map{}, metallic_map{}, roughness_map{}, emission_map{};
     TextureMap normal_map{}; // tangent-space normals, 2 rgb - 1
@@ -43,9 +45,13 @@ struct Material {
     bool operator==(const Material&) const = default;
 };
 
+inline bool has_sheen(const Material& m) {
+    return m.sheen != glm::vec3(0);
+}
+
 /// Reflects light in all directions alike, and nothing else.
 inline bool is_matte(const Material& m) {
-    return m.metallic == 0 && m.specular == 0 && m.transmission == 0 && m.coat == 0;
+    return m.metallic == 0 && m.specular == 0 && m.transmission == 0 && m.coat == 0 && !has_sheen(m);
 }
 
 /// Is there only for rays that come from the front, where its vertices run counter-clockwise. What lets light

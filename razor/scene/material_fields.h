@@ -45,6 +45,8 @@ template <class Visit, class... Materials> void visit_material_fields(Visit visi
     visit("transmission", unit_range, m.transmission...);
     visit("coat", unit_range, m.coat...);
     visit("coat_roughness", unit_range, m.coat_roughness...);
+    visit("sheen", unit_range, m.sheen...);
+    visit("sheen_roughness", unit_range, m.sheen_roughness...);
     visit("emission", radiance_range, m.emission...);
     visit("normal_scale", normal_scale_range, m.normal_scale...);
     visit("bump", coordinate_range, m.bump...);

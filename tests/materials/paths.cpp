@@ -164,6 +164,27 @@ TEST(Paths, PlasticAndCoats) {
     }
 }
 
+TEST(Paths, Sheen) {
+    for (const float roughness : {0.3F, 0.8F}) {
+        Scene s = room();
+        s.name = fmt::format("sheen of roughness {}, over plastic and metal", roughness);
+        s.meshes.push_back(box("box", {-0.9, 0, -0.6}, {1, 1.2, 0.9}, 25, 3));
+        s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
+        s.materials.back().metallic = 1;
+        s.materials.back().roughness = 0.5F;
+        s.materials.back().sheen = {0.3F, 0.6F, 0.9F};
+        s.materials.back().sheen_roughness = 1 - roughness;
+        s.materials[0].specular = 1;
+        s.materials[0].sheen = {1, 0.8F, 0.6F};
+        s.materials[0].sheen_roughness = roughness;
+        s.materials[1].albedo = {0, 0, 0};
+        s.materials[1].sheen = {0.4F, 1, 0.2F};
+        s.materials[1].sheen_roughness = roughness;
+        s.settings.diffuse_bounces = 2;
+        expect_same_picture(s, 160);
+    }
+}
+
 TEST(Paths, GlassBox) {
     for (const int bounces : {3, 6}) {
         Scene s = room();

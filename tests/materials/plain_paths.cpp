@@ -121,10 +121,9 @@ private:
     }
 
     /// Light of lights and, in all directions, of the sky. `glossy`: what rough lobes reflect of lights too.
-    dvec3 direct(const Frame3& frame, const PlainSurface& all, const PlainSurface& rough, const dvec3& p,
-                 const dvec3& v, bool glossy) {
+    dvec3 direct(const Frame3& frame, const PlainSurface& all, const dvec3& p, const dvec3& v, bool glossy) {
         const auto reflectance = [&](const dvec3& l) {
-            return glossy ? all.reflectance(v, l) : all.reflectance(v, l) - rough.reflectance(v, l);
+            return glossy ? all.reflectance(v, l) : all.scattered(v, l);
         };
         dvec3 sum(0);
         for (const Light& light : scene_.lights) {
@@ -139,8 +138,7 @@ private:
         }
         if (largest(dvec3(scene_.sky)) > 0) {
             const dvec3 l = cosine_direction();
-            const dvec3 seen = scene_.sky_map.texture >= 0 ? reflectance(l)
-                                                           : all.reflectance(v, l) - rough.reflectance(v, l);
+            const dvec3 seen = scene_.sky_map.texture >= 0 ? reflectance(l) : all.scattered(v, l);
             if (l.z > 0 && open(p, frame.out(l), std::numeric_limits<double>::infinity()))
                 sum += seen * sky_radiance(scene_, frame.out(l)) * pi;
         }
@@ -179,11 +177,12 @@ private:
             lost = m.specular * (f0 + (1 - f0) * PlainSurface::schlick(cosine));
             reflected = dvec3(lost);
         }
-        branches.push_back({0, {-v.x, -v.y, v.z}, beneath * reflected});
+        branches.push_back({0, {-v.x, -v.y, v.z}, beneath * plain.below_sheen(v.z, v.z) * reflected});
         if (through > 0 && sine_square < 1)
             branches.push_back({0,
                                 {-eta * v.x, -eta * v.y, -cosine},
-                                beneath * through * (1 - lost) * eta * eta * dvec3(m.albedo)});
+                                beneath * plain.below_sheen(v.z, cosine) * through * (1 - lost) * eta * eta *
+                                    dvec3(m.albedo)});
     }
 
     dvec3 reflected(const Facet& facet, const dvec3& p, const dvec3& toward, int n) {
@@ -191,12 +190,9 @@ private:
         const bool inside = glm::dot(facet.normal, toward) < 0;
         const Frame3 frame(inside ? -facet.normal : facet.normal);
         const dvec3 v = frame.in(toward);
-        Material without = m; // diffuse reflection
-        if (m.metallic == 0)
-            without.albedo = {0, 0, 0};
-        const PlainSurface all(m), rough(without);
+        const PlainSurface all(m);
         const bool last = n == scene_.settings.bounces;
-        const dvec3 sum = direct(frame, all, rough, p, v, last);
+        const dvec3 sum = direct(frame, all, p, v, last);
         if (last)
             return sum;
         const double alpha = width(m.roughness), coat_alpha = width(m.coat_roughness);
@@ -221,18 +217,18 @@ private:
                 double sum_of = 0;
                 for (const double w : widths)
                     sum_of += density(v, b.direction, w) / double(widths.size());
-                b.factor = rough.reflectance(v, b.direction) * (b.direction.z / sum_of);
+                b.factor = all.rough(v, b.direction) * (b.direction.z / sum_of);
             }
             // Not by this one direction: the choice must not depend on it.
             b.weight = largest(all.base_fresnel(v.z)) + all.coat_fresnel(v.z) + 0.1;
             branches.push_back(b);
         }
         const double scattered = (1.0 - m.metallic) * (1.0 - m.transmission);
-        if (n < scene_.settings.diffuse_bounces && scattered > 0) {
+        if (n < scene_.settings.diffuse_bounces && (scattered > 0 || has_sheen(m))) {
             Branch b;
             b.direction = cosine_direction();
-            b.factor = (all.reflectance(v, b.direction) - rough.reflectance(v, b.direction)) * pi;
-            b.weight = scattered * largest(dvec3(m.albedo));
+            b.factor = all.scattered(v, b.direction) * pi;
+            b.weight = scattered * largest(dvec3(m.albedo)) + largest(dvec3(m.sheen));
             b.diffuse = true;
             branches.push_back(b);
         }

@@ -1,7 +1,10 @@
 #include "tests/materials/plain_surface.h"
 
+#include "tests/materials/plain_sheen.h"
+
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -52,7 +55,7 @@ template <class Fresnel> dvec3 lobe(const dvec3& v, double alpha, int n, Fresnel
         if (along <= 0 || l.z <= 0)
             return dvec3(0);
         const double weight = alpha < 1e-3 ? 1 : shadowing(v, l, alpha) * along / (v.z * h.z);
-        return dvec3(fresnel(along)) * weight;
+        return dvec3(fresnel(along, l.z)) * weight;
     });
 }
 
@@ -79,16 +82,29 @@ double PlainSurface::coat_fresnel(double cosine) const {
     return m_.coat * (0.04 + 0.96 * schlick(cosine));
 }
 
-dvec3 PlainSurface::reflectance(const dvec3& v, const dvec3& l) const {
+double PlainSurface::below_sheen(double view, double light) const {
+    const double strength = std::max({m_.sheen.x, m_.sheen.y, m_.sheen.z});
+    return strength > 0 ? 1 - strength * plain_sheen(m_.sheen_roughness).taken(view, light) : 1;
+}
+
+dvec3 PlainSurface::scattered(const dvec3& v, const dvec3& l) const {
+    const double beneath = 1 - coat_fresnel(v.z);
+    const dvec3 diffuse = dvec3(m_.albedo) * ((1 - double(m_.metallic)) * (1 - double(m_.transmission)) / pi);
+    const dvec3 base = diffuse * below(v.z, l.z) * below_sheen(v.z, l.z);
+    if (!has_sheen(m_))
+        return beneath * base;
+    return beneath * (base + dvec3(m_.sheen) * plain_sheen(m_.sheen_roughness).reflectance(v, l));
+}
+
+dvec3 PlainSurface::rough(const dvec3& v, const dvec3& l) const {
     const dvec3 h = glm::normalize(v + l);
     const double along = glm::dot(v, h);
     const auto rough = [&](double roughness) {
         const double alpha = roughness * roughness;
         return alpha < 1e-3 ? 0 : distribution(h, alpha) * shadowing(v, l, alpha) / (4 * v.z * l.z);
     };
-    const double beneath = 1 - coat_fresnel(v.z);
-    const dvec3 diffuse = dvec3(m_.albedo) * ((1 - double(m_.metallic)) * (1 - double(m_.transmission)) / pi);
-    return beneath * (diffuse * below(v.z, l.z) + base_fresnel(along) * rough(m_.roughness)) +
+    const double beneath = (1 - coat_fresnel(v.z)) * below_sheen(v.z, l.z);
+    return beneath * base_fresnel(along) * rough(m_.roughness) +
            dvec3(coat_fresnel(along) * rough(m_.coat_roughness));
 }
 
@@ -96,13 +112,18 @@ dvec3 PlainSurface::reflected(const dvec3& v, int n) const {
     const double beneath = 1 - coat_fresnel(v.z);
     // Diffuse: directions of density cos / pi.
     dvec3 diffuse(0);
-    for (int i = 0; i < n; ++i)
-        diffuse += dvec3(below(v.z, std::sqrt((i + 0.5) / n)) / n);
+    for (int i = 0; i < n; ++i) {
+        const double light = std::sqrt((i + 0.5) / n);
+        diffuse += dvec3(below(v.z, light) * below_sheen(v.z, light) / n);
+    }
     diffuse *= dvec3(m_.albedo) * ((1 - double(m_.metallic)) * (1 - double(m_.transmission)));
     const double alpha = double(m_.roughness) * m_.roughness;
     const double coat_alpha = double(m_.coat_roughness) * m_.coat_roughness;
-    return beneath * (diffuse + lobe(v, alpha, n, [this](double c) { return base_fresnel(c); })) +
-           lobe(v, coat_alpha, n, [this](double c) { return coat_fresnel(c); });
+    const dvec3 fibres =
+        has_sheen(m_) ? dvec3(m_.sheen) * plain_sheen(m_.sheen_roughness).reflected(v.z) : dvec3(0);
+    const auto base = [&](double c, double light) { return base_fresnel(c) * below_sheen(v.z, light); };
+    return beneath * (diffuse + fibres + lobe(v, alpha, n, base)) +
+           lobe(v, coat_alpha, n, [this](double c, double) { return coat_fresnel(c); });
 }
 
 dvec3 PlainSurface::transmitted(const dvec3& v, int n) const {
@@ -117,7 +138,8 @@ dvec3 PlainSurface::transmitted(const dvec3& v, int n) const {
                if (l.z >= 0)
                    return dvec3(0);
                const double weight = alpha < 1e-3 ? 1 : shadowing(v, l, alpha) * along / (v.z * h.z);
-               return colour * (weight * (1 - dielectric(along)) * eta * eta);
+               const double kept = below_sheen(v.z, -l.z);
+               return colour * (weight * (1 - dielectric(along)) * eta * eta * kept);
            });
 }
 

@@ -13,8 +13,13 @@ class PlainSurface {
 public:
     explicit PlainSurface(const Material& material) : m_(material) {}
 
-    /// The value of the reflectance, 1 / steradian, of rough lobes and diffuse reflection; `light.z` > 0.
-    glm::dvec3 reflectance(const glm::dvec3& view, const glm::dvec3& light) const;
+    /// The value of the reflectance, 1 / steradian; `light.z` > 0: of what goes in all directions, which are
+    /// diffuse reflection and sheen, of rough lobes, and of both.
+    glm::dvec3 scattered(const glm::dvec3& view, const glm::dvec3& light) const;
+    glm::dvec3 rough(const glm::dvec3& view, const glm::dvec3& light) const;
+    glm::dvec3 reflectance(const glm::dvec3& view, const glm::dvec3& light) const {
+        return scattered(view, light) + rough(view, light);
+    }
 
     /// Of light of radiance 1 from everywhere, what is seen: of reflection, and of what comes through from
     /// below, each lobe by an integral over normals (n x n points).
@@ -25,6 +30,8 @@ public:
     static double schlick(double cosine);
     glm::dvec3 base_fresnel(double cosine) const;
     double coat_fresnel(double cosine) const;
+    /// Of all that is below the sheen, what this leaves.
+    double below_sheen(double cos_view, double cos_light) const;
 
 private:
     double dielectric(double cosine) const;

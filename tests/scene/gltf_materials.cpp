@@ -86,6 +86,8 @@ TEST(GltfMaterials, EveryFieldIsRead) {
            {"KHR_materials_specular", {{"specularFactor", 0.375}}},
            {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.0625}}},
            {"KHR_materials_transmission", {{"transmissionFactor", 0.625}}},
+           {"KHR_materials_sheen",
+            {{"sheenColorFactor", {0.25, 0.5, 0.75}}, {"sheenRoughnessFactor", 0.375}}},
            {"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
            {"VENDOR_x", 3}}}});
     const Material want{.name = "paint",
@@ -97,6 +99,8 @@ TEST(GltfMaterials, EveryFieldIsRead) {
                         .transmission = 0.625F,
                         .coat = 0.5F,
                         .coat_roughness = 0.0625F,
+                        .sheen = {0.25F, 0.5F, 0.75F},
+                        .sheen_roughness = 0.375F,
                         .emission = {4, 2, 8}};
     EXPECT_EQ(m, want);
     EXPECT_TRUE(

@@ -76,6 +76,8 @@ TEST(Materials, EveryFieldIsRead) {
         transmission = 0.625
         coat = 0.75
         coat_roughness = 0.875
+        sheen = [0.1, 0.2, 0.3]
+        sheen_roughness = 0.625
         emission = 3
         normal_scale = -0.5
         alpha_cutoff = 0.0625
@@ -88,6 +90,8 @@ TEST(Materials, EveryFieldIsRead) {
     EXPECT_EQ(m.transmission, 0.625F);
     EXPECT_EQ(m.coat, 0.75F);
     EXPECT_EQ(m.coat_roughness, 0.875F);
+    EXPECT_EQ(m.sheen, glm::vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(m.sheen_roughness, 0.625F);
     EXPECT_EQ(m.emission, glm::vec3(3));
     EXPECT_EQ(m.normal_scale, -0.5F);
     EXPECT_EQ(m.alpha_cutoff, 0.0625F);
@@ -138,7 +142,8 @@ TEST(Materials, PrintedSceneIsTheSame) {
     for (const char* const kind : {"matte", "principled", "mirror", "glass"})
         text += std::string("[[material]]\nname = \"") + kind + "\"\nkind = \"" + kind + "\"\n";
     text += "[[material]]\nname = \"all \\\"x\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nmetallic = 0.1\nroughness = "
-            "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nemission = [1e9, 0, 1]\n"
+            "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nsheen = [0, 0.1, "
+            "1]\nsheen_roughness = 0.7\nemission = [1e9, 0, 1]\n"
             "normal_scale = 0.77\nalpha_cutoff = 0.5\ntwo_sided = false\nalbedo_map = \"rough\"\n";
     for (int i = 0; i < 40; ++i)
         text += "[[material]]\nname = \"m" + std::to_string(i) +

@@ -69,6 +69,7 @@ TEST_F(Mtl, MattePhongGlassMirror) {
     EXPECT_EQ(mirror.metallic, 1);
     EXPECT_EQ(mirror.roughness, 0);
     EXPECT_EQ(mirror.albedo, glm::vec3(1, 0.5F, 0.25F));
+    EXPECT_EQ(material("Kd 1\nPr 0.5\nPs 0.75").sheen, glm::vec3(0.75F));
     EXPECT_EQ(material("Ke 1 20 3\nKd 7").emission, glm::vec3(1, 20, 3));
     EXPECT_EQ(material("Kd 7").albedo, glm::vec3(1)) << "one number stands for all; at most 1";
 }

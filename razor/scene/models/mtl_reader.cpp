@@ -27,7 +27,7 @@ struct MapStatement {
 struct Statement {
     std::string name;
     std::optional<glm::vec3> kd, ks, ke;
-    std::optional<double> ns, ni, d, pr, pm, pc, pcr;
+    std::optional<double> ns, ni, d, pr, pm, pc, pcr, ps;
     std::optional<std::int64_t> illum;
     std::optional<MapStatement> map_kd, map_ke, map_pr, map_pm, map_d, norm;
 };
@@ -116,7 +116,7 @@ private:
     void read_field(std::string_view keyword, Statement& s) {
         const std::pair<std::string_view, std::optional<double>*> numbers[] = {
             {"Ns", &s.ns}, {"Ni", &s.ni}, {"Pr", &s.pr},   {"Pm", &s.pm},
-            {"Pc", &s.pc}, {"d", &s.d},   {"Pcr", &s.pcr},
+            {"Pc", &s.pc}, {"d", &s.d},   {"Pcr", &s.pcr}, {"Ps", &s.ps},
         };
         const std::pair<std::string_view, std::optional<glm::vec3>*> colours[] = {
             {"Kd", &s.kd}, {"Ks", &s.ks}, {"Ke", &s.ke}};
@@ -187,6 +187,7 @@ public:
             m.roughness = part(*s.pr);
         m.coat = part(s.pc.value_or(0));
         m.coat_roughness = part(s.pcr.value_or(0));
+        m.sheen = glm::vec3(part(s.ps.value_or(0)));
         set_maps(s, m);
         return m;
     }

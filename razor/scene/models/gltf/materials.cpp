@@ -70,6 +70,10 @@ private:
         const Fields coat = f.extension("KHR_materials_clearcoat");
         m.coat = coat.number("clearcoatFactor", 0, weight);
         m.coat_roughness = coat.number("clearcoatRoughnessFactor", 0, weight);
+        const Fields sheen = f.extension("KHR_materials_sheen");
+        m.sheen = sheen.vector("sheenColorFactor", glm::vec3(0), weight);
+        m.sheen_roughness =
+            sheen.stated() ? sheen.number("sheenRoughnessFactor", 0, weight) : m.sheen_roughness;
         const Fields strength = f.extension("KHR_materials_emissive_strength");
         m.emission = f.vector("emissiveFactor", glm::vec3(0), weight) *
                      strength.number("emissiveStrength", 1, radiance_range);

@@ -1,0 +1,38 @@
+// Sheen in double precision, by its definition: Estevez & Kulla, Production Friendly Microfacet Sheen BRDF,
+// 2017. Nothing here is shared with the renderer.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace razor::test {
+
+/// A lobe of one roughness and the colour 1. z is the normal; directions point away from the surface.
+class PlainSheen {
+public:
+    explicit PlainSheen(double roughness);
+
+    /// 1 / steradian. Never gives back more than it gets: where the definition does, it is divided by the
+    /// larger of both directions' albedos.
+    double reflectance(const glm::dvec3& view, const glm::dvec3& light) const;
+    /// Of light of radiance 1 from everywhere.
+    double reflected(double cos_view) const;
+    /// The larger of both directions' albedos, at most 1: what all below does not have.
+    double taken(double cos_view, double cos_light) const;
+
+private:
+    double defined(const glm::dvec3& view, const glm::dvec3& light) const;
+    double lambda(double cosine) const;
+    /// By the definition, between places that are evenly spaced in the root of the cosine.
+    double albedo(double cosine) const;
+    template <class Value> double integral(double cos_view, Value value) const;
+
+    double alpha_;
+    std::vector<double> albedos_;
+};
+
+/// That of a roughness, made once.
+const PlainSheen& plain_sheen(double roughness);
+
+} // namespace razor::test

@@ -1,0 +1,119 @@
+// Sheen by itself: equal to its definition, the same both ways, and its table the integral over it.
+#include "test_targets.h"
+#include "tests/kernels/targets.h"
+#include "tests/materials/plain_sheen.h"
+#include "tests/materials/sheen_kernel.h"
+
+#include "razor/frame/sheen_albedo.h"
+
+#include <glm/vec3.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace razor::test {
+
+#define RAZOR_DECLARE(target)                                                                                \
+    namespace target {                                                                                       \
+    void sheen(const SheenArrays& a);                                                                        \
+    }
+RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+using Target = TargetFunction<SheenArrays>;
+std::vector<Target> targets() {
+    std::vector<Target> all;
+#define RAZOR_LIST(target) all.push_back({#target, target::sheen});
+    RAZOR_TEST_TARGETS(RAZOR_LIST)
+    return runnable(std::move(all));
+}
+
+constexpr int count = 2048;
+constexpr double roughnesses[] = {0.1, 0.25, 0.5, 0.75, 1};
+
+std::vector<dvec3> directions(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto next = [&] { return (static_cast<double>(random() >> 8U) + 0.5) / 16777216; };
+    std::vector<dvec3> all;
+    for (int i = 0; i < count; ++i) {
+        const double z = std::max(i % 4 == 0 ? std::pow(next(), 3) : next(), 2e-4), phi = 2 * pi * next();
+        const double s = std::sqrt(1 - z * z);
+        all.emplace_back(s * std::cos(phi), s * std::sin(phi), z);
+    }
+    return all;
+}
+
+struct Found {
+    std::vector<float> reflected, kept;
+};
+Found run(const Target& target, double roughness, const std::vector<dvec3>& view,
+          const std::vector<dvec3>& light) {
+    const std::vector<float> albedos = sheen_albedo(roughness * roughness);
+    Found found{std::vector<float>(count), std::vector<float>(count)};
+    std::vector<float> v(std::size_t{3} * count), l(v.size());
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            v[k * count + i] = static_cast<float>(view[i][static_cast<int>(k)]);
+            l[k * count + i] = static_cast<float>(light[i][static_cast<int>(k)]);
+        }
+    target.run({count, static_cast<float>(roughness * roughness), albedos.data(), v.data(), l.data(),
+                found.reflected.data(), found.kept.data()});
+    return found;
+}
+
+TEST(Sheen, IsThatOfItsDefinition) {
+    const std::vector<dvec3> view = directions(1), light = directions(2);
+    for (const Target& target : targets())
+        for (const double roughness : roughnesses) {
+            const Found found = run(target, roughness, view, light);
+            const PlainSheen& plain = plain_sheen(roughness);
+            for (std::size_t i = 0; i < count; ++i) {
+                const double want = pi * plain.reflectance(view[i], light[i]);
+                // Tables are straight between their places: a hundredth where they bend most.
+                EXPECT_NEAR(found.reflected[i], want, 0.03 * want + 1e-6)
+                    << target.name << ", roughness " << roughness << ", cosines " << view[i].z << ' '
+                    << light[i].z;
+                EXPECT_NEAR(found.kept[i], 1 - plain.taken(view[i].z, light[i].z), 0.02);
+            }
+        }
+}
+
+TEST(Sheen, IsTheSameBothWays) {
+    const std::vector<dvec3> view = directions(3), light = directions(4);
+    for (const Target& target : targets())
+        for (const double roughness : roughnesses) {
+            const Found there = run(target, roughness, view, light),
+                        back = run(target, roughness, light, view);
+            for (std::size_t i = 0; i < count; ++i) {
+                EXPECT_NEAR(there.reflected[i], back.reflected[i], 1e-5 * there.reflected[i]) << target.name;
+                EXPECT_NEAR(there.kept[i], back.kept[i], 1e-6) << target.name;
+            }
+        }
+}
+
+// And what is below gets no more than it leaves.
+TEST(Sheen, GivesNoMoreThanItGets) {
+    for (const double roughness : roughnesses) {
+        const std::vector<float> albedos = sheen_albedo(roughness * roughness);
+        ASSERT_EQ(albedos.size(), std::size_t{sheen_steps});
+        for (int k = 1; k < sheen_steps; ++k) {
+            const double root = double(k) / (sheen_steps - 1), cosine = root * root;
+            const double reflected = plain_sheen(roughness).reflected(cosine);
+            EXPECT_LT(reflected, 1.001) << roughness << ' ' << cosine;
+            EXPECT_LT(reflected, albedos[static_cast<std::size_t>(k)] * 1.01 + 1e-4)
+                << roughness << ' ' << cosine;
+        }
+    }
+}
+
+} // namespace
+} // namespace razor::test
