@@ -10,6 +10,7 @@
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
 #include "razor/scene/graph/records.h"
+#include "razor/scene/textures/shared_exponent.h"
 #include "razor/surface/texture_cage.h"
 
 #include <fmt/core.h>
@@ -74,6 +75,16 @@ SolidRecord solid_record(const Instance& i, const glm::dvec3& mesh_origin) {
     }
     r.shrink = static_cast<float>(1 / std::cbrt(std::abs(volume)));
     return r;
+}
+
+/// Of all that it shows; 1 of none.
+glm::vec3 mean_of_map(const Scene& scene, const TextureMap& map) {
+    if (map.texture < 0)
+        return glm::vec3(1);
+    const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
+    if (texture.pattern)
+        return glm::vec3((texture.pattern->low + texture.pattern->high) / 2.0F); // about
+    return unpack_shared_exponent(texture.pyramid->levels.back().texels.front());
 }
 
 } // namespace
@@ -480,6 +491,7 @@ void Frame::Impl::place_view(const Scene& scene) {
         tile_passes = region<TilePass>("frame buffer", -1, static_cast<std::size_t>(screen_tiles(s)));
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
+    place_emitters(scene);
     fill_view(scene);
 }
 
@@ -540,6 +552,7 @@ void Frame::Impl::fill_view(const Scene& scene) {
     put(h.film_y, -v.up * pixel);
     put(h.background, glm::dvec3(scene.sky));
     fill_lights(scene);
+    fill_emitters(scene);
     SkyRecord* map = h.sky_map.get();
     const bool dark = map != nullptr && map->rows == 0;
     if (std::max({scene.sky.x, scene.sky.y, scene.sky.z}) > 0 && !dark) {
@@ -584,6 +597,46 @@ void Frame::Impl::fill_lights(const Scene& scene) {
             record->dimension = light_dimension(static_cast<int>(l));
             header->lights.get()[header->light_count++] = *record;
         }
+}
+
+void Frame::Impl::place_emitters(const Scene& scene) {
+    std::vector<glm::dvec3> emitted(scene.materials.size(), glm::dvec3(0));
+    bool mapped = false;
+    for (std::size_t m = 0; m < emitted.size(); ++m) {
+        const Material& material = scene.materials[m];
+        if (!material.light)
+            continue;
+        emitted[m] = material.emission * mean_of_map(scene, material.emission_map);
+        mapped = mapped || material.emission_map.texture >= 0;
+    }
+    const glm::dvec3 dark(0);
+    if (std::all_of(emitted.begin(), emitted.end(), [&](const glm::dvec3& e) { return e == dark; }))
+        return;
+    emitters = std::make_unique<Emitters>(meshes, topologies, geometry.instances, emitted);
+    if (emitters->count() == 0) {
+        emitters.reset();
+        return;
+    }
+    header->emitters.set(region<EmitterRecord>("scene graph", -1, emitters->count()));
+    header->emitter_sums.set(region<float>("scene graph", -1, emitters->count() + 1));
+    header->emitter_maps = mapped ? 1 : 0;
+}
+
+void Frame::Impl::fill_emitters(const Scene& scene) {
+    if (!emitters)
+        return;
+    FrameHeader& h = *header;
+    const int samples = scene.settings.light_samples;
+    const EmitterTables t = samples > 0 ? emitters->tabulate(scene, geometry) : EmitterTables{};
+    std::copy(t.records.begin(), t.records.end(), h.emitters.get());
+    std::copy(t.sums.begin(), t.sums.end(), h.emitter_sums.get());
+    h.emitter_count = static_cast<std::int32_t>(t.records.size());
+    h.emitter_step =
+        t.records.size() < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(t.records.size() - 1));
+    h.emitter_samples = samples;
+    h.emitter_spacing = sample_spacing(scene.settings, t.area, samples);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        h.materials.get()[m].light_density = m < t.density.size() ? t.density[m] : 0.0F;
 }
 
 bool Frame::Impl::pose(const Scene& scene) {

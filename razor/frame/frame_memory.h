@@ -1,6 +1,7 @@
 // What a frame consists of, and where it lies in the frame's address space.
 #pragma once
 
+#include "razor/frame/emitters.h"
 #include "razor/frame/frame.h"
 #include "razor/frame/material_records.h"
 #include "razor/frame/page_store.h"
@@ -95,7 +96,8 @@ struct Frame::Impl {
     const Topology& topology_of(const Instance& instance) const {
         return topologies[static_cast<std::size_t>(instance.mesh)];
     }
-    std::size_t most_lights = 0; // that there is room for
+    std::size_t most_lights = 0;        // that there is room for
+    std::unique_ptr<Emitters> emitters; // null: no surface is a light
     std::size_t clusters_of(std::size_t mesh) const {
         return (topologies[mesh].patches.size() + refit_patches - 1) >> refit_log2;
     }
@@ -157,6 +159,9 @@ struct Frame::Impl {
     void list_clusters(const std::vector<int>& of_meshes);
     void fill_view(const Scene& scene);
     void fill_lights(const Scene& scene);
+    /// Surfaces that are lights.
+    void place_emitters(const Scene& scene);
+    void fill_emitters(const Scene& scene);
     void place_filter(const Scene& scene);
     /// Which of a pixel's camera samples workers take.
     void choose_samples(int first, int count);

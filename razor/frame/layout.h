@@ -14,6 +14,7 @@
 #pragma once
 
 #include "isa/memory_types.h"
+#include "razor/frame/emitter_record.h"
 #include "razor/frame/film_record.h"
 #include "razor/frame/light_record.h"
 #include "razor/frame/line.h"
@@ -504,10 +505,17 @@ struct FrameHeader {
     isa::ref<SkyRecord> sky_map;   // null: the sky is the same everywhere
     isa::ref<std::int32_t> texels; // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
-    std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
-    std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h
-    std::int32_t one_sided;   // not 0: some material is seen from the front only
-    std::int32_t sheens;      // not 0: some material has sheen
+    std::int32_t cutouts;             // not 0: some material has an alpha_cutoff and opacity in its texture
+    std::int32_t slot_floats;         // of a blended block: see razor/frame/scratch.h
+    std::int32_t one_sided;           // not 0: some material is seen from the front only
+    std::int32_t sheens;              // not 0: some material has sheen
+    isa::ref<EmitterRecord> emitters; // triangles of surfaces that are lights
+    isa::ref<float> emitter_sums;     // of their chances: before each, and at the end
+    std::int32_t emitter_count;
+    std::int32_t emitter_step;    // the largest power of two below it
+    std::int32_t emitter_samples; // rays to all of them together, a hit
+    std::int32_t emitter_maps;    // not 0: some of them have maps of what they emit
+    float emitter_spacing;        // see growth_to_area(), times edge_pixels
     isa::ref<float>
         sheen_albedo; // sheen_steps a kind of sheen (razor/frame/sheen_albedo.h); first that of none
 };

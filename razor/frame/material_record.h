@@ -22,7 +22,8 @@ struct alignas(line_bytes) MaterialRecord {
     std::int32_t one_sided; // not 0: seen from the front only
     float sheen[3], sheen_alpha;
     std::int32_t sheen_table; // its albedo: words of FrameHeader::sheen_albedo from there
-    std::int32_t padding[2];
+    float light_density;      // by area, of rays to all surfaces that are lights; 0: none goes to its own
+    std::int32_t padding[1];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;

@@ -28,7 +28,8 @@ inline constexpr float hole_step = 1.0e-6F;
 }
 
 /// trace_packet(), Mapped: past holes.
-template <Features F, RayKind Kind, bool Mapped> inline Hits trace_seen(const Context& c, const Rays& r) {
+template <Features F, RayKind Kind, bool Mapped, bool AnyHit = Kind == kind_light || Kind == kind_sky>
+inline Hits trace_seen(const Context& c, const Rays& r) {
     if constexpr (Mapped) {
         sint cutouts = load(field(c.frame, &FrameHeader::cutouts));
         if (branch(cutouts != 0)) {
@@ -52,7 +53,7 @@ template <Features F, RayKind Kind, bool Mapped> inline Hits trace_seen(const Co
             return h;
         }
     }
-    return trace_packet<F, Kind>(c, r);
+    return trace_packet<F, Kind, AnyHit>(c, r);
 }
 
 } // namespace shade_kernel

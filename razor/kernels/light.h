@@ -101,11 +101,16 @@ template <Features F, bool Mapped, class Towards, class Response>
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
             vmask wanted = number < vint(samples);
-            LightRays l = towards.sample(c, here, number + first_sample);
+            auto l = towards.sample(c, here, number + first_sample);
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
-                Hits blocked = trace_seen<F, Towards::kind, Mapped>(c, l.rays);
-                vmask arrives = l.rays.active & (blocked.patch < vint(0));
+                vmask arrives;
+                if constexpr (requires(const Hits& h) { towards.arrive(l, h); }) {
+                    arrives = towards.arrive(l, trace_seen<F, Towards::kind, Mapped, false>(c, l.rays));
+                } else {
+                    Hits blocked = trace_seen<F, Towards::kind, Mapped>(c, l.rays);
+                    arrives = l.rays.active & (blocked.patch < vint(0));
+                }
                 vfloat part[lobes];
                 towards.reflect(responds, here, l, samples, part);
                 vmask leader = present & (member == vint(0));

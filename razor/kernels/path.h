@@ -3,6 +3,7 @@
 // multiple importance sampling (Veach 1997, chapter 9), lobe by lobe.
 #pragma once
 
+#include "razor/kernels/emitter_samples.h"
 #include "razor/kernels/light.h"
 #include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/seen_lights.h"
@@ -61,6 +62,15 @@ inline void add_light(const Context& c, const Surface& s, const Response& g, con
         add(gathered, load_broadcast_vec(field(light, &LightRecord::radiance)), stated, taken);
         light = light + 1;
     }
+    sint emitters = load(field(c.frame, &FrameHeader::emitter_count));
+    if (branch(emitters > 0)) {
+        sint all = load(field(c.frame, &FrameHeader::emitter_samples));
+        sint taken = select(fewer, sint(1), all);
+        GatheredColours<Response> gathered = gather_emitters<F, Mapped>(c, s, g, taken);
+        vfloat share = reciprocal(vfloat(to_float(taken)));
+        vvec seen = times(coloured(gathered, g, colours) * share, carried);
+        beauty = beauty + select(s.hit, seen, {zero, zero, zero});
+    }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {
         sint taken = select(fewer, sint(1), sky_samples);
@@ -109,6 +119,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
     vvec background = load_broadcast_vec(field(c.frame, &FrameHeader::background));
     sint bounces = load(field(c.frame, &FrameHeader::bounces));
     sint diffuse_bounces = load(field(c.frame, &FrameHeader::diffuse_bounces));
+    sint emitters = load(field(c.frame, &FrameHeader::emitter_count));
     sbool sheens = load(field(c.frame, &FrameHeader::sheens)) != 0;
     vvec carried{one, one, one};
     Bounce bounce;
@@ -163,6 +174,10 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         if (branch(n == 0))
             note_first(s, h, colours.albedo, sums);
         vvec emitted = times(colours.emission, carried);
+        sbool met = emitters > 0;
+        met = met & (n > 0);
+        if (branch(met))
+            emitted = emitted * left_of_emitters(c, s, beyond, h, bounce, n > 1);
         sums.beauty = sums.beauty + select(hit, emitted, black);
         const auto go_on = [&](const auto& response) {
             add_light<F, Mapped>(c, s, response, colours, carried, n > 0, sums.beauty);

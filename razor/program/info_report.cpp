@@ -89,8 +89,8 @@ void print_material(std::string& text, const Scene& scene, const Material& mater
                 fmt::format_to(out, ", {} {}", name, printable(texture_of(scene, map).name, 100));
         },
         material);
-    fmt::format_to(out, "{}, {}\n", material.two_sided ? "" : ", one-sided",
-                   faces == 0 ? "not used" : counted(faces, "face"));
+    fmt::format_to(out, "{}{}, {}\n", material.light ? ", a light" : "",
+                   material.two_sided ? "" : ", one-sided", faces == 0 ? "not used" : counted(faces, "face"));
 }
 
 void print_pattern(std::string& text, const Texture& texture, const Pattern& p, bool used) {
@@ -121,6 +121,7 @@ Json to_json(const Scene& scene, const Material& material, std::int64_t faces) {
     visit_material_fields(
         [&](std::string_view name, Range, const auto& value) { json[std::string(name)] = to_json(value); },
         material);
+    json["light"] = material.light;
     json["two_sided"] = material.two_sided;
     visit_material_maps(
         [&](std::string_view name, const TextureMap& map) {

@@ -33,6 +33,7 @@ struct Material {
     glm::vec3 sheen{0, 0, 0};     // in [0, 1]: of what fibres reflect at grazing angles, below the coat
     float sheen_roughness = 0.5F; // in [0, 1]; below 0.1 as 0.1
     glm::vec3 emission{0, 0, 0};  // radiance from both sides
+    bool light = false;           // rays to lights go to what of it emits; else only bounces find that
     /// Maps multiply what is above: albedo and emission by colour, metallic by blue, roughness by green.
     TextureMap albedo_map{}, metallic_map{}, roughness_map{}, emission_map{};
     TextureMap normal_map{}; // tangent-space normals, 2 rgb - 1

@@ -65,7 +65,7 @@ std::string to_toml(const Material& material, const std::vector<Texture>& textur
             fmt::format_to(out, "{} = {}\n", name, toml_value(value));
         },
         material);
-    fmt::format_to(out, "two_sided = {}\n", material.two_sided);
+    fmt::format_to(out, "light = {}\ntwo_sided = {}\n", material.light, material.two_sided);
     visit_material_maps(
         [&](std::string_view name, const TextureMap& map) {
             if (map.texture >= 0) {

@@ -134,6 +134,7 @@ Material read_material(TomlTable& table, std::span<const std::string> textures) 
     if (material.bump_map.texture >= 0 && !table.has("bump")) {
         table.fail("bump_map", "a bump map without a height; write bump = 0.05, in units of the object");
     }
+    material.light = table.flag("light", material.light);
     material.two_sided = table.flag("two_sided", material.two_sided);
     table.finish();
     if (material.name.empty()) {

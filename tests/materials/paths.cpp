@@ -97,16 +97,19 @@ Scene twice_mirrored(Scene s) {
 }
 
 TEST(Paths, DiffuseBouncesAndEmission) {
-    for (const int diffuse_bounces : {0, 1, 2}) {
-        Scene s = room();
-        s.name = fmt::format("box and lamp, {} diffuse bounces", diffuse_bounces);
-        s.meshes.push_back(box("box", {-1.1, 0, -0.6}, {1, 1.2, 0.9}, 25, 0));
-        s.meshes.push_back(quad("lamp", {0.6, 0.2, -1.4}, {0.9, 0, 0.1}, {0, 0.8, 0.1}, 3));
-        s.materials.push_back(named("lamp", {0.2F, 0.2F, 0.2F}));
-        s.materials.back().emission = {2, 1, 0.5F};
-        s.settings.diffuse_bounces = diffuse_bounces;
-        expect_same_picture(s, 160);
-    }
+    for (const int diffuse_bounces : {0, 1, 2})
+        for (const bool light : {false, true}) {
+            Scene s = room();
+            s.name =
+                fmt::format("box and lamp{}, {} diffuse bounces", light ? ", a light" : "", diffuse_bounces);
+            s.meshes.push_back(box("box", {-1.1, 0, -0.6}, {1, 1.2, 0.9}, 25, 0));
+            s.meshes.push_back(quad("lamp", {0.6, 0.2, -1.4}, {0.9, 0, 0.1}, {0, 0.8, 0.1}, 3));
+            s.materials.push_back(named("lamp", {0.2F, 0.2F, 0.2F}));
+            s.materials.back().emission = {2, 1, 0.5F};
+            s.materials.back().light = light;
+            s.settings.diffuse_bounces = diffuse_bounces;
+            expect_same_picture(s, 160);
+        }
 }
 
 TEST(Paths, MirrorAndRoughMetal) {
@@ -121,6 +124,35 @@ TEST(Paths, MirrorAndRoughMetal) {
         s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
         s.materials.back().metallic = 1;
         s.materials.back().roughness = roughness;
+        s.settings.diffuse_bounces = 1;
+        expect_same_picture(s, 160);
+    }
+}
+
+// What lobes find of surfaces that are lights, and rays to these, is never counted twice.
+TEST(Paths, MirrorsAndLampsOfTriangles) {
+    for (const float roughness : {0.2F, 0.6F}) {
+        Scene s = room();
+        s.name = fmt::format("metal of roughness {} and lamps", roughness);
+        s.lights.clear();
+        s.meshes[1].material = 3;
+        s.meshes.push_back(box("box", {-1.1, 0, -0.6}, {1, 1.2, 0.9}, 25, 4));
+        s.meshes.push_back(ball("lamp", {0.5, 2, 0.3}, 0.4, 5));
+        s.meshes.push_back(quad("panel", {0.6, 0.2, -1.4}, {0.9, 0, 0.1}, {0, 0.8, 0.1}, 6));
+        s.materials.push_back(named("mirror", {0.9F, 0.9F, 0.8F}));
+        s.materials.back().metallic = 1;
+        s.materials.back().roughness = 0;
+        s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
+        s.materials.back().metallic = 1;
+        s.materials.back().roughness = roughness;
+        s.materials[0].specular = 1;
+        s.materials[0].roughness = roughness;
+        s.materials.push_back(named("lamp", {0.2F, 0.2F, 0.2F}));
+        s.materials.back().emission = {8, 7, 5};
+        s.materials.back().light = true;
+        s.materials.push_back(named("panel", {0.5F, 0.1F, 0.1F}));
+        s.materials.back().emission = {0.5F, 2, 1};
+        s.materials.back().light = true;
         s.settings.diffuse_bounces = 1;
         expect_same_picture(s, 160);
     }

@@ -84,7 +84,9 @@ public:
                 sum += met_light(light, o, d, t);
         if (facet == nullptr)
             return diffuse ? sum : sum + sky_radiance(scene_, d);
-        return sum + dvec3(facet->material->emission) + reflected(*facet, o + t * d, -d, n);
+        const bool sampled = facet->material->light && diffuse;
+        const dvec3 emitted = sampled ? dvec3(0) : dvec3(facet->material->emission);
+        return sum + emitted + reflected(*facet, o + t * d, -d, n);
     }
 
 private:
@@ -135,6 +137,17 @@ private:
             const double facing = -glm::dot(n, d);
             if (l.z > 0 && facing > 0 && open(p, d, away))
                 sum += reflectance(l) * dvec3(light.radiance) * (l.z * facing / (away * away));
+        }
+        for (const Facet& f : facets_) {
+            if (!f.material->light)
+                continue;
+            const double root = std::sqrt(next()), part = next();
+            const dvec3 way = f.a + root * (1 - part) * f.e1 + root * part * f.e2 - p;
+            const double away = glm::length(way), area = glm::length(glm::cross(f.e1, f.e2)) / 2;
+            const dvec3 d = way / away, l = frame.in(d);
+            const double facing = std::abs(glm::dot(f.normal, d));
+            if (l.z > 0 && facing > 0 && open(p, d, away * (1 - 1e-6)))
+                sum += reflectance(l) * dvec3(f.material->emission) * (l.z * facing * area / (away * away));
         }
         if (largest(dvec3(scene_.sky)) > 0) {
             const dvec3 l = cosine_direction();

@@ -81,6 +81,7 @@ TEST(Materials, EveryFieldIsRead) {
         emission = 3
         normal_scale = -0.5
         alpha_cutoff = 0.0625
+        light = true
         two_sided = false)");
     EXPECT_EQ(m.albedo, glm::vec3(0.1F, 0.2F, 0.3F));
     EXPECT_EQ(m.metallic, 0.125F);
@@ -95,6 +96,7 @@ TEST(Materials, EveryFieldIsRead) {
     EXPECT_EQ(m.emission, glm::vec3(3));
     EXPECT_EQ(m.normal_scale, -0.5F);
     EXPECT_EQ(m.alpha_cutoff, 0.0625F);
+    EXPECT_TRUE(m.light);
     EXPECT_FALSE(m.two_sided);
 }
 
@@ -141,10 +143,11 @@ TEST(Materials, PrintedSceneIsTheSame) {
     std::string text = "[settings]\nbounces = 9\ndiffuse_bounces = 3\n" + std::string(textures);
     for (const char* const kind : {"matte", "principled", "mirror", "glass"})
         text += std::string("[[material]]\nname = \"") + kind + "\"\nkind = \"" + kind + "\"\n";
-    text += "[[material]]\nname = \"all \\\"x\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nmetallic = 0.1\nroughness = "
-            "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nsheen = [0, 0.1, "
-            "1]\nsheen_roughness = 0.7\nemission = [1e9, 0, 1]\n"
-            "normal_scale = 0.77\nalpha_cutoff = 0.5\ntwo_sided = false\nalbedo_map = \"rough\"\n";
+    text +=
+        "[[material]]\nname = \"all \\\"x\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nmetallic = 0.1\nroughness = "
+        "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nsheen = [0, 0.1, "
+        "1]\nsheen_roughness = 0.7\nemission = [1e9, 0, 1]\n"
+        "normal_scale = 0.77\nalpha_cutoff = 0.5\nlight = true\ntwo_sided = false\nalbedo_map = \"rough\"\n";
     for (int i = 0; i < 40; ++i)
         text += "[[material]]\nname = \"m" + std::to_string(i) +
                 "\"\nnormal_map = { texture = \"bricks\", scale = [0.1, 1], offset = [-0.3, 7], rotation = " +

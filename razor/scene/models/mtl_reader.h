@@ -10,10 +10,10 @@
 //   mirrors       of illum 3 and 5, if Ks is not black: metallic 1, roughness 0, albedo Ks
 //
 // The physically based extension has the last word: Pm metallic, Pr roughness (either: specular 1, unless Ks
-// is black), Pc coat, Pcr coat roughness, Ps sheen (white). A dielectric's Ni counts where it is above 1: exporters write 1 for
-// what is opaque. Maps: map_Kd, map_Ke, map_Pm, map_Pr, norm (tangent-space normals), with -s, -o and -clamp.
-// Where map_d is the file of map_Kd, opacity below 1/2 cuts out. Colours above 1 count as 1. All else is
-// passed over; bump maps are heights, which are not read.
+// is black), Pc coat, Pcr coat roughness, Ps sheen (white). A dielectric's Ni counts where it is above 1:
+// exporters write 1 for what is opaque. Maps: map_Kd, map_Ke, map_Pm, map_Pr, norm (tangent-space normals),
+// with -s, -o and -clamp. Where map_d is the file of map_Kd, opacity below 1/2 cuts out. Colours above 1
+// count as 1. All else is passed over; bump maps are heights, which are not read.
 #pragma once
 
 #include "razor/scene/scene.h"

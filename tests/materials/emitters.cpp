@@ -1,0 +1,208 @@
+// Surfaces that are lights: what rays to them find is what bounces find of them that look everywhere,
+// whatever the surface, the level of detail and the way it is placed.
+#include "tests/kernels/cages.h"
+#include "tests/kernels/targets.h"
+#include "tests/materials/skies.h"
+
+#include "razor/frame/emitters.h"
+#include "razor/frame/frame.h"
+#include "razor/native/render.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace razor::test {
+namespace {
+
+using glm::dvec3;
+
+/// Mean of each of 4 x 4 parts of the picture, over seeds, and the variance of that mean.
+struct Parts {
+    std::vector<dvec3> mean = std::vector<dvec3>(16, dvec3(0)), variance = mean;
+};
+Parts parts_of(Scene scene, int seeds) {
+    Parts all;
+    std::vector<dvec3> squares(16, dvec3(0));
+    for (int seed = 0; seed < seeds; ++seed) {
+        scene.settings.seed = seed;
+        RenderOptions options;
+        options.threads = 2;
+        const Film film = render_native(scene, options).film;
+        std::vector<dvec3> one(16, dvec3(0));
+        const int width = scene.settings.width, height = scene.settings.height;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const auto p = static_cast<std::size_t>(y * width + x);
+                one[static_cast<std::size_t>(y * 4 / height * 4 + x * 4 / width)] +=
+                    dvec3(film.find("R")->values[p], film.find("G")->values[p], film.find("B")->values[p]) *
+                    (16.0 / (width * height));
+            }
+        for (std::size_t k = 0; k < 16; ++k) {
+            all.mean[k] += one[k] / double(seeds);
+            squares[k] += one[k] * one[k] / double(seeds);
+        }
+    }
+    for (std::size_t k = 0; k < 16; ++k)
+        all.variance[k] = (squares[k] - all.mean[k] * all.mean[k]) / double(seeds - 1);
+    return all;
+}
+
+/// A glowing mesh over a floor that is seen from above, the mesh not.
+Scene glowing(const Mesh& mesh, Lod lod) {
+    Scene s = scene_of(mesh, 24);
+    Mesh floor = bilinear(cube_cage());
+    floor.name = "floor";
+    floor.points = {{-4, 0, -4}, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}};
+    floor.face_sizes = {4};
+    floor.face_vertices = {0, 1, 2, 3};
+    floor.creases.clear();
+    floor.corners.clear();
+    floor.material = 1;
+    s.meshes.push_back(floor);
+    s.graph.groups = {{"scene",
+                       {{.name = "mesh", .mesh = 0, .local = {.translate = {0, 2.2, 0}}},
+                        {.name = "floor", .mesh = 1, .local = {}}}}};
+    s.materials = {{"lamp", {0, 0, 0}}, {"floor", {0.8F, 0.7F, 0.6F}}};
+    s.materials[0].emission = {4, 3, 2};
+    s.lights.clear();
+    s.sky = {0, 0, 0};
+    s.camera.position = {0, 0.9, 4};
+    s.camera.target = {0, 0, 0.4};
+    s.camera.fov_degrees = 45;
+    s.settings.lod = lod;
+    s.settings.width = s.settings.height = 32;
+    s.settings.samples = 16;
+    s.settings.light_samples = 4;
+    s.settings.edge_pixels = 0.25; // what levels of detail differ by is not the question
+    return s;
+}
+
+/// Rays to it, and as many bounces as lobes need, against bounces in all directions, which the black mesh
+/// ends.
+void expect_same_light(Scene s, const std::string& what, double tolerance = 0.015) {
+    Scene bounced = s;
+    for (Material& m : s.materials)
+        m.light = m.emission != glm::vec3(0);
+    bounced.settings.bounces = bounced.settings.diffuse_bounces = s.settings.bounces = 1;
+    bounced.settings.samples = 512;
+    const Parts want = parts_of(bounced, 6), seen = parts_of(s, 6);
+    dvec3 all(0), all_seen(0);
+    double noise = 0, more_noise = 0;
+    for (std::size_t k = 0; k < 16; ++k) {
+        for (int c = 0; c < 3; ++c) {
+            const double error = std::sqrt(want.variance[k][c] + seen.variance[k][c]);
+            EXPECT_NEAR(seen.mean[k][c], want.mean[k][c], 5 * error + 2 * tolerance * want.mean[k][c])
+                << what << ", part " << k;
+        }
+        all += want.mean[k];
+        all_seen += seen.mean[k];
+        noise += seen.variance[k].y;
+        more_noise += want.variance[k].y;
+    }
+    fmt::print("  {}: {:+.2f} %, noise {:.4f} against {:.4f} with 32 times the samples\n", what,
+               100 * (all_seen.y / all.y - 1), std::sqrt(noise) / all.y, std::sqrt(more_noise) / all.y);
+    EXPECT_NEAR(all_seen.y / all.y, 1, tolerance) << what;
+    EXPECT_GT(all.y, 0.1) << what << ": no light, no test";
+}
+
+class EmittersOf : public testing::TestWithParam<Lod> {};
+
+TEST_P(EmittersOf, AllKindsOfSurfaces) {
+    for (const Mesh& mesh : {urchin_cage(), torus_cage(6, 5), bilinear(stretched(torus_cage(5, 4))),
+                             bevelled_slab(), tapered_cage()})
+        expect_same_light(glowing(mesh, GetParam()), mesh.name);
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, EmittersOf, testing::Values(Lod::object, Lod::recursive),
+                         [](const auto& info) {
+                             return "lod" + std::to_string(static_cast<int>(info.param));
+                         });
+
+TEST(Emitters, OfOneSide) {
+    Scene s = glowing(torus_cage(6, 5), Lod::object);
+    s.meshes[0].holes = {0, 1, 2, 7, 8}; // so that both sides are seen
+    expect_same_light(s, "open, of two sides");
+    s.materials[0].two_sided = false;
+    expect_same_light(s, "open, of its outside");
+}
+
+TEST(Emitters, PlacedAnywhere) {
+    Scene s = glowing(urchin_cage(), Lod::recursive);
+    s.materials[0].two_sided = false;
+    auto& placements = s.graph.groups[0].placements;
+    placements[0].local = {.scale = {-0.4, 0.5, 0.3}, .rotate = {10, 50, 0}, .translate = {1.2, 1.2, 0.3}};
+    placements.push_back(
+        {.name = "other",
+         .mesh = 0,
+         .local = {.scale = glm::dvec3(0.3), .rotate = {0, 20, 70}, .translate = {-1, 0.8, 0}}});
+    expect_same_light(s, "mirrored and stretched");
+}
+
+TEST(Emitters, OfFaces) {
+    Scene s = glowing(torus_cage(6, 5), Lod::object);
+    s.materials.push_back({"other", {0, 0, 0}});
+    s.materials.push_back({"dark", {0, 0, 0}});
+    s.materials[2].emission = {1, 2, 9};
+    for (std::size_t f = 0; f < s.meshes[0].face_sizes.size(); ++f)
+        s.meshes[0].face_materials.push_back(f % 3 == 0 ? 0 : f % 3 == 1 ? 2 : 3);
+    expect_same_light(s, "some faces of two lights");
+}
+
+TEST(Emitters, WithMaps) {
+    Scene s = glowing(bevelled_slab(), Lod::object);
+    Mesh& mesh = s.meshes[0];
+    mesh.points = {{-1, 0, -1}, {1, 0, -1}, {1, 0.3, 1}, {-1, 0, 1}};
+    mesh.face_sizes = {4};
+    mesh.face_vertices = {0, 1, 2, 3};
+    mesh.creases.clear();
+    mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.face_texcoords = {0, 1, 2, 3};
+    s.textures.push_back(
+        sky_texture(16, 16, [](double u, double v) { return glm::vec3(u > 0.5 ? 3 : 0.1, v, 0.5); }));
+    s.textures[0].wrap_u = s.textures[0].wrap_v = Wrap::clamp;
+    s.materials[0].emission_map.texture = 0;
+    expect_same_light(s, "with a map");
+}
+
+TEST(Emitters, InMetal) {
+    for (const float roughness : {0.2F, 0.5F}) {
+        Scene s = glowing(urchin_cage(), Lod::recursive);
+        s.materials[1].metallic = 1;
+        s.materials[1].roughness = roughness;
+        Scene only = s;
+        expect_same_light(s, fmt::format("in metal of roughness {}", roughness));
+    }
+}
+
+// Its triangles have the area of the surface, and chances by area and radiance.
+TEST(Emitters, AreAsLargeAsTheSurface) {
+    Scene s = glowing(bilinear(cube_cage()), Lod::object);
+    s.materials[0].light = true;
+    Frame frame(s, {});
+    const FrameHeader& h = frame.header();
+    ASSERT_EQ(h.emitter_count, 12);
+    double area = 0;
+    for (int k = 0; k < h.emitter_count; ++k) {
+        const EmitterRecord& r = h.emitters.get()[k];
+        const dvec3 u(r.edge_u[0], r.edge_u[1], r.edge_u[2]), v(r.edge_v[0], r.edge_v[1], r.edge_v[2]);
+        area += glm::length(glm::cross(u, v)) / 2;
+        EXPECT_NEAR(h.emitter_sums.get()[k + 1] - h.emitter_sums.get()[k], 1.0 / 12, 1e-6);
+    }
+    EXPECT_NEAR(h.materials.get()[0].light_density * area, 1, 1e-5);
+    EXPECT_EQ(h.materials.get()[1].light_density, 0);
+}
+
+TEST(Emitters, CostNothingWhereNoneIsDeclared) {
+    const Scene s = glowing(urchin_cage(), Lod::object);
+    Frame frame(s, {});
+    EXPECT_EQ(frame.header().emitter_count, 0);
+    EXPECT_EQ(frame.header().emitters.get(), nullptr);
+}
+
+} // namespace
+} // namespace razor::test
