@@ -59,7 +59,8 @@ void PageStore::make_page(std::int32_t space, std::int32_t kind, std::int32_t in
     auto begin = std::chrono::steady_clock::now();
     const Class& c = classes_[static_cast<std::size_t>(space)];
     PageKey key = page_key(c.local, static_cast<PageKind>(kind), index, record.corner_count);
-    std::vector<float> weights(page_floats(key, record.control_count));
+    const bool displaced = topologies_[static_cast<std::size_t>(c.mesh)].displaced;
+    std::vector<float> weights(page_floats(key, record.control_count, displaced));
     c.maker->make(key, weights.data());
     const std::int32_t line = allocate(weights.size());
     std::memcpy(record.lines.get() + line, weights.data(), weights.size() * sizeof(float));

@@ -80,4 +80,24 @@ void assign_face_classes(const Mesh& mesh, const Adjacency& adjacency, const std
     }
 }
 
+void assign_straight_classes(const Mesh& mesh, const Adjacency& adjacency, const std::vector<bool>& drawn,
+                             Topology& topology) {
+    topology.controls = mesh.face_vertices;
+    std::unordered_map<int, int> of_size;
+    for (int f = 0; f < adjacency.face_count(); ++f) {
+        const int size = adjacency.size(f);
+        FaceRecord& record = topology.faces[static_cast<std::size_t>(f)];
+        record.control_first = adjacency.first(f);
+        record.control_count = size;
+        if (!drawn[static_cast<std::size_t>(f)]) {
+            continue;
+        }
+        const auto [entry, is_new] = of_size.try_emplace(size, static_cast<int>(topology.classes.size()));
+        if (is_new) {
+            topology.classes.push_back({f, size, size, false, false, true});
+        }
+        record.face_class = entry->second;
+    }
+}
+
 } // namespace razor

@@ -13,4 +13,8 @@ namespace razor {
 void assign_face_classes(const Mesh& mesh, const Adjacency& adjacency, const std::vector<bool>& drawn,
                          Topology& topology);
 
+/// The same of faces that are bilinear in their corners: one class for all with as many.
+void assign_straight_classes(const Mesh& mesh, const Adjacency& adjacency, const std::vector<bool>& drawn,
+                             Topology& topology);
+
 } // namespace razor

@@ -57,14 +57,15 @@ FarStencils::FarStencils(const Mesh& mesh, const std::vector<int>& faces, int ap
 FarStencils::~FarStencils() = default;
 
 void FarStencils::add(int face, int sub, std::array<double, 2> uv, const std::unordered_map<int, int>& row,
-                      std::array<std::vector<double>, 3>& weights) const {
+                      std::array<std::vector<double>, 6>& weights) const {
     const Far::PatchTable::PatchHandle* patch =
         impl_->map->FindPatch(impl_->ptex->GetFaceId(face) + sub, uv[0], uv[1]);
     if (patch == nullptr) {
         throw std::logic_error(fmt::format("face {} has no patch at ({}, {})", face, uv[0], uv[1]));
     }
-    std::array<std::array<double, 20>, 3> basis{};
-    impl_->patches->EvaluateBasis(*patch, uv[0], uv[1], basis[0].data(), basis[1].data(), basis[2].data());
+    std::array<std::array<double, 20>, 6> basis{};
+    impl_->patches->EvaluateBasis(*patch, uv[0], uv[1], basis[0].data(), basis[1].data(), basis[2].data(),
+                                  basis[3].data(), basis[4].data(), basis[5].data());
     const Far::ConstIndexArray patch_points = impl_->patches->GetPatchVertices(*patch);
     for (int c = 0; c < patch_points.size(); ++c) {
         const Far::StencilReal<double> stencil = impl_->stencils->GetStencil(patch_points[c]);
@@ -79,7 +80,7 @@ void FarStencils::add(int face, int sub, std::array<double, 2> uv, const std::un
                 }
                 continue;
             }
-            for (std::size_t d = 0; d < 3; ++d) {
+            for (std::size_t d = 0; d < weights.size(); ++d) {
                 weights[d][static_cast<std::size_t>(found->second)] +=
                     weight * basis[d][static_cast<std::size_t>(c)];
             }

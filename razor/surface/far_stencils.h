@@ -22,10 +22,10 @@ public:
     ~FarStencils();
 
     /// Adds the weights of a point of a face (sub-face coordinates in [0,1]^2) to `weights[k]`: k = 0
-    /// position, 1 d/du, 2 d/dv. `row` says where in them a mesh point's weight lies. Any thread. Throws
-    /// std::logic_error if a point that has a weight has no row.
+    /// position, 1 d/du, 2 d/dv, 3 d2/du2, 4 d2/dudv, 5 d2/dv2. `row` says where in them a mesh point's
+    /// weight lies. Any thread. Throws std::logic_error if a point that has a weight has no row.
     void add(int face, int sub, std::array<double, 2> uv, const std::unordered_map<int, int>& row,
-             std::array<std::vector<double>, 3>& weights) const;
+             std::array<std::vector<double>, 6>& weights) const;
 
 private:
     struct Impl;

@@ -22,16 +22,16 @@ std::size_t block_row(std::size_t vertices) {
     return rounded_up(vertices, RAZOR_WIDTH);
 }
 
-std::size_t section_floats(PageKind kind, std::size_t controls, std::size_t vertices) {
+std::size_t section_floats(PageKind kind, std::size_t controls, std::size_t vertices, bool displaced) {
     switch (kind) {
     case PageKind::vertex:
-        return rounded_up(controls, largest_width);
+        return (displaced ? 3 : 1) * rounded_up(controls, largest_width);
     case PageKind::curve:
-        return controls * curve_row;
+        return (displaced ? 3 : 1) * controls * curve_row;
     case PageKind::block:
         return controls * block_row(vertices);
     case PageKind::derivative:
-        return 2 * controls * block_row(vertices);
+        return (displaced ? 5 : 2) * controls * block_row(vertices);
     case PageKind::deviation:
         return 3 * rounded_up(controls, largest_width);
     }
@@ -111,12 +111,12 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count) {
     return key;
 }
 
-std::size_t page_floats(const PageKey& key, int control_count) {
+std::size_t page_floats(const PageKey& key, int control_count, bool displaced) {
     const auto side = [](int exponent) {
         return static_cast<std::size_t>(std::min(block_quads, 1 << exponent)) + 1;
     };
     return section_floats(key.kind, static_cast<std::size_t>(control_count),
-                          side(key.exponent_u) * side(key.exponent_v));
+                          side(key.exponent_u) * side(key.exponent_v), displaced);
 }
 
 ClassRecord class_record(const FaceClass& c, int max_exponent) {

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <unordered_map>
@@ -75,10 +76,18 @@ public:
         }
     }
 
-    /// Sub-face coordinates in [0,1]^2 (of the face itself if it is a quad).
-    void evaluate(int sub, Uv uv, bool derivatives) {
+    /// Derivatives are by sub-face coordinates; else by whatever has their directions.
+    void scale_derivatives() { scales_ = true; }
+
+    /// Sub-face coordinates in [0,1]^2 (of the face itself if it is a quad). `order`: of the derivatives that
+    /// are wanted.
+    void evaluate(int sub, Uv uv, int order) {
         for (std::vector<double>& weights : summed_) {
             std::fill(weights.begin(), weights.end(), 0.0);
+        }
+        if (class_.straight) {
+            add_straight(sub, uv);
+            return;
         }
         if (far_ != nullptr) {
             far_->add(class_.representative, sub, uv, entry_.position, summed_);
@@ -88,14 +97,20 @@ public:
             const Uv normalized = uv;
             parameters_.ConvertNormalizedSubFaceToCoord(sub, normalized.data(), uv.data());
         }
-        if (derivatives) {
+        if (order == 2) {
+            entry_.surface.EvaluateStencil(uv.data(), raw_[0].data(), raw_[1].data(), raw_[2].data(),
+                                           raw_[3].data(), raw_[4].data(), raw_[5].data());
+        } else if (order == 1) {
             entry_.surface.EvaluateStencil(uv.data(), raw_[0].data(), raw_[1].data(), raw_[2].data());
         } else {
             entry_.surface.EvaluateStencil(uv.data(), raw_[0].data());
         }
-        for (std::size_t k = 0; k < (derivatives ? 3U : 1U); ++k) {
+        const std::size_t rows = order == 2 ? 6 : order == 1 ? 3 : 1;
+        for (std::size_t k = 0; k < rows; ++k) {
+            // A sub-face is half as long as Bfr's coordinates are on it.
+            const double scale = class_.corner_count == 4 || !scales_ || k == 0 ? 1 : k < 3 ? 0.5 : 0.25;
             for (std::size_t i = 0; i < entry_.to_control.size(); ++i) {
-                summed_[k][static_cast<std::size_t>(entry_.to_control[i])] += raw_[k][i];
+                summed_[k][static_cast<std::size_t>(entry_.to_control[i])] += scale * raw_[k][i];
             }
         }
     }
@@ -103,7 +118,8 @@ public:
     /// Position weights of the point evaluated last.
     const std::vector<double>& positions() const { return summed_[0]; }
 
-    /// Writes row after row's entry `column`; which: 0 position, 1 d/du, 2 d/dv.
+    /// Writes row after row's entry `column`; which: 0 position, 1 d/du, 2 d/dv, 3 d2/du2, 4 d2/dudv, 5
+    /// d2/dv2.
     void store(std::size_t which, float* rows, std::size_t row_stride, std::size_t column) const {
         for (std::size_t c = 0; c < summed_[which].size(); ++c) {
             rows[c * row_stride + column] = static_cast<float>(summed_[which][c]);
@@ -111,11 +127,37 @@ public:
     }
 
 private:
+    /// Bilinear between a quad's corners, or those of a sub-face: a corner, two middles of edges, the mean of
+    /// all.
+    void add_straight(int sub, Uv uv) {
+        const auto n = static_cast<std::size_t>(class_.corner_count);
+        const auto s = static_cast<std::size_t>(sub);
+        const std::array<double, 4> u{1 - uv[0], uv[0], uv[0], 1 - uv[0]}, du{-1, 1, 1, -1},
+            v{1 - uv[1], 1 - uv[1], uv[1], uv[1]}, dv{-1, -1, 1, 1};
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::array<double, 6> weight{u[k] * v[k], du[k] * v[k], u[k] * dv[k], 0, du[k] * dv[k], 0};
+            for (std::size_t row = 0; row < weight.size(); ++row) {
+                std::vector<double>& sum = summed_[row];
+                if (n == 4) {
+                    sum[k] += weight[row];
+                } else if (k == 2) {
+                    for (double& x : sum) {
+                        x += weight[row] / static_cast<double>(n);
+                    }
+                } else {
+                    sum[s] += weight[row] / 2;
+                    sum[k == 0 ? s : k == 1 ? (s + 1) % n : (s + n - 1) % n] += weight[row] / 2;
+                }
+            }
+        }
+    }
+
     const ClassSurface& entry_;
     const FaceClass& class_;
     const FarStencils* far_;
+    bool scales_ = false;
     Bfr::Parameterization parameters_;
-    std::array<std::vector<double>, 3> raw_, summed_;
+    std::array<std::vector<double>, 6> raw_, summed_;
 };
 
 struct SubPoint {
@@ -172,7 +214,7 @@ void bound_deviation(StencilEvaluator& stencil, const PageKey& key, int controls
         for (int i = 0; i <= nu; ++i) {
             const double u = static_cast<double>(2 * block_quads * key.strip_u + i) / (2 << key.exponent_u);
             const double v = static_cast<double>(2 * block_quads * key.strip_v + j) / (2 << key.exponent_v);
-            stencil.evaluate(key.local, {u, v}, false);
+            stencil.evaluate(key.local, {u, v}, 0);
             std::copy(stencil.positions().begin(), stencil.positions().end(), at(i, j));
         }
     }
@@ -210,11 +252,15 @@ void place_regular_controls(float* along_u, float* along_v) {
 
 struct PageMaker::Impl {
     Impl(const Mesh& mesh, const Topology& t, int level)
-        : topology(t), refiner(make_refiner(mesh)), factory(*refiner, Bfr::SurfaceFactory::Options()
-                                                                          .EnableCaching(false)
-                                                                          .SetApproxLevelSmooth(level)
-                                                                          .SetApproxLevelSharp(level)),
-          surfaces(t.classes.size()), chaikin(mesh.crease_method == CreaseMethod::chaikin) {
+        : topology(t), surfaces(t.classes.size()), chaikin(mesh.crease_method == CreaseMethod::chaikin) {
+        if (mesh.scheme == Scheme::bilinear) {
+            return;
+        }
+        refiner = make_refiner(mesh);
+        factory.emplace(*refiner, Bfr::SurfaceFactory::Options()
+                                      .EnableCaching(false)
+                                      .SetApproxLevelSmooth(level)
+                                      .SetApproxLevelSharp(level));
         std::vector<int> faces;
         for (const FaceClass& c : t.classes) {
             if (asks_far(c)) {
@@ -226,7 +272,7 @@ struct PageMaker::Impl {
         }
     }
 
-    bool asks_far(const FaceClass& c) const { return !c.regular && (chaikin || c.folded); }
+    bool asks_far(const FaceClass& c) const { return !c.straight && !c.regular && (chaikin || c.folded); }
 
     const ClassSurface& surface(int face_class) {
         ClassSurface& entry = surfaces[static_cast<std::size_t>(face_class)];
@@ -236,10 +282,10 @@ struct PageMaker::Impl {
             entry.position = positions_of(std::span(topology.controls)
                                               .subspan(static_cast<std::size_t>(face.control_first),
                                                        static_cast<std::size_t>(face.control_count)));
-            if (asks_far(c)) {
+            if (c.straight || asks_far(c)) {
                 return;
             }
-            if (!factory.InitVertexSurface(c.representative, &entry.surface)) {
+            if (!factory->InitVertexSurface(c.representative, &entry.surface)) {
                 throw std::logic_error(fmt::format("face {} has no limit surface", c.representative));
             }
             entry.to_control = map_controls(entry.surface, c, entry.position);
@@ -249,7 +295,7 @@ struct PageMaker::Impl {
 
     const Topology& topology;
     std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner;
-    Factory factory;
+    std::optional<Factory> factory;
     std::vector<ClassSurface> surfaces;
     bool chaikin;
     std::unique_ptr<FarStencils> far;
@@ -264,35 +310,50 @@ void PageMaker::make(const PageKey& key, float* weights) const {
     const FaceClass& c = impl_->topology.classes[static_cast<std::size_t>(key.face_class)];
     StencilEvaluator stencil(impl_->surface(key.face_class), c,
                              impl_->asks_far(c) ? impl_->far.get() : nullptr);
-    std::fill_n(weights, page_floats(key, c.control_count), 0.0F);
+    const bool displaced = impl_->topology.displaced;
+    const std::size_t all = page_floats(key, c.control_count, displaced);
+    std::fill_n(weights, all, 0.0F);
+    if (displaced) {
+        stencil.scale_derivatives();
+    }
     switch (key.kind) {
     case PageKind::vertex: {
         const SubPoint p = at_vertex(key.local, c.corner_count);
-        stencil.evaluate(p.sub, p.uv, false);
-        stencil.store(0, weights, 1, 0);
+        stencil.evaluate(p.sub, p.uv, displaced ? 1 : 0);
+        for (std::size_t k = 0; k < (displaced ? 3U : 1U); ++k) {
+            stencil.store(k, weights + k * (all / 3), 1, 0);
+        }
         break;
     }
     case PageKind::curve:
         for (int i = 0; i <= quads(key.exponent_u); ++i) {
             const double t = dyadic(key.strip_u, i, key.exponent_u);
             const SubPoint p = on_curve(key.local, key.reversed ? 1 - t : t, c.corner_count);
-            stencil.evaluate(p.sub, p.uv, false);
+            stencil.evaluate(p.sub, p.uv, displaced ? 1 : 0);
             stencil.store(0, weights, curve_row, static_cast<std::size_t>(i));
+            for (std::size_t k = 0; displaced && k < 2; ++k) {
+                stencil.store(1 + k, weights + all / 3 + k * curve_row, std::size_t{2} * curve_row,
+                              static_cast<std::size_t>(i));
+            }
         }
         break;
     case PageKind::block:
     case PageKind::derivative: {
         const bool derivatives = key.kind == PageKind::derivative;
-        const std::size_t row = page_floats(key, c.control_count) /
-                                (static_cast<std::size_t>(c.control_count) * (derivatives ? 2U : 1U));
+        const std::size_t row =
+            all / (static_cast<std::size_t>(c.control_count) * (derivatives ? (displaced ? 5U : 2U) : 1U));
+        float* const second = weights + 2 * row * static_cast<std::size_t>(c.control_count);
         std::size_t column = 0;
         for (int j = 0; j <= quads(key.exponent_v); ++j) {
             for (int i = 0; i <= quads(key.exponent_u); ++i, ++column) {
                 const Uv uv{dyadic(key.strip_u, i, key.exponent_u), dyadic(key.strip_v, j, key.exponent_v)};
-                stencil.evaluate(key.local, uv, derivatives);
+                stencil.evaluate(key.local, uv, derivatives ? (displaced ? 2 : 1) : 0);
                 if (derivatives) {
                     stencil.store(1, weights, 2 * row, column);
                     stencil.store(2, weights + row, 2 * row, column);
+                    for (std::size_t k = 0; displaced && k < 3; ++k) {
+                        stencil.store(3 + k, second + k * row, 3 * row, column);
+                    }
                 } else {
                     stencil.store(0, weights, row, column);
                 }
@@ -303,7 +364,7 @@ void PageMaker::make(const PageKey& key, float* weights) const {
     case PageKind::deviation:
         bound_deviation(stencil, key, c.control_count, weights);
         if (c.regular) {
-            const std::size_t row = page_floats(key, c.control_count) / 3;
+            const std::size_t row = all / 3;
             place_regular_controls(weights + row, weights + 2 * row);
         }
         break;

@@ -31,7 +31,8 @@ PageKey page_key(int face_class, PageKind kind, int index, int corner_count);
 ///   - derivative: as block, two rows a control point
 ///   - deviation: three rows of control_count numbers, zero-padded to a multiple of 64: bounds; and, of a
 ///     regular face, its control points' places along u and v (zero of others)
-std::size_t page_floats(const PageKey& key, int control_count);
+/// `displaced`: of a mesh that is, whose pages hold more (razor/frame/layout.h).
+std::size_t page_floats(const PageKey& key, int control_count, bool displaced = false);
 
 /// How a class's pages are numbered: vertices, then curves, then blocks. `entries` and `lines` are left to
 /// the caller.

@@ -166,9 +166,10 @@ Mesh texture_cage(const Mesh& mesh) {
     return cage;
 }
 
-Topology analyse_texture_cage(const Mesh& mesh, const Mesh& cage) {
+Topology analyse_texture_cage(const Mesh& mesh, const Mesh& cage, bool displaced) {
     const Adjacency adjacency = build_adjacency(cage);
     Topology topology;
+    topology.displaced = displaced;
     for (const int size : cage.face_sizes)
         topology.faces.push_back({-1, 0, 0, size, 0});
     topology.points.resize(cage.points.size(), {-1, 0});

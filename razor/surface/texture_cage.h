@@ -17,7 +17,7 @@ bool has_linear_texcoords(const Mesh& mesh);
 Mesh texture_cage(const Mesh& mesh);
 
 /// Of that cage, for faces of `mesh`'s numbers: no patches, no curves. Where coordinates are linear, faces
-/// have no class and their corners as controls.
-Topology analyse_texture_cage(const Mesh& mesh, const Mesh& cage);
+/// have no class and their corners as controls. `displaced`: as of the mesh, see Topology.
+Topology analyse_texture_cage(const Mesh& mesh, const Mesh& cage, bool displaced = false);
 
 } // namespace razor

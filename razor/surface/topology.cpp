@@ -26,20 +26,26 @@ bool same_topology(const Mesh& a, const Mesh& b, double factor) {
            (!cuts || (alike(a.rest, b.rest) && (!a.rest.empty() || alike(a.points, b.points))));
 }
 
-Topology analyse_topology(const Mesh& mesh, bool diced) {
+Topology analyse_topology(const Mesh& mesh, Cut cut) {
+    const bool displaced = cut == Cut::displaced;
     const Adjacency adjacency = build_adjacency(mesh);
     const std::vector<bool> drawn = faces_with_limit_surface(mesh);
     Topology topology;
+    topology.displaced = displaced;
     topology.undrawn_faces = static_cast<int>(std::count(drawn.begin(), drawn.end(), false));
     for (const int size : mesh.face_sizes) {
         topology.faces.push_back({-1, 0, 0, size, 0});
     }
     build_edge_curves(adjacency, drawn, topology);
-    if (mesh.scheme == Scheme::bilinear) {
-        append_bilinear_patches(mesh, adjacency, drawn, diced, topology);
+    if (mesh.scheme == Scheme::bilinear && !displaced) {
+        append_bilinear_patches(mesh, adjacency, drawn, cut == Cut::diced, topology);
         return topology;
     }
-    assign_face_classes(mesh, adjacency, drawn, topology);
+    if (mesh.scheme == Scheme::bilinear) {
+        assign_straight_classes(mesh, adjacency, drawn, topology);
+    } else {
+        assign_face_classes(mesh, adjacency, drawn, topology);
+    }
     for (int f = 0; f < adjacency.face_count(); ++f) {
         if (!drawn[static_cast<std::size_t>(f)]) {
             continue;

@@ -20,6 +20,8 @@ struct FaceClass {
     bool regular = false;
     /// A corner lies inside a fan of only two faces. Bfr 3.5 crashes on some creases there.
     bool folded = false;
+    /// Bilinear in its corners, which are its control points: no OpenSubdiv.
+    bool straight = false;
 };
 
 struct Topology {
@@ -32,6 +34,8 @@ struct Topology {
     std::vector<FaceClass> classes;
     /// Largest curve exponent for which the pages fit their address range.
     int max_exponent = max_exponent_limit;
+    /// Pages hold what displacement along the normal needs: normals of shared points, and how they turn.
+    bool displaced = false;
     /// Holes, and faces that boundary interpolation `none` leaves out.
     int undrawn_faces = 0;
 };
@@ -43,10 +47,15 @@ void validate_mesh(const Mesh& mesh);
 /// Whether both meshes have one Topology. `factor`, a power of two, takes lengths of a to those of b.
 bool same_topology(const Mesh& a, const Mesh& b, double factor);
 
+/// How faces become patches. As shaped: planar faces of a bilinear mesh are flat, two triangles whatever the
+/// level. Diced: planar convex ones have grids, too. Displaced: as points will leave the surface along its
+/// normal, nothing of it is flat or straight; faces of a bilinear mesh then have classes and patches as limit
+/// surfaces have, with bilinear weights: a quad one, any other one for each corner.
+enum class Cut : std::uint8_t { as_shaped, diced, displaced };
+
 /// `mesh` must be valid. Throws UserError for cages that cannot be rendered (naming the face and the cause).
 /// A flat triangle's sides 0, 1 and 3 are its sides from corner 0 to 1, 1 to 2 and 0 to 2; side 2 has no
 /// length. A side that no cage edge runs along has curve -1.
-/// `diced`: planar convex faces of a bilinear mesh have grids, not two triangles whatever the level.
-Topology analyse_topology(const Mesh& mesh, bool diced = false);
+Topology analyse_topology(const Mesh& mesh, Cut cut = Cut::as_shaped);
 
 } // namespace razor
