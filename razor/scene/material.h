@@ -40,14 +40,24 @@ struct Material {
     float normal_scale = 1;  // of their x and y
     TextureMap bump_map{};   // heights, by luminance
     float bump = 0;          // how high its 1 lies over its 0, in units of the object
-    float alpha_cutoff = 0;  // what albedo_map's opacity is below is not there; 0: all is
-    bool two_sided = true;   // else seen from the front only: see is_one_sided()
+    /// Heights, of which surfaces are displaced along their normals by displacement_scale * (height -
+    /// displacement_midlevel), in the mesh's own units: what scales an instance scales them.
+    TextureMap displacement_map{};
+    float displacement_scale = 1;
+    float displacement_midlevel = 0.5F;
+    float alpha_cutoff = 0; // what albedo_map's opacity is below is not there; 0: all is
+    bool two_sided = true;  // else seen from the front only: see is_one_sided()
 
     bool operator==(const Material&) const = default;
 };
 
 inline bool has_sheen(const Material& m) {
     return m.sheen != glm::vec3(0);
+}
+
+/// Whether surfaces of it leave where their cage has them.
+inline bool is_displaced(const Material& m) {
+    return m.displacement_map.texture >= 0 && m.displacement_scale != 0;
 }
 
 /// Reflects light in all directions alike, and nothing else.

@@ -50,6 +50,8 @@ template <class Visit, class... Materials> void visit_material_fields(Visit visi
     visit("emission", radiance_range, m.emission...);
     visit("normal_scale", normal_scale_range, m.normal_scale...);
     visit("bump", coordinate_range, m.bump...);
+    visit("displacement_scale", displacement_range, m.displacement_scale...);
+    visit("displacement_midlevel", displacement_range, m.displacement_midlevel...);
     visit("alpha_cutoff", unit_range, m.alpha_cutoff...);
 }
 
@@ -61,6 +63,7 @@ template <class Visit, class... Materials> void visit_material_maps(Visit visit,
     visit("emission_map", m.emission_map...);
     visit("normal_map", m.normal_map...);
     visit("bump_map", m.bump_map...);
+    visit("displacement_map", m.displacement_map...);
 }
 
 } // namespace razor

@@ -28,6 +28,7 @@ inline constexpr Range pattern_size_range{1e-12, 1e12};
 inline constexpr Range octaves_range{1, 24};
 inline constexpr Range gain_range{0, 1};
 inline constexpr Range amount_range{0, 1e3};
+inline constexpr Range displacement_range{-1e12, 1e12}; // heights, and world units of one
 inline constexpr Range radiance_range{0, 1e9};
 inline constexpr Range intensity_range{0, 1e30};    // W / sr: of large scenes, as squared lengths
 inline constexpr Range light_radius_range{0, 1e30}; // of disks and spheres

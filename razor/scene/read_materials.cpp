@@ -98,6 +98,22 @@ Texture read_texture(TomlTable& table, const std::filesystem::path& folder, Text
     return texture;
 }
 
+void read_heights(const TomlTable& table, const Material& material, std::span<Texture> textures,
+                  TextureCache& cache) {
+    if (material.displacement_map.texture < 0) {
+        return;
+    }
+    Texture& texture = textures[static_cast<std::size_t>(material.displacement_map.texture)];
+    if (texture.pattern) {
+        table.fail("displacement_map", "a pattern cannot displace surfaces; give a texture with a file");
+    }
+    try {
+        texture.heights = cache.read(texture.file, true, Texels::heights);
+    } catch (const UserError& error) {
+        table.fail("displacement_map", error.what());
+    }
+}
+
 Material read_material(TomlTable& table, std::span<const std::string> textures) {
     const std::string name = table.text("name", "");
     Material material = preset_material(choose(table, "kind", MaterialKind::matte, material_words));

@@ -22,6 +22,11 @@ int read_texture_name(TomlTable& table, std::string_view key, std::span<const st
 Texture read_texture(TomlTable& table, const std::filesystem::path& folder, TextureCache& cache);
 
 /// [[material]], whose maps may name these textures. Throws UserError.
+/// Reads the heights of the texture that a material is displaced by, if nobody has yet. `table`: of the
+/// material.
+void read_heights(const TomlTable& table, const Material& material, std::span<Texture> textures,
+                  TextureCache& cache);
+
 Material read_material(TomlTable& table, std::span<const std::string> textures);
 
 } // namespace razor

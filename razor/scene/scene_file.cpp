@@ -304,6 +304,7 @@ SceneDescription read_scene(TomlTable root, std::string_view file_name, const st
     read_sky(sky, texture_names, scene);
     for (TomlTable& table : root.tables("material")) {
         scene.materials.push_back(read_material(table, texture_names));
+        read_heights(table, scene.materials.back(), scene.textures, cages.textures);
         check_names(names, scene.materials.back().name, table);
         names.push_back(scene.materials.back().name);
     }

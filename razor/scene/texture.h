@@ -15,6 +15,9 @@ namespace razor {
 /// What a texture shows beyond its edges (glTF 2.0, sampler.wrapS).
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
+/// What the texels of a pyramid are: colours, or heights to displace surfaces by.
+enum class Texels : std::uint8_t { colours, heights };
+
 /// Side of the tiles in which texels lie together: 4 x 4 of 32 bits are one line of a cache.
 inline constexpr int texel_tile = 4;
 /// 32768 x 32768 texels and all coarser levels.
@@ -23,7 +26,7 @@ inline constexpr int most_texture_levels = 16;
 /// One level of a pyramid. Row 0 is the top of the picture. Texel (x, y) is word 16 * (y/4 * ceil(width/4) +
 /// x/4) + 4 * (y%4) + x%4; words beyond the picture repeat its edge. `texels` hold linear red, green and blue
 /// with a shared exponent (see razor/scene/textures/shared_exponent.h); `opacity`, if there is any that is
-/// not 1, the same of opacity in all three.
+/// not 1, the same of opacity in all three. Of heights `texels` hold the bits of floats.
 struct TextureLevel {
     int width = 0, height = 0;
     std::vector<std::uint32_t> texels;
@@ -33,6 +36,8 @@ struct TextureLevel {
 /// A picture and its means over ever larger squares, down to one texel.
 struct TexturePyramid {
     std::vector<TextureLevel> levels; // of most_texture_levels at most, each half as large, rounded up
+    Texels kind = Texels::colours;
+    float least = 0, most = 0; // of the picture's heights
 };
 
 /// What a texture may be instead of a picture: see razor/kernels/pattern.h.
@@ -59,6 +64,8 @@ struct Texture {
     bool linear = false;            // what the file holds is no sRGB colour
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     std::shared_ptr<const TexturePyramid> pyramid;
+    /// What displacement reads of it, red as it is in the file; null where no material's displacement does.
+    std::shared_ptr<const TexturePyramid> heights{};
 };
 
 } // namespace razor

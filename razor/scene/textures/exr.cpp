@@ -66,7 +66,7 @@ std::vector<const char*> names_of_channels(const Imf::ChannelList& channels, std
     return names;
 }
 
-TexturePyramid read(std::string_view bytes, const std::string& name) {
+TexturePyramid read(std::string_view bytes, const std::string& name, Texels kind) {
     InputStream header_stream(bytes, name), stream(bytes, name);
     { // what is said of the size, before OpenEXR allocates anything of it
         char start[8]{};
@@ -90,7 +90,8 @@ TexturePyramid read(std::string_view bytes, const std::string& name) {
     const auto columns = static_cast<std::size_t>(width);
     std::array<std::vector<float>, 4> planes;
     std::vector<glm::vec4> texels(columns, glm::vec4(1));
-    PyramidBuilder builder(width, height);
+    PyramidBuilder builder(width, height, kind);
+    const bool heights = kind == Texels::heights;
     for (int y = window.min.y; y <= window.max.y; ++y) {
         Imf::FrameBuffer row;
         for (std::size_t c = 0; c < names.size(); ++c) {
@@ -105,12 +106,13 @@ TexturePyramid read(std::string_view bytes, const std::string& name) {
         for (std::size_t x = 0; x < columns; ++x) {
             for (std::size_t c = 0; c < names.size(); ++c) {
                 const float value = planes[c].empty() ? planes[0][x] : planes[c][x];
-                if (!std::isfinite(value) || value < 0)
-                    throw UserError(
-                        fmt::format("{}: {} of the texel in column {}, row {} is {}; give colours "
-                                    "that are finite and not negative",
-                                    printable(name, 1000), names[c], x, y - window.min.y, value));
-                texels[x][static_cast<int>(c)] = std::min(value, c == 3 ? 1.0F : most_shared);
+                if (!std::isfinite(value) || (value < 0 && !heights))
+                    throw UserError(fmt::format("{}: {} of the texel in column {}, row {} is {}; give {}",
+                                                printable(name, 1000), names[c], x, y - window.min.y, value,
+                                                heights ? "heights that are finite"
+                                                        : "colours that are finite and not negative"));
+                texels[x][static_cast<int>(c)] =
+                    heights ? value : std::min(value, c == 3 ? 1.0F : most_shared);
             }
         }
         builder.add_row(texels);
@@ -120,9 +122,9 @@ TexturePyramid read(std::string_view bytes, const std::string& name) {
 
 } // namespace
 
-TexturePyramid decode_exr(std::string_view bytes, std::string_view name) {
+TexturePyramid decode_exr(std::string_view bytes, std::string_view name, Texels kind) {
     try {
-        return read(bytes, std::string(name));
+        return read(bytes, std::string(name), kind);
     } catch (const UserError&) {
         throw;
     } catch (const std::bad_alloc&) {

@@ -83,7 +83,7 @@ public:
     JpegReader(const JpegReader&) = delete;
     JpegReader& operator=(const JpegReader&) = delete;
 
-    TexturePyramid read(bool linear) {
+    TexturePyramid read(bool linear, Texels kind) {
         check(read_header(jpeg_, errors_, bytes_));
         check_picture_size(name_, jpeg_.image_width, jpeg_.image_height, bytes_.size());
         if (jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK)
@@ -106,7 +106,7 @@ public:
         const std::size_t width = jpeg_.image_width, channels = jpeg_.num_components == 1 ? 1 : 3;
         std::vector<JSAMPLE> samples(width * channels);
         std::vector<glm::vec4> texels(width, glm::vec4(1));
-        PyramidBuilder builder(static_cast<int>(width), static_cast<int>(jpeg_.image_height));
+        PyramidBuilder builder(static_cast<int>(width), static_cast<int>(jpeg_.image_height), kind);
         for (JDIMENSION y = 0; y < jpeg_.image_height; ++y) {
             check(read_row(jpeg_, errors_, samples.data()));
             for (std::size_t x = 0; x < width; ++x)
@@ -131,8 +131,8 @@ private:
 
 } // namespace
 
-TexturePyramid decode_jpeg(std::string_view bytes, std::string_view name, bool linear) {
-    return JpegReader(bytes, name).read(linear);
+TexturePyramid decode_jpeg(std::string_view bytes, std::string_view name, bool linear, Texels kind) {
+    return JpegReader(bytes, name).read(linear || kind == Texels::heights, kind);
 }
 
 } // namespace razor

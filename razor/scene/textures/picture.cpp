@@ -47,28 +47,28 @@ void check_picture_size(std::string_view name, std::int64_t width, std::int64_t 
         fail(fmt::format("cannot be in {} bytes: it is damaged or cut short; give another picture", bytes));
 }
 
-TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear) {
+TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear, Texels kind) {
     try {
         if (bytes.starts_with(png_magic))
-            return decode_png(bytes, name, linear);
+            return decode_png(bytes, name, linear, kind);
         if (bytes.starts_with(jpeg_magic))
-            return decode_jpeg(bytes, name, linear);
+            return decode_jpeg(bytes, name, linear, kind);
         if (bytes.starts_with(exr_magic))
-            return decode_exr(bytes, name);
+            return decode_exr(bytes, name, kind);
     } catch (const std::bad_alloc&) {
         throw UserError(
             fmt::format("{}: the picture does not fit in memory; give a smaller one", printable(name, 1000)));
     }
-    for (const auto& [magic, kind] : not_read)
+    for (const auto& [magic, what] : not_read)
         if (bytes.starts_with(magic))
             throw UserError(
-                fmt::format("{}: is {}; convert it to PNG, JPEG or OpenEXR", printable(name, 1000), kind));
+                fmt::format("{}: is {}; convert it to PNG, JPEG or OpenEXR", printable(name, 1000), what));
     throw UserError(fmt::format("{}: is {}; give PNG, JPEG or OpenEXR", printable(name, 1000),
                                 bytes.empty() ? "empty" : "no picture that is read"));
 }
 
-TexturePyramid read_picture(const std::filesystem::path& path, bool linear) {
-    return decode_picture(read_text_file(path, "a picture"), path.string(), linear);
+TexturePyramid read_picture(const std::filesystem::path& path, bool linear, Texels kind) {
+    return decode_picture(read_text_file(path, "a picture"), path.string(), linear, kind);
 }
 
 } // namespace razor

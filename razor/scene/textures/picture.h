@@ -21,14 +21,20 @@ void check_picture_size(std::string_view name, std::int64_t width, std::int64_t 
 /// What they hold as linear colours. `linear`: it is no sRGB colour; OpenEXR never is. Colours above 65408
 /// count as that. Throws UserError "name: cause; mend": damaged, cut short, too large, or of a kind that is
 /// not read.
-TexturePyramid decode_png(std::string_view bytes, std::string_view name, bool linear);
-TexturePyramid decode_jpeg(std::string_view bytes, std::string_view name, bool linear);
-TexturePyramid decode_exr(std::string_view bytes, std::string_view name);
+///
+/// Heights: red, as the file has it (`linear` is passed over), or its grey or luminance; OpenEXR's may be
+/// negative.
+TexturePyramid decode_png(std::string_view bytes, std::string_view name, bool linear,
+                          Texels kind = Texels::colours);
+TexturePyramid decode_jpeg(std::string_view bytes, std::string_view name, bool linear,
+                           Texels kind = Texels::colours);
+TexturePyramid decode_exr(std::string_view bytes, std::string_view name, Texels kind = Texels::colours);
 
 /// Whichever of these it is. `name`: of the file or the part of one, for messages.
-TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear);
+TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear,
+                              Texels kind = Texels::colours);
 
 /// A file.
-TexturePyramid read_picture(const std::filesystem::path& path, bool linear);
+TexturePyramid read_picture(const std::filesystem::path& path, bool linear, Texels kind = Texels::colours);
 
 } // namespace razor

@@ -99,7 +99,7 @@ public:
     PngReader(const PngReader&) = delete;
     PngReader& operator=(const PngReader&) = delete;
 
-    TexturePyramid read(bool linear) {
+    TexturePyramid read(bool linear, Texels kind) {
         const std::size_t bytes = source_.bytes.size();
         check(read_header(png_, info_));
         const png_uint_32 width = png_get_image_width(png_, info_),
@@ -117,7 +117,7 @@ public:
         for (std::size_t y = 0; y < kept; ++y)
             rows[y] = samples.get() + y * row_bytes;
 
-        PyramidBuilder builder(static_cast<int>(width), static_cast<int>(height));
+        PyramidBuilder builder(static_cast<int>(width), static_cast<int>(height), kind);
         std::vector<glm::vec4> texels(width);
         for (png_uint_32 y = 0; y < height; ++y) {
             if (!interlaced || y == 0)
@@ -154,8 +154,8 @@ private:
 
 } // namespace
 
-TexturePyramid decode_png(std::string_view bytes, std::string_view name, bool linear) {
-    return PngReader(bytes, name).read(linear);
+TexturePyramid decode_png(std::string_view bytes, std::string_view name, bool linear, Texels kind) {
+    return PngReader(bytes, name).read(linear || kind == Texels::heights, kind);
 }
 
 } // namespace razor

@@ -3,6 +3,7 @@
 #include "razor/scene/textures/shared_exponent.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace razor {
@@ -51,7 +52,7 @@ void filter_row(std::span<const glm::vec4> row, std::span<glm::vec4> above) {
 
 } // namespace
 
-PyramidBuilder::PyramidBuilder(int width, int height) {
+PyramidBuilder::PyramidBuilder(int width, int height, Texels kind) : kind_(kind) {
     for (;;) {
         Building building;
         TextureLevel& level = building.level;
@@ -73,6 +74,16 @@ PyramidBuilder::PyramidBuilder(int width, int height) {
 }
 
 void PyramidBuilder::add_row(std::span<const glm::vec4> row) {
+    if (kind_ == Texels::heights) {
+        if (levels_.front().rows == 0)
+            least_ = most_ = row.front().x;
+        for (const glm::vec4& texel : row) {
+            least_ = std::min(least_, texel.x);
+            most_ = std::max(most_, texel.x);
+        }
+        add(0, row);
+        return;
+    }
     if (opaque_ && std::any_of(row.begin(), row.end(), [](const glm::vec4& t) { return t.w != 1; })) {
         opaque_ = false;
         const std::uint32_t one = pack_shared_exponent(glm::vec3(1));
@@ -121,7 +132,9 @@ void PyramidBuilder::store(Building& building, std::span<const glm::vec4> row) {
     };
     for (std::size_t x = 0; x < texel_tile * columns; ++x) {
         const glm::vec4& texel = row[std::min(x, row.size() - 1)];
-        put(level.texels, x, pack_shared_exponent(glm::vec3(texel)));
+        put(level.texels, x,
+            kind_ == Texels::heights ? std::bit_cast<std::uint32_t>(texel.x)
+                                     : pack_shared_exponent(glm::vec3(texel)));
         if (!opaque_)
             put(level.opacity, x, pack_shared_exponent(glm::vec3(texel.w)));
     }
@@ -129,6 +142,9 @@ void PyramidBuilder::store(Building& building, std::span<const glm::vec4> row) {
 
 TexturePyramid PyramidBuilder::finish() {
     TexturePyramid pyramid;
+    pyramid.kind = kind_;
+    pyramid.least = least_;
+    pyramid.most = most_;
     for (Building& building : levels_)
         pyramid.levels.push_back(std::move(building.level));
     return pyramid;

@@ -17,9 +17,9 @@ namespace razor {
 class PyramidBuilder {
 public:
     /// Sides from 1 to 32768.
-    PyramidBuilder(int width, int height);
+    PyramidBuilder(int width, int height, Texels kind = Texels::colours);
 
-    /// The next row, from the top: linear red, green, blue, and opacity in [0, 1].
+    /// The next row, from the top: linear red, green, blue, and opacity in [0, 1]. Of heights: red, finite.
     void add_row(std::span<const glm::vec4> row);
 
     /// After the last row.
@@ -39,6 +39,8 @@ private:
 
     std::vector<Building> levels_;
     bool opaque_ = true;
+    Texels kind_;
+    float least_ = 0, most_ = 0;
 };
 
 } // namespace razor

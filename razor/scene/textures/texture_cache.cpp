@@ -4,10 +4,11 @@
 
 namespace razor {
 
-std::shared_ptr<const TexturePyramid> TextureCache::read(const std::filesystem::path& path, bool linear) {
-    auto& pyramid = pyramids_[{std::filesystem::absolute(path).lexically_normal().string(), linear}];
+std::shared_ptr<const TexturePyramid> TextureCache::read(const std::filesystem::path& path, bool linear,
+                                                         Texels kind) {
+    auto& pyramid = pyramids_[{std::filesystem::absolute(path).lexically_normal().string(), linear, kind}];
     if (!pyramid)
-        pyramid = std::make_shared<const TexturePyramid>(read_picture(path, linear));
+        pyramid = std::make_shared<const TexturePyramid>(read_picture(path, linear, kind));
     return pyramid;
 }
 

@@ -7,17 +7,18 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
+#include <tuple>
 
 namespace razor {
 
 class TextureCache {
 public:
     /// See read_picture(). Throws UserError.
-    std::shared_ptr<const TexturePyramid> read(const std::filesystem::path& path, bool linear);
+    std::shared_ptr<const TexturePyramid> read(const std::filesystem::path& path, bool linear,
+                                               Texels kind = Texels::colours);
 
 private:
-    std::map<std::pair<std::string, bool>, std::shared_ptr<const TexturePyramid>> pyramids_;
+    std::map<std::tuple<std::string, bool, Texels>, std::shared_ptr<const TexturePyramid>> pyramids_;
 };
 
 } // namespace razor
