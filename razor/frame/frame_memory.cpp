@@ -1,6 +1,7 @@
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/blend_table.h"
+#include "razor/frame/displacement.h"
 #include "razor/frame/filter_table.h"
 #include "razor/frame/light_records.h"
 #include "razor/frame/scratch.h"
@@ -95,7 +96,7 @@ int Frame::Impl::map_bits_of(const Instance& i) const {
 }
 
 std::int32_t Frame::Impl::shading_of(const Scene& scene, const Instance& i) const {
-    const int texcoords = texture_cage_of[static_cast<std::size_t>(i.mesh)] >= 0 ? 2 : 0;
+    const int texcoords = shades_by_texture[static_cast<std::size_t>(i.mesh)] ? 2 : 0;
     int bits = scene.settings.shading == Shading::hits ? 0 : map_bits_of(i), arrays = 0;
     if ((bits >> map_bump & 1) != 0)
         bits |= 1 << map_normal;
@@ -122,17 +123,20 @@ void Frame::Impl::take_materials(const Scene& scene) {
         const auto mesh = static_cast<std::size_t>(i.mesh);
         if (scene.settings.shading == Shading::diced && map_bits_of(i) != 0 && !diced[mesh]) {
             diced[mesh] = true;
-            topologies[mesh] = analyse_topology(scene.meshes[mesh], true);
+            topologies[mesh] = analyse_topology(scene.meshes[mesh], Cut::diced);
         }
     }
     texture_cage_of.assign(scene_meshes, -1);
+    shades_by_texture.assign(scene_meshes, false);
     for (const Instance& i : geometry.instances) {
         const auto mesh = static_cast<std::size_t>(i.mesh);
         const Mesh& own = scene.meshes[mesh];
         std::size_t textured = used.size();
         each_material(scene, i, [&](std::size_t m) {
-            if (materials.needs_texcoords[m])
+            if (materials.needs_texcoords[m] || materials.displaced[m])
                 textured = m;
+            if (materials.needs_texcoords[m])
+                shades_by_texture[mesh] = true;
         });
         if (textured == used.size() || texture_cage_of[mesh] >= 0)
             continue;
@@ -143,7 +147,10 @@ void Frame::Impl::take_materials(const Scene& scene) {
                             scene.name, own.name, scene.materials[textured].name));
         texture_cage_of[mesh] = static_cast<int>(meshes.size());
         meshes.push_back(texture_cage(own));
-        topologies.push_back(analyse_texture_cage(own, meshes.back()));
+        const bool displaced = geometry.displacements[mesh] > 0;
+        topologies.push_back(analyse_texture_cage(own, meshes.back(), displaced));
+        if (displaced)
+            topologies[mesh] = analyse_topology(own, Cut::displaced);
         topologies[mesh].max_exponent =
             std::min(topologies[mesh].max_exponent, topologies.back().max_exponent);
     }
@@ -187,6 +194,8 @@ void Frame::Impl::place_scene(const Scene& scene) {
     header = region<FrameHeader>("scene graph", -1, 1);
     new (header) FrameHeader{};
     header->instances.set(region<InstanceRecord>("scene graph", -1, geometry.instances.size()));
+    if (!materials.displacements.empty())
+        header->displacement_bounds.set(region<float>("scene graph", -1, geometry.instances.size()));
     header->cluster_instance.set(region<std::int32_t>("scene graph", -1, static_cast<std::size_t>(clusters)));
     if (materials.solid)
         header->solids.set(region<SolidRecord>("materials", -1, geometry.instances.size()));
@@ -202,7 +211,7 @@ void Frame::Impl::place_materials(const Scene& scene) {
     for (std::size_t n = 0; n < geometry.instances.size(); ++n)
         shaded = std::max(shaded, shaded_arrays_in(shading_of(scene, geometry.instances[n])));
     header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded);
-    if (plan.look == look_matte && !materials.one_sided)
+    if (plan.look == look_matte && !materials.one_sided && materials.displacements.empty())
         return;
     const auto copy = [&](const auto& table, auto& to, const char* structure) {
         using Record = typename std::remove_reference_t<decltype(table)>::value_type;
@@ -218,6 +227,7 @@ void Frame::Impl::place_materials(const Scene& scene) {
     header->sheens = materials.sheens ? 1 : 0;
     if (materials.sheens)
         copy(materials.sheen_albedo, header->sheen_albedo, "materials");
+    copy(materials.displacements, header->displacements, "materials");
     if (materials.texels > 0) {
         auto* texel = region<std::int32_t>("textures", -1, materials.texels);
         header->texels.set(texel);
@@ -227,6 +237,7 @@ void Frame::Impl::place_materials(const Scene& scene) {
         }
     }
     place_sky(scene);
+    place_displacement();
     const auto by_face = [](const Instance& i) { return i.material < 0; };
     if (std::any_of(geometry.instances.begin(), geometry.instances.end(), by_face)) {
         auto* of_faces = region<std::int32_t>("materials", -1, total.faces);
@@ -235,6 +246,17 @@ void Frame::Impl::place_materials(const Scene& scene) {
             std::copy(scene.meshes[m].face_materials.begin(), scene.meshes[m].face_materials.end(),
                       of_faces + first_face[m]);
     }
+}
+
+void Frame::Impl::place_displacement() {
+    if (materials.displacements.empty())
+        return;
+    auto* of_clusters = region<float>("scene graph", -1, total.clusters);
+    header->cluster_displacements.set(of_clusters);
+    for (std::size_t m = 0; m < scene_meshes; ++m)
+        std::fill_n(of_clusters + first_cluster[m], clusters_of(m),
+                    static_cast<float>(geometry.displacements[m] * (1 + 1e-6)));
+    header->texture_densities.set(region<float>("materials", -1, total.faces));
 }
 
 void Frame::Impl::place_sky(const Scene& scene) {
@@ -311,6 +333,8 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
     for (int k = 0; k < 3; ++k)
         r.albedo[k] = albedo[k];
     r.material = i.material;
+    if (float* bounds = header->displacement_bounds.get(); bounds != nullptr)
+        bounds[n] = static_cast<float>(displacement_bound(scene, i.mesh, i.material) * (1 + 1e-6));
     const int cage = texture_cage_of[mesh];
     r.shading = shading_of(scene, i);
     if (SolidRecord* solids = header->solids.get())
@@ -318,6 +342,12 @@ void Frame::Impl::fill_instance(const Scene& scene, std::size_t n) {
     if (cage >= 0)
         r.texture_faces = static_cast<std::int32_t>(first_face[static_cast<std::size_t>(cage)]) -
                           static_cast<std::int32_t>(first_face[mesh]);
+}
+
+void Frame::Impl::fill_density(const Mesh& mesh, std::size_t number) {
+    if (geometry.displacements[number] > 0)
+        measure_texture_density(
+            mesh, {header->texture_densities.get() + first_face[number], mesh.face_sizes.size()});
 }
 
 void Frame::Impl::place_graph() {
@@ -373,6 +403,7 @@ void Frame::Impl::place_points(const Scene& scene) {
 }
 
 void Frame::Impl::fill_points(const Scene& scene, std::size_t mesh) {
+    fill_density(scene.meshes[mesh], mesh);
     float* xyz = header->points.get() + 3 * first_point[mesh];
     for (const glm::dvec3& point : scene.meshes[mesh].points) {
         const glm::dvec3 p = point - geometry.mesh_origins[mesh];

@@ -60,6 +60,7 @@ struct Frame::Impl {
     std::size_t scene_meshes = 0;
     std::vector<int> face_map_bits;   // of each mesh of the scene whose faces have materials: of all of them
     std::vector<int> texture_cage_of; // of each mesh of the scene, -1: none
+    std::vector<bool> shades_by_texture; // likewise; else its cage is for displacement alone
     MaterialTables materials;
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
     FrameOptions options;
@@ -134,6 +135,9 @@ struct Frame::Impl {
     void place_scene(const Scene& scene);
     void place_materials(const Scene& scene);
     void place_sky(const Scene& scene);
+    void place_displacement();
+    /// Of a mesh that is displaced, by its points as they are now.
+    void fill_density(const Mesh& mesh, std::size_t number);
     void place_graph();
     void place_points(const Scene& scene);
     void place_topology();

@@ -119,13 +119,15 @@ constexpr int strip_pair(int u, int v) {
 // entry that says where it lies: entries[first of its kind + index].
 enum class PageKind : std::int32_t {
     vertex = 0, // index = corner (or corner_count: the centre). One row of control_count weights, zero-padded
-                // to the width
+                // to the width. Of a displaced mesh three such rows: position, d/du, d/dv
     curve = 1, // index = strip * curve_ways + local * 2 + reversed. control_count rows of 16: points (8*chunk
-               // + i)/2^N, i = 0..8
+               // + i)/2^N, i = 0..8. Of a displaced mesh two more such rows a control point follow all of
+               // these: d/du then d/dv
     block = 2, // index = (strip_pair(u strip, v strip) * subs + sub) * block_kinds. control_count rows, one
                // weight a vertex j*(nu+1)+i, padded to the width; positions
     derivative = 3, // as block; two rows a control point: d/du then d/dv (only their cross product's
-                    // direction matters)
+                    // direction matters). Of a displaced mesh three more rows a control point follow all
+                    // of these, d2/du2, d2/dudv, d2/dv2, and derivatives are by the patch's own (u, v)
     deviation = 4,  // as block; three rows of control_count numbers, zero-padded to a multiple of 64. First
                     // bounds: how far the weight of any finer vertex is from the mean of its parents'
                     // weights, summed over the levels. Then, for u and v, a row of length 1 and sum 0 for
@@ -505,10 +507,16 @@ struct FrameHeader {
     isa::ref<SkyRecord> sky_map;   // null: the sky is the same everywhere
     isa::ref<std::int32_t> texels; // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
-    std::int32_t cutouts;             // not 0: some material has an alpha_cutoff and opacity in its texture
-    std::int32_t slot_floats;         // of a blended block: see razor/frame/scratch.h
-    std::int32_t one_sided;           // not 0: some material is seen from the front only
-    std::int32_t sheens;              // not 0: some material has sheen
+    /// Null if nothing is displaced. Otherwise: of each instance by how much at most, in its mesh's units,
+    /// and of each cluster by how much at most any instance of it is. 0: not at all.
+    isa::ref<float> displacement_bounds, cluster_displacements;
+    isa::ref<DisplacementRecord> displacements;
+    isa::ref<float>
+        texture_densities;    // of every face: measure_texture_density() in razor/frame/displacement.h
+    std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
+    std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h
+    std::int32_t one_sided;   // not 0: some material is seen from the front only
+    std::int32_t sheens;      // not 0: some material has sheen
     isa::ref<EmitterRecord> emitters; // triangles of surfaces that are lights
     isa::ref<float> emitter_sums;     // of their chances: before each, and at the end
     std::int32_t emitter_count;

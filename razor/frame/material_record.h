@@ -21,9 +21,9 @@ struct alignas(line_bytes) MaterialRecord {
     std::int32_t map_bits;  // of the maps that it has: 1 << MaterialMap
     std::int32_t one_sided; // not 0: seen from the front only
     float sheen[3], sheen_alpha;
-    std::int32_t sheen_table; // its albedo: words of FrameHeader::sheen_albedo from there
-    float light_density;      // by area, of rays to all surfaces that are lights; 0: none goes to its own
-    std::int32_t padding[1];
+    std::int32_t sheen_table;  // its albedo: words of FrameHeader::sheen_albedo from there
+    float light_density;       // by area, of rays to all surfaces that are lights; 0: none goes to its own
+    std::int32_t displacement; // a DisplacementRecord, or -1
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
@@ -73,6 +73,20 @@ struct MapRecord {
     std::int32_t padding;
 };
 static_assert(sizeof(MapRecord) == line_bytes / 2);
+
+/// By what surfaces of a material leave where their cage has them, along the normal: scale * (height -
+/// midlevel), in the mesh's units.
+struct alignas(line_bytes) DisplacementRecord {
+    float scale, midlevel;
+    float bound;      // of the product, either way
+    float range;      // of the heights, times |scale|
+    std::int32_t map; // a MapRecord; its texture's texels are the bits of floats
+    float footprint;  // |determinant of the map| * (the texture's size)^2
+    std::int32_t padding[10];
+    /// How fast heights of each level change, at most, per unit of the map's coordinates, times |scale|.
+    float slope_u[16], slope_v[16];
+};
+static_assert(sizeof(DisplacementRecord) == 3 * line_bytes);
 
 enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
 

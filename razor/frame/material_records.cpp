@@ -1,5 +1,6 @@
 #include "razor/frame/material_records.h"
 
+#include "razor/frame/displacement.h"
 #include "razor/frame/sheen_albedo.h"
 #include "razor/scene/error.h"
 
@@ -36,6 +37,7 @@ MaterialRecord material_record(const Material& m) {
     const float rough = std::max(m.sheen_roughness, least_sheen_roughness);
     r.sheen_alpha = rough * rough;
     std::fill(std::begin(r.map), std::end(r.map), -1);
+    r.displacement = -1;
     return r;
 }
 
@@ -78,7 +80,8 @@ TextureRecord pattern_record(const Pattern& p) {
 
 class Tables {
 public:
-    explicit Tables(const Scene& scene) : scene_(scene), number_(scene.textures.size(), -1) {
+    explicit Tables(const Scene& scene)
+        : scene_(scene), number_(scene.textures.size(), -1), heights_(number_) {
         t.sheen_albedo.assign(sheen_steps, 0.0F);
         t.sheens = scene.settings.everything;
     }
@@ -107,7 +110,36 @@ public:
             add_sheen(r);
         t.map_bits.push_back(r.map_bits);
         t.needs_texcoords.push_back(texcoords);
+        const double bound = used ? displacement_bound(scene_, static_cast<int>(t.materials.size())) : 0;
+        t.displaced.push_back(bound > 0);
+        if (bound > 0) {
+            r.displacement = static_cast<std::int32_t>(t.displacements.size());
+            add_displacement(m, bound);
+        }
         t.materials.push_back(r);
+    }
+
+    void add_displacement(const Material& m, double bound) {
+        DisplacementRecord d{};
+        d.scale = m.displacement_scale;
+        d.midlevel = m.displacement_midlevel;
+        d.bound = static_cast<float>(bound);
+        d.map = static_cast<std::int32_t>(t.maps.size());
+        const Texture& texture = scene_.textures[static_cast<std::size_t>(m.displacement_map.texture)];
+        t.maps.push_back(
+            map_record(m.displacement_map, heights(m.displacement_map.texture, *texture.heights)));
+        const MapRecord& map = t.maps.back();
+        const TextureRecord& record = t.textures[static_cast<std::size_t>(map.texture)];
+        d.footprint =
+            std::abs(map.row_u[0] * map.row_v[1] - map.row_u[1] * map.row_v[0]) * (record.size * record.size);
+        const float scale = std::abs(m.displacement_scale);
+        d.range = scale * (texture.heights->most - texture.heights->least);
+        const std::vector<HeightSlopes> slopes = height_slopes(texture);
+        for (std::size_t l = 0; l < slopes.size(); ++l) {
+            d.slope_u[l] = scale * slopes[l].u;
+            d.slope_v[l] = scale * slopes[l].v;
+        }
+        t.displacements.push_back(d);
     }
 
     /// Around the horizon it goes on where it ends, at the poles it does not, whatever its texture has
@@ -129,16 +161,25 @@ private:
     }
 
     std::int32_t texture(int index) {
+        const Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
         std::int32_t& number = number_[static_cast<std::size_t>(index)];
+        if (texture.pattern && number < 0) {
+            number = static_cast<std::int32_t>(t.textures.size());
+            t.textures.push_back(pattern_record(*texture.pattern));
+        }
+        if (texture.pattern)
+            return number;
+        return pyramid(number, texture, *texture.pyramid);
+    }
+    std::int32_t heights(int index, const TexturePyramid& of) {
+        return pyramid(heights_[static_cast<std::size_t>(index)],
+                       scene_.textures[static_cast<std::size_t>(index)], of);
+    }
+    std::int32_t pyramid(std::int32_t& number, const Texture& texture, const TexturePyramid& of) {
         if (number >= 0)
             return number;
         number = static_cast<std::int32_t>(t.textures.size());
-        const Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
-        if (texture.pattern) {
-            t.textures.push_back(pattern_record(*texture.pattern));
-            return number;
-        }
-        const std::vector<TextureLevel>& levels = texture.pyramid->levels;
+        const std::vector<TextureLevel>& levels = of.levels;
         TextureRecord r{};
         r.levels = static_cast<std::int32_t>(levels.size());
         r.wrap_u = wrap_of(texture.wrap_u);
@@ -187,8 +228,8 @@ private:
     }
 
     const Scene& scene_;
-    std::vector<std::int32_t> number_;     // of each texture, its record
-    std::map<float, std::int32_t> sheens_; // by width
+    std::vector<std::int32_t> number_, heights_; // of each texture, its records
+    std::map<float, std::int32_t> sheens_;       // by width
 };
 
 } // namespace

@@ -15,6 +15,8 @@ struct MaterialTables {
     std::vector<int> map_bits;         // of each material, the maps that it has: 1 << MaterialMap
     std::vector<bool> needs_texcoords; // likewise, whether some of them is other than a pattern of objects
     bool solid = false;                // some map is a pattern of objects
+    std::vector<bool> displaced;       // likewise, whether tessellation has one
+    std::vector<DisplacementRecord> displacements;
     std::vector<MaterialRecord> materials;
     std::vector<MapRecord> maps;
     std::vector<TextureRecord> textures;

@@ -1,5 +1,6 @@
 #include "razor/frame/scene_geometry.h"
 
+#include "razor/frame/displacement.h"
 #include "razor/frame/view.h"
 #include "razor/scene/error.h"
 
@@ -210,8 +211,9 @@ FlatGraph lay_out(const Scene& scene, std::span<const Box> mesh_bounds) {
 SceneGeometry locate_scene(const Scene& scene, const std::vector<bool>& drawn) {
     SceneGeometry g;
     g.drawn = drawn;
-    for (const Mesh& mesh : scene.meshes)
-        g.mesh_bounds.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
+    g.displacements = displacement_bounds(scene);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        g.mesh_bounds.push_back(displaced_bounds(scene.meshes[m], g.displacements[m]));
     g.flat = lay_out(scene, g.mesh_bounds);
     std::vector<Box> bounds;
     std::vector<bool> seen;
@@ -244,8 +246,8 @@ std::optional<GeometryChanges> follow(SceneGeometry& g, const FlatIndex& index, 
                                       const SceneChanges& changes) {
     GeometryChanges result{{}, changes.meshes};
     for (const int m : changes.meshes) {
-        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(m)];
-        g.mesh_bounds[static_cast<std::size_t>(m)] = bounds_of_used_points(mesh.points, mesh.face_vertices);
+        const auto mesh = static_cast<std::size_t>(m);
+        g.mesh_bounds[mesh] = displaced_bounds(scene.meshes[mesh], g.displacements[mesh]);
     }
     const bool bare = scene.graph.groups.empty();
     const SceneGraph of_meshes = bare ? drawn_graph(scene.graph, scene.meshes.size()) : SceneGraph{};

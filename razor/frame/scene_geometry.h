@@ -39,6 +39,7 @@ struct SceneGeometry {
 
     // From which follow() goes on.
     FlatGraph flat;
+    std::vector<double> displacements;   // of each mesh, at most, in its units: mesh_bounds hold them
     std::vector<Box> mesh_bounds, boxes; // boxes: of the points of each instance, in the world
     std::vector<bool> drawn;             // of each mesh
     std::vector<bool> stands;  // of each instance, whether the graph neither turns, scales nor moves it

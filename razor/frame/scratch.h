@@ -22,6 +22,19 @@ inline constexpr int blend_weights = blend_ancestors + 24;
 inline constexpr int blend_normals_at = blend_weights + row_vertices;
 inline constexpr int blend_floats = blend_normals_at + 3 * row_vertices;
 inline constexpr int scratch_blend = (scratch_mailbox + mailbox_slots + 15) / 16 * 16;
+/// While a block of a displaced mesh is placed, in the same room: arrays of its vertices one after the other,
+/// of its own stride; those of a curve's chunk; and how far finer vertices leave its sides.
+inline constexpr int scratch_displaced = scratch_blend;
+enum DisplacedArray : int {
+    displaced_surface = 0,  // x, y, z: before displacement, instance coordinates
+    displaced_normal = 3,   // mesh coordinates; then, once it is known how they turn, where vertices lie
+    displaced_texcoord = 6, // u, v
+    displaced_arrays = 8
+};
+inline constexpr int scratch_chunk = scratch_displaced + displaced_arrays * block_vertices; // normals, u, v
+inline constexpr int scratch_sides = scratch_chunk + 5 * curve_row;
+enum SideBound : int { side_height = 0, side_turn = 1, side_seam = 2, side_bounds = 3 };
+static_assert(scratch_sides + side_bounds <= scratch_blend + blend_floats);
 /// Blocks on the way to the one whose corners do not move, and corners: [corner][box], twice.
 inline constexpr int scratch_climb = scratch_blend + blend_floats;
 inline constexpr int scratch_corners = scratch_climb + 16;

@@ -1,5 +1,6 @@
 #include "razor/frame/unit.h"
 
+#include "razor/frame/displacement.h"
 #include "razor/frame/scene_geometry.h"
 #include "razor/frame/view.h"
 
@@ -39,8 +40,9 @@ void scale(Placement& placement, double factor) {
 
 double frame_unit(const Scene& scene) {
     std::vector<Box> of_meshes;
-    for (const Mesh& mesh : scene.meshes)
-        of_meshes.push_back(bounds_of_used_points(mesh.points, mesh.face_vertices));
+    const std::vector<double> most = displacement_bounds(scene);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        of_meshes.push_back(displaced_bounds(scene.meshes[m], most[m]));
     return frame_unit(scene, lay_out(scene, of_meshes).nodes.front().bounds);
 }
 
@@ -99,8 +101,10 @@ Scene scaled(Scene scene, double factor) {
         if (light.kind == LightKind::point || light.kind == LightKind::spot) // W / sr, over distances squared
             light.radiance *= static_cast<float>(factor * factor);
     }
-    for (Material& material : scene.materials)
+    for (Material& material : scene.materials) {
         material.bump *= static_cast<float>(factor);
+        material.displacement_scale *= static_cast<float>(factor);
+    }
     for (Texture& texture : scene.textures)
         if (texture.pattern && texture.pattern->space == PatternSpace::object)
             texture.pattern->size *= factor;

@@ -360,6 +360,11 @@ inline svec deviation_of(const Context& c, const Cage& g, const Dicing& finer, p
     d.nv = d.nv - 1;
     sfloat known = load(field(block, &BlockHeader::deviation));
     known = max(known, 0.0F);
+    if (branch(d.displaced)) {
+        sint normals_at = load(field(block, &BlockHeader::normals_at));
+        sfloat kept = load(as<float>(block) + (normals_at - 1));
+        return {kept, kept, kept};
+    }
     svec deviation{known, known, known};
     if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {
         deviation = bilinear_deviation(c, g, d);

@@ -52,7 +52,9 @@ inline Shape block_shape(const Dicing& d) {
     s.parts = d.level > 0;
     s.parts = s.parts & hang;
     s.parts = s.parts & (max(d.nu, d.nv) >= block_log2);
+    s.parts = s.parts & !d.displaced;
     words = words + select(s.parts, sint(parts_words), sint(0));
+    words = words + select(d.displaced, sint(1), sint(0)); // see kept_deviation()
     // Normals; what lies on vertices besides follows them, and brings them along where they are not needed.
     // Flat patches have no vertices inside, so nothing is shaded at theirs.
     sint texcoords = texcoord_arrays(d.shading);

@@ -25,6 +25,7 @@ struct Dicing {
     sint level = 0, coarsest = 0; // the level, and the last one that the patch has
     sint nu = 0, nv = 0;          // exponents of the grid
     sint shading;                 // see InstanceRecord
+    sbool displaced;
 };
 
 inline sint half(const Side& side) {
@@ -53,6 +54,7 @@ inline Dicing plan_dicing(const Context& c, const Cage& g, sint instance, sint p
     d.kind = load(field(d.record, &PatchRecord::kind));
     d.face = load(field(d.record, &PatchRecord::face));
     d.sub = load(field(d.record, &PatchRecord::sub));
+    d.displaced = g.displaced;
     d.shading = load(field(c.instances + instance, &InstanceRecord::shading));
     if (branch(is_flat(d)))
         return d;
@@ -250,7 +252,7 @@ inline svec straight_corner(const Context& c, const Cage& g, const Dicing& d, in
         if (k == 1 || k == 3)
             return edge_middle<true>(c, g, corner);
         if (k == 2)
-            return face_centre<true>(c, g, g.faces + corner);
+            return face_centre<true>(c, g, corner);
     }
     return placed_point(g, corner);
 }

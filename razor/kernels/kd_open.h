@@ -98,6 +98,8 @@ inline sint open_cluster(const Context& c, const List& l, sint at, sint instance
         for (int k = 0; k < 6; ++k)
             v.box[k] = corner[k];
         vfloat grow = largest(h.high - h.low) * hull_growth;
+        if (branch(g.displaced))
+            grow = fma(stretch, vfloat(g.displacement), grow);
         to_scene(origin, h.reach * stretch, grow, v);
         at = append_met(l, at, v, m);
     }

@@ -3,8 +3,7 @@
 // coordinates: their triangles' normals serve.
 #pragma once
 
-#include "razor/kernels/tessellate.h"
-#include "razor/kernels/texcoords.h"
+#include "razor/kernels/displaced_normals.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
@@ -31,14 +30,6 @@ inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_st
     }
 }
 
-inline void store_normals(pointer<float> out, sint stride, const vvec& du, const vvec& dv, const vmask& m) {
-    vfloat zero(0.0F);
-    vvec n = normalise(cross(du, dv), {zero, zero, zero});
-    store_vector(out, n.x, m);
-    store_vector(out + stride, n.y, m);
-    store_vector(out + stride * 2, n.z, m);
-}
-
 [[gnu::noinline]] inline void make_normals(const Context& c, sint line, pointer<BlockHeader> header,
                                            sint normals_at) {
     phase_scope phase(phase_shade);
@@ -57,6 +48,10 @@ inline void store_normals(pointer<float> out, sint stride, const vvec& du, const
     if (branch(texcoord_arrays(d.shading) != 0)) {
         sint shift = load(field(c.instances + instance, &InstanceRecord::texture_faces));
         make_texcoords(c, g, d, b, shift, out + b.stride * 3);
+    }
+    if (branch(g.displaced)) {
+        make_displaced_normals(c, g, d, b, out);
+        return;
     }
     if (branch(d.kind == static_cast<int>(PatchKind::catmull_clark))) {
         sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));

@@ -18,12 +18,17 @@ inline void refit_cluster(const Context& c, const Cage& g, sint cluster) {
     vfloat small(-3.0e38F);
     vvec low{big, big, big};
     vvec high{small, small, small};
+    pointer<float> displacements = load(field(c.frame, &FrameHeader::cluster_displacements));
+    sfloat displacement = 0.0F;
+    if (branch(!is_null(displacements)))
+        displacement = load(displacements + cluster);
     for (sint from = 0; branch(from < count); from += isa::width) {
         vmask m = first_lanes(count - from);
         vint record = lane_index() + vint((cluster << refit_log2) + from);
         Hulls h = hulls_of<false>(g, c.patches, record, m);
         vfloat slack = largest(h.high - h.low) * hull_growth;
         slack = fma(h.reach, vfloat(hull_rounding), slack);
+        slack = slack + vfloat(displacement);
         vvec wide{slack, slack, slack};
         vvec lower = h.low - wide;
         vvec upper = h.high + wide;

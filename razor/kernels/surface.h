@@ -3,168 +3,21 @@
 // bit.
 #pragma once
 
-#include "razor/frame/scratch.h"
-#include "razor/kernels/vec.h"
+#include "razor/kernels/displace.h"
 
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
 
-/// From a mesh's coordinates to those of an instance. Points are weighted first and moved then, by whoever
-/// asks for them, so that shared ones keep equal bits.
-struct Place {
-    sbool moved; // or the map is the identity
-    svec row[3]; // of the linear part
-    svec offset;
-};
-
-/// The cage of one mesh as an instance has it, as handles in registers.
-struct Cage {
-    pointer<FaceRecord> faces;
-    pointer<VertexRecord> vertices;
-    pointer<CurveRecord> curves;
-    pointer<std::int32_t> face_curves, controls;
-    pointer<float> points;
-    pointer<ClassRecord> classes;
-    sfloat per_edge_length; // 1 / edge length at level 0, mesh units
-    Place place;
-    sint max_exponent;
-    sint level; // at which points are asked for
-};
-
-inline Place load_place(pointer<InstanceRecord> instance) {
-    Place p;
-    p.moved = load(field(instance, &InstanceRecord::moved)) != 0;
-    if (branch(p.moved)) {
-        pointer<float> linear = field(instance, &InstanceRecord::linear);
-        for (int k = 0; k < 3; ++k)
-            p.row[k] = load_svec(linear + 3 * k);
-        p.offset = load_svec(field(instance, &InstanceRecord::offset));
-    }
-    return p;
-}
-
-inline sfloat moved_along(const svec& row, sfloat offset, const svec& p) {
-    return fma(row.x, p.x, fma(row.y, p.y, fma(row.z, p.z, offset)));
-}
-inline svec moved(const Place& place, const svec& p) {
-    svec q = p;
-    if (branch(place.moved)) {
-        q.x = moved_along(place.row[0], place.offset.x, p);
-        q.y = moved_along(place.row[1], place.offset.y, p);
-        q.z = moved_along(place.row[2], place.offset.z, p);
-    }
-    return q;
-}
-
-/// Of a place that moves.
-inline vfloat moved_along(const svec& row, sfloat offset, const vvec& p) {
-    vfloat x(row.x);
-    vfloat y(row.y);
-    vfloat z(row.z);
-    vfloat o(offset);
-    return fma(x, p.x, fma(y, p.y, fma(z, p.z, o)));
-}
-inline vvec moved_points(const Place& place, const vvec& p) {
-    vvec q;
-    q.x = moved_along(place.row[0], place.offset.x, p);
-    q.y = moved_along(place.row[1], place.offset.y, p);
-    q.z = moved_along(place.row[2], place.offset.z, p);
-    return q;
-}
-inline vvec moved_directions(const Place& place, const vvec& d) {
-    vvec q;
-    q.x = moved_along(place.row[0], 0.0F, d);
-    q.y = moved_along(place.row[1], 0.0F, d);
-    q.z = moved_along(place.row[2], 0.0F, d);
-    return q;
-}
-
-/// Of all meshes: without what an instance makes of one.
-inline Cage load_topology(const Context& c) {
-    Cage g;
-    g.faces = load(field(c.frame, &FrameHeader::faces));
-    g.vertices = load(field(c.frame, &FrameHeader::vertices));
-    g.curves = load(field(c.frame, &FrameHeader::curves));
-    g.face_curves = load(field(c.frame, &FrameHeader::face_curves));
-    g.controls = load(field(c.frame, &FrameHeader::controls));
-    g.points = load(field(c.frame, &FrameHeader::points));
-    g.classes = load(field(c.frame, &FrameHeader::classes));
-    return g;
-}
-
-inline Cage load_cage(const Context& c, sint instance, sint level) {
-    Cage g = load_topology(c);
-    pointer<InstanceRecord> record = c.instances + instance;
-    sfloat edge = load(field(record, &InstanceRecord::mesh_edge_length));
-    g.per_edge_length = sfloat(1.0F) / edge;
-    g.max_exponent = load(field(record, &InstanceRecord::max_exponent));
-    g.place = load_place(record);
-    g.level = level;
-    return g;
-}
-
-/// In mesh coordinates.
-inline svec cage_point(const Cage& g, sint point) {
-    return load_svec(g.points + point * 3);
-}
-inline svec placed_point(const Cage& g, sint point) {
-    return moved(g.place, cage_point(g, point));
-}
-
-/// The weights of a page, made by the host if nobody asked for it before.
-inline pointer<float> page_weights(const Context& c, const Cage& g, sint face_class, PageKind kind,
-                                   sint index) {
-    int k = static_cast<int>(kind);
-    pointer<ClassRecord> record = g.classes + face_class;
-    pointer<PageEntry> entries = load(field(record, &ClassRecord::entries));
-    pointer<Line> lines = load(field(record, &ClassRecord::lines));
-    sint first = load(field(record, &ClassRecord::first) + k);
-    pointer<shared_int> entry = field(entries + (first + index), &PageEntry::line);
-    sint line = load_acquire(entry);
-    if (branch(line == 0)) {
-        tally(c.counters->pages_requested, 1);
-        request_page(*c.pages, face_class, k, index);
-        line = load_acquire(entry);
-    }
-    return as<float>(lines + line);
-}
-
 /// Limit position at a face's corner (or its centre: corner = corner_count). One lane a control point.
-inline svec limit_point(const Context& c, const Cage& g, pointer<FaceRecord> face, sint corner) {
+inline svec limit_point(const Context& c, const Cage& g, sint number, sint corner) {
+    if (branch(g.displaced))
+        return displaced_point(c, g, number, corner);
+    pointer<FaceRecord> face = g.faces + number;
     sint face_class = load(field(face, &FaceRecord::face_class));
     sint first = load(field(face, &FaceRecord::control_first));
     sint n = load(field(face, &FaceRecord::control_count));
     pointer<float> row = page_weights(c, g, face_class, PageKind::vertex, corner);
-    // Summed as 64 lanes would sum it, so that no bit depends on the width.
-    constexpr int parts = 64 / isa::width;
-    vfloat zero(0.0F);
-    vvec sum[parts];
-    for (vvec& part : sum)
-        part = {zero, zero, zero};
-    for (sint i = 0; branch(i < n); i += 64) {
-        for (int k = 0; k < parts; ++k) {
-            sint from = i + k * isa::width;
-            if (branch(from < n)) {
-                vmask m = first_lanes(n - from);
-                vfloat w = load_vector(row + from, m);
-                vint point = load_vector(g.controls + (first + from), m);
-                vint at = point * vint(3);
-                vfloat x = gather(g.points, at, m);
-                vfloat y = gather(g.points + 1, at, m);
-                vfloat z = gather(g.points + 2, at, m);
-                sum[k].x = fma(w, x, sum[k].x);
-                sum[k].y = fma(w, y, sum[k].y);
-                sum[k].z = fma(w, z, sum[k].z);
-            }
-        }
-    }
-    for (int half = parts / 2; half >= 1; half /= 2)
-        for (int k = 0; k < half; ++k)
-            sum[k] = sum[k] + sum[k + half];
-    svec p;
-    p.x = reduce_add(sum[0].x);
-    p.y = reduce_add(sum[0].y);
-    p.z = reduce_add(sum[0].z);
+    svec p = weigh_row(g, row, first, n);
     return moved(g.place, p);
 }
 
@@ -174,13 +27,14 @@ template <bool Straight> inline svec vertex_position(const Context& c, const Cag
         return placed_point(g, point);
     sint owner = load(field(g.vertices + point, &VertexRecord::owner_face));
     sint corner = load(field(g.vertices + point, &VertexRecord::owner_corner));
-    return limit_point(c, g, g.faces + owner, corner);
+    return limit_point(c, g, owner, corner);
 }
 
-template <bool Straight> inline svec face_centre(const Context& c, const Cage& g, pointer<FaceRecord> face) {
+template <bool Straight> inline svec face_centre(const Context& c, const Cage& g, sint number) {
+    pointer<FaceRecord> face = g.faces + number;
     sint n = load(field(face, &FaceRecord::corner_count));
     if constexpr (!Straight)
-        return limit_point(c, g, face, n);
+        return limit_point(c, g, number, n);
     sint first = load(field(face, &FaceRecord::control_first));
     svec sum{sfloat(0.0F), sfloat(0.0F), sfloat(0.0F)};
     for (sint i = 0; branch(i < n); ++i) {
@@ -190,18 +44,6 @@ template <bool Straight> inline svec face_centre(const Context& c, const Cage& g
     return sum * (sfloat(1.0F) / to_float(n));
 }
 
-inline void put_point(pointer<float> points, sint lane, const svec& p) {
-    store(points + lane, p.x);
-    store(points + curve_row + lane, p.y);
-    store(points + 2 * curve_row + lane, p.z);
-}
-inline svec get_point(pointer<const float> points, sint lane) {
-    svec p;
-    p.x = load(points + lane);
-    p.y = load(points + curve_row + lane);
-    p.z = load(points + 2 * curve_row + lane);
-    return p;
-}
 inline svec middle(const svec& a, const svec& b) {
     return (a + b) * 0.5F;
 }
@@ -214,17 +56,14 @@ inline void evaluate_chunk(const Context& c, const Cage& g, pointer<CurveRecord>
     sint local = load(field(curve, &CurveRecord::owner_local));
     sint flags = load(field(curve, &CurveRecord::flags));
     pointer<FaceRecord> face = g.faces + owner;
+    if (branch(g.displaced)) {
+        displace_chunk(c, g, curve, exponent, chunk, points);
+        return;
+    }
     sint face_class = load(field(face, &FaceRecord::face_class));
     sint first = load(field(face, &FaceRecord::control_first));
     sint n = load(field(face, &FaceRecord::control_count));
-    sint ways = load(field(g.classes + face_class, &ClassRecord::curve_ways));
-    sint chunks_before = exponent; // strip_first(exponent)
-    if (branch(exponent > block_log2))
-        chunks_before = strip_first_large(sint(1) << (exponent - block_log2));
-    sint reversed = flags & curve_owner_reversed;
-    sint strip = chunks_before + chunk;
-    sint way = local * 2 + reversed;
-    sint index = strip * ways + way;
+    sint index = curve_page_index(g, face_class, local, flags, exponent, chunk);
     pointer<float> weights = page_weights(c, g, face_class, PageKind::curve, index);
     for (int lanes = 0; lanes < curve_row; lanes += isa::width) {
         vmask m = first_lanes(curve_row - lanes);
@@ -251,6 +90,7 @@ inline sfloat length(const svec& d) {
 /// cage points alone, so that all its instances at one level are diced alike.
 inline sfloat measure_curve(const Context& c, Cage g, pointer<CurveRecord> curve) {
     g.place.moved = false;
+    g.displaced = false;
     pointer<float> points = c.stack + (scratch_curve + 2 * scratch_curve_size);
     evaluate_chunk(c, g, curve, 1, 0, points);
     svec middle = get_point(points, 1);
@@ -327,13 +167,13 @@ inline void edge_points(const Context& c, const Cage& g, pointer<CurveRecord> cu
         evaluate_chunk(c, g, curve, exponent, chunk, points);
     if (branch(chunk == 0)) {
         sint end = load(field(curve, &CurveRecord::end0));
-        put_point(points, 0, vertex_position<Straight>(c, g, end));
+        put_end<Straight>(c, g, exponent, points, 0, vertex_position<Straight>(c, g, end));
     }
     sint last = sint(1) << exponent;
     last = last - chunk * block_quads;
     if (branch(last <= block_quads)) {
         sint end = load(field(curve, &CurveRecord::end1));
-        put_point(points, last, vertex_position<Straight>(c, g, end));
+        put_end<Straight>(c, g, exponent, points, last, vertex_position<Straight>(c, g, end));
     }
 }
 
@@ -371,13 +211,13 @@ inline pointer<float> curve_points(const Context& c, const Cage& g, pointer<Curv
         evaluate_chunk(c, g, curve, exponent, chunk, points);
     if (branch(chunk == 0)) {
         sint edge = load(field(curve, &CurveRecord::end0));
-        put_point(points, 0, edge_middle<Straight>(c, g, edge));
+        put_end<Straight>(c, g, exponent, points, 0, edge_middle<Straight>(c, g, edge));
     }
     sint last = sint(1) << exponent;
     last = last - chunk * block_quads;
     if (branch(last <= block_quads)) {
         sint face = load(field(curve, &CurveRecord::end1));
-        put_point(points, last, face_centre<Straight>(c, g, g.faces + face));
+        put_end<Straight>(c, g, exponent, points, last, face_centre<Straight>(c, g, face));
     }
     return points;
 }

@@ -3,6 +3,7 @@
 
 #include "razor/kernels/block_bounds.h"
 #include "razor/kernels/budget_room.h"
+#include "razor/kernels/displaced_block.h"
 
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
@@ -101,7 +102,9 @@ inline Block begin_block(const Context& c, const Dicing& d, const Shape& s, sint
         if (branch(s.parts))
             bound_parts(b, s);
     };
-    if (branch(is_flat(d))) {
+    if (branch(d.displaced)) {
+        place_displaced(c, g, d, b, bounded);
+    } else if (branch(is_flat(d))) {
         place_flat(g, d, b);
     } else if (branch(d.kind == static_cast<int>(PatchKind::bilinear))) {
         place_bilinear(c, g, d, b);
@@ -178,6 +181,11 @@ inline sbool announce_block(const Context& c, const Cage& g, const Dicing& d, co
     if (branch(max(part.u, part.v) < 0))
         return false;
     pointer<BlockHeader> parent = as<BlockHeader>(c.grids + parent_line);
+    if (branch(d.displaced)) { // what its sides hang from leaves it in another way
+        sint hangs = load(field(parent, &BlockHeader::hangs));
+        if (branch(hangs != 0))
+            return false;
+    }
     Box own = surface_of(parent, part);
     Box wider{own.low - deviation, own.high + deviation};
     Box box = common(box_of(parent), wider);

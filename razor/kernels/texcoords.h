@@ -3,38 +3,10 @@
 #pragma once
 
 #include "razor/kernels/dicing.h"
+#include "razor/kernels/texture_face.h"
 
 namespace razor::ISA_TARGET {
 inline namespace shade_kernel {
-
-struct spoint {
-    sfloat u, v;
-};
-inline spoint operator+(const spoint& a, const spoint& b) {
-    return {a.u + b.u, a.v + b.v};
-}
-
-/// The face's record in the texture cage, whose corners are its controls.
-struct TextureFace {
-    pointer<FaceRecord> record;
-    sint first, corners;
-};
-
-/// At corner `k` of the face, from 0 to twice the number of corners.
-inline spoint corner_texcoord(const Cage& g, const TextureFace& face, sint k) {
-    sint n = face.corners;
-    sint around = k - n;
-    sint corner = select(around >= 0, around, k);
-    sint point = load(g.controls + (face.first + corner));
-    spoint p;
-    p.u = load(g.points + point * 3);
-    p.v = load(g.points + (point * 3 + 1));
-    return p;
-}
-inline spoint middle(const spoint& a, const spoint& b) {
-    spoint sum = a + b;
-    return {sum.u * 0.5F, sum.v * 0.5F};
-}
 
 /// Which corner of its face a flat triangle's corner is.
 inline sint local_corner(const Cage& g, const Dicing& d, sint point) {
@@ -63,11 +35,7 @@ inline spoint patch_texcoord(const Cage& g, const Dicing& d, const TextureFace& 
         return middle(own, corner_texcoord(g, face, d.sub + 1));
     if (k == 3)
         return middle(own, corner_texcoord(g, face, d.sub + (face.corners - 1)));
-    spoint sum{sfloat(0.0F), sfloat(0.0F)};
-    for (sint i = 0; branch(i < face.corners); ++i)
-        sum = sum + corner_texcoord(g, face, i);
-    sfloat share = sfloat(1.0F) / to_float(face.corners);
-    return {sum.u * share, sum.v * share};
+    return mean_texcoord(g, face);
 }
 
 /// `out`: u[stride], v[stride].
@@ -140,10 +108,7 @@ inline void interpolate_texcoords(const Cage& g, const Dicing& d, const Block& b
 /// `shift`: from the mesh's faces to those of its texture cage.
 inline void make_texcoords(const Context& c, const Cage& g, const Dicing& d, const Block& b, sint shift,
                            pointer<float> out) {
-    TextureFace face;
-    face.record = g.faces + (d.face + shift);
-    face.first = load(field(face.record, &FaceRecord::control_first));
-    face.corners = load(field(face.record, &FaceRecord::corner_count));
+    TextureFace face = texture_face(g, d.face, shift);
     sint face_class = load(field(face.record, &FaceRecord::face_class));
     if (branch(face_class >= 0)) {
         weigh_texcoords(c, g, d, b, face, out);

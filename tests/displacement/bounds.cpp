@@ -1,0 +1,129 @@
+// Rays from inside displaced bodies, at all levels of detail: none escapes, and hits are those of the finest
+// triangulation by its definition. Where boxes were too small for what displacement makes of a surface, or
+// neighbours disagreed about a point, rays would get through.
+#include "razor/check/escapes.h"
+#include "tests/displacement/heights.h"
+#include "tests/kernels/cages.h"
+#include "tests/kernels/targets.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace razor::test {
+namespace {
+
+using Cage = Mesh (*)();
+Mesh creased_cube() {
+    Mesh m = cube_cage();
+    m.creases = {{0, 1, 10}, {1, 3, 2.5F}, {3, 2, 4}, {5, 7, 10}};
+    m.corners = {{6, 10}};
+    return m;
+}
+Mesh chaikin_cube() {
+    Mesh m = creased_cube();
+    m.crease_method = CreaseMethod::chaikin;
+    return m;
+}
+Mesh small_torus() {
+    return torus_cage(7, 5);
+}
+Mesh pyramid() { // triangles
+    Mesh m;
+    m.name = "pyramid";
+    m.points = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 1.4, 0}, {0, -1.2, 0}};
+    for (int k = 0; k < 4; ++k) {
+        const int a = k, b = (k + 1) % 4;
+        m.face_sizes.insert(m.face_sizes.end(), {3, 3});
+        m.face_vertices.insert(m.face_vertices.end(), {b, a, 4, a, b, 5});
+    }
+    return m;
+}
+template <Cage cage> Mesh stretched_one() {
+    return stretched(cage());
+}
+template <Cage cage> Mesh straight_one() {
+    return bilinear(cage());
+}
+
+struct Case {
+    const char* name;
+    Cage cage;
+    double amplitude; // of the heights, the body being about 2 wide
+};
+const Case cases[] = {
+    {"cube", cube_cage, 0.15},
+    {"creased", creased_cube, 0.15},
+    {"chaikin", chaikin_cube, 0.1},
+    {"torus", small_torus, 0.1},
+    {"urchin", urchin_cage, 0.1},
+    {"pyramid", pyramid, 0.15},
+    {"stretched_urchin", stretched_one<urchin_cage>, 0.05},
+    {"stretched_torus", stretched_one<small_torus>, 0.05},
+    {"tapered", tapered_cage, 0.1},
+    {"straight_cube", straight_one<cube_cage>, 0.15},
+    {"straight_urchin", straight_one<urchin_cage>, 0.1},
+    {"straight_pyramid", straight_one<pyramid>, 0.1},
+    {"straight_slab", straight_one<bevelled_slab>, 0.02},
+};
+
+void expect_none_escapes(Scene scene, Lod lod, const std::string& what, std::int64_t rays) {
+    scene.settings.lod = lod;
+    Frame frame(scene, {});
+    check::EscapeOptions options;
+    if (const char* text = std::getenv("RAZOR_DISPLACED_RAYS"))
+        rays = std::strtoll(text, nullptr, 10);
+    options.rays = rays;
+    options.compared = check::sees_one_surface(lod) ? rays / 8 : 0;
+    options.rays_an_origin = 400;
+    const check::EscapeReport r = check::shoot_from_inside(frame, *native_targets().back(), lod, options);
+    EXPECT_GT(r.origins, 0) << what;
+    EXPECT_EQ(r.escapes, 0) << what << ": " << r.holes << " of them holes";
+    EXPECT_EQ(r.different, 0) << what << ", of " << r.compared;
+}
+
+class DisplacedBodies : public testing::TestWithParam<Case> {};
+
+TEST_P(DisplacedBodies, LetNoRayThrough) {
+    const Case& c = GetParam();
+    const struct {
+        const char* name;
+        Texture texture;
+        double scale;
+    } maps[] = {{"smooth", smooth_heights(), 1},
+                {"random", random_heights(), -0.6},
+                {"steps", stepped_heights(), 0.7}};
+    for (const auto& map : maps)
+        for (const bool seams : {false, true}) {
+            const Mesh mesh = seams ? with_seams(c.cage()) : with_smooth_texcoords(c.cage());
+            const Scene scene = displaced_scene(mesh, 150, map.texture, map.scale * c.amplitude, 0.3);
+            expect_none_escapes(scene, Lod::recursive,
+                                fmt::format("{}, {}{}", c.name, map.name, seams ? ", seams" : ""), 12'000);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cages, DisplacedBodies, testing::ValuesIn(cases),
+                         [](const auto& c) { return std::string(c.param.name); });
+
+TEST(DisplacedInstances, LetNoRayThrough) {
+    Scene scene = displaced_scene(with_seams(creased_cube()), 60, smooth_heights(), 0.2, 0.5);
+    scene.graph = instances_of(cube_cage(), 60).graph;
+    expect_none_escapes(scene, Lod::recursive, "instances", 12'000);
+    expect_none_escapes(scene, Lod::object, "instances, one level", 12'000);
+}
+
+TEST(DisplacedFaces, OfSeveralMaterialsLetNoRayThrough) {
+    Mesh mesh = with_seams(urchin_cage());
+    for (std::size_t f = 0; f < mesh.face_sizes.size(); ++f)
+        mesh.face_materials.push_back(static_cast<int>(f % 3));
+    Scene scene = displaced_scene(mesh, 120, smooth_heights(), 0.1, 0.5);
+    scene.materials.resize(3, scene.materials[0]);
+    scene.materials[1].displacement_map.texture = -1; // not displaced
+    scene.materials[2].displacement_scale = -0.05F;
+    scene.materials[2].displacement_map.scale = {2, 3};
+    expect_none_escapes(scene, Lod::recursive, "faces of three materials", 20'000);
+}
+
+} // namespace
+} // namespace razor::test
