@@ -1,6 +1,6 @@
 // Where vertices of displaced surfaces lie, and their normals, against OpenSubdiv's own evaluator and a
-// lookup of heights in double. All but shared points, which are their owners' (bounds.cpp sees that
-// neighbours agree).
+// lookup of heights in double. Shared points lie where the face that owns them has them, with its normal, its
+// texture coordinates and its filter.
 #include "razor/check/dump.h"
 #include "razor/surface/refiner.h"
 #include "tests/displacement/heights.h"
@@ -196,13 +196,56 @@ private:
     const Scene& scene_;
 };
 
+/// A point of a face: of which sub-face, and where.
+struct FacePoint {
+    int face = 0, sub = 0;
+    dvec2 at{0};
+};
+
+/// The point at parameter t of a face's local curve (CurveRecord::owner_local), as the face runs.
+FacePoint on_curve(int face, int corners, int local, double t) {
+    if (local >= corners)
+        return {face, local - corners, {1, t}};
+    if (corners != 4)
+        return t <= 0.5 ? FacePoint{face, local, {2 * t, 0}}
+                        : FacePoint{face, (local + 1) % corners, {0, 2 - 2 * t}};
+    const dvec2 along[] = {{t, 0}, {1, t}, {1 - t, 1}, {0, 1 - t}};
+    return {face, 0, along[local]};
+}
+
+/// Who has a point that lies on side s of a patch, at parameter x.
+FacePoint owner_of(Frame& frame, const PatchRecord& patch, int s, double x) {
+    const FrameHeader& h = frame.header();
+    const auto corners = [&](int face) { return h.faces.get()[face].corner_count; };
+    const bool part = (patch.side_flags[0] & side_half) != 0;
+    if (x == 0 || x == 1) {
+        constexpr int ends[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
+        const int k = ends[s][x == 0 ? 0 : 1];
+        if (part && k == 2)
+            return {patch.face, 0, {1, 1}};
+        if (!part || k == 0) {
+            const VertexRecord& v = h.vertices.get()[patch.corner[k]];
+            return corners(v.owner_face) == 4 ? on_curve(v.owner_face, 4, v.owner_corner, 0)
+                                              : FacePoint{v.owner_face, v.owner_corner, {0, 0}};
+        }
+        s = k == 1 ? 0 : 3; // middles of edges are points of these
+        x = 1;
+    }
+    const CurveRecord& curve = h.curves.get()[patch.side_curve[s]];
+    double t = (patch.side_flags[s] & side_half) != 0 ? x / 2 : x;
+    t = (patch.side_flags[s] & side_reversed) != 0 ? 1 - t : t;
+    t = (curve.flags & curve_owner_reversed) != 0 ? 1 - t : t;
+    return on_curve(curve.owner_face, corners(curve.owner_face), curve.owner_local, t);
+}
+
 struct Worst {
     double position = 0, cosine = 1; // of normals
-    int vertices = 0;
+    double shared = 0;               // of shared points
+    int vertices = 0, sides = 0;
     double moved = 0; // from the surface
 };
 
-/// Inside patches, at level 0.
+/// At level 0.
 Worst compare(const Scene& scene) {
     Frame frame(scene, {});
     frame.build_all(*native_targets().back());
@@ -219,12 +262,20 @@ Worst compare(const Scene& scene) {
             for (int j = 0; j <= h.quads_v; ++j)
                 for (int i = 0; i <= h.quads_u; ++i) {
                     const dvec2 at((h.column * block_quads + i) / across, (h.row * block_quads + j) / up);
-                    if (at.x == 0 || at.x == 1 || at.y == 0 || at.y == 1)
-                        continue;
                     const int v = j * (h.quads_u + 1) + i;
                     const check::Point p = b.vertex(v);
                     const dvec3 is = origin + dvec3(p[0], p[1], p[2]);
                     const double edge = double{instance.mesh_edge_length};
+                    const int s = at.y == 0 ? 0 : at.x == 1 ? 1 : at.y == 1 ? 2 : at.x == 0 ? 3 : -1;
+                    if (s >= 0) {
+                        if (h.hang[s] != 0) // between the curve's
+                            continue;
+                        const FacePoint q = owner_of(frame, record, s, s % 2 == 0 ? at.x : at.y);
+                        worst.shared =
+                            std::max(worst.shared, glm::length(is - expected.at(q.face, q.sub, q.at, edge)));
+                        ++worst.sides;
+                        continue;
+                    }
                     const dvec3 there = expected.at(record.face, record.sub, at, edge);
                     worst.position = std::max(worst.position, glm::length(is - there));
                     worst.moved = std::max(
@@ -273,6 +324,8 @@ void expect_right(const Mesh& mesh, const Texture& texture, double scale, const 
     EXPECT_GT(w.vertices, 1000) << what;
     EXPECT_GT(w.moved, 0.4 * std::abs(scale)) << what;
     EXPECT_LT(w.position, 4e-6) << what;
+    EXPECT_GT(w.sides, 200) << what;
+    EXPECT_LT(w.shared, 4e-6) << what;
     EXPECT_GT(w.cosine, 0.99999) << what;
 }
 
