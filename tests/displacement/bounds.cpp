@@ -1,7 +1,9 @@
 // Rays from inside displaced bodies, at all levels of detail: none escapes, and hits are those of the finest
 // triangulation by its definition. Where boxes were too small for what displacement makes of a surface, or
 // neighbours disagreed about a point, rays would get through.
+#include "razor/check/dump.h"
 #include "razor/check/escapes.h"
+#include "razor/check/field_surface.h"
 #include "tests/displacement/heights.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
@@ -83,6 +85,45 @@ void expect_none_escapes(Scene scene, Lod lod, const std::string& what, std::int
     EXPECT_EQ(r.different, 0) << what << ", of " << r.compared;
 }
 
+/// The box of all finest vertices under a block; counts where the block's own, or one under it, does not hold
+/// them.
+check::Extent hold_finest(Frame& frame, int line, int& outside, int& coarse) {
+    const check::BlockView b = check::block_at(frame, line);
+    const BlockHeader& h = *b.header;
+    check::Extent all;
+    if (h.level == 0)
+        for (int v = 0; v < h.stride; ++v) {
+            const check::Point p = b.vertex(v);
+            all.add(glm::dvec3(p[0], p[1], p[2]));
+        }
+    else
+        for (int k = 0; k < children_in(h.child_shape); ++k)
+            all.add(hold_finest(frame, h.child_line + k * lines_between(h.child_shape), outside, coarse));
+    coarse += h.level > 0 ? 1 : 0;
+    for (int k = 0; k < 3; ++k)
+        if (all.low[k] < double{h.box_low[k]} || all.high[k] > double{h.box_high[k]}) {
+            ++outside;
+            break;
+        }
+    return all;
+}
+
+void expect_boxes_hold(const Scene& scene, const std::string& what) {
+    Frame frame(scene, {});
+    frame.build_all(*native_targets().back());
+    int outside = 0, coarse = 0;
+    for (int n = 0; n < frame.instances(); ++n) {
+        const InstanceRecord& instance = frame.header().instances.get()[n];
+        for (int p = instance.first_patch; p < instance.first_patch + instance.patch_count; ++p) {
+            const OpenPatch& open = frame.header().trees.get()->patches.get()[p];
+            ASSERT_EQ(open.state.word, ready);
+            hold_finest(frame, open.root, outside, coarse);
+        }
+    }
+    EXPECT_GT(coarse, 40) << what;
+    EXPECT_EQ(outside, 0) << what << ", blocks of " << coarse << " do not hold what is finer";
+}
+
 class DisplacedBodies : public testing::TestWithParam<Case> {};
 
 TEST_P(DisplacedBodies, LetNoRayThrough) {
@@ -98,8 +139,9 @@ TEST_P(DisplacedBodies, LetNoRayThrough) {
         for (const bool seams : {false, true}) {
             const Mesh mesh = seams ? with_seams(c.cage()) : with_smooth_texcoords(c.cage());
             const Scene scene = displaced_scene(mesh, 150, map.texture, map.scale * c.amplitude, 0.3);
-            expect_none_escapes(scene, Lod::recursive,
-                                fmt::format("{}, {}{}", c.name, map.name, seams ? ", seams" : ""), 12'000);
+            const std::string what = fmt::format("{}, {}{}", c.name, map.name, seams ? ", seams" : "");
+            expect_boxes_hold(scene, what);
+            expect_none_escapes(scene, Lod::recursive, what, 12'000);
         }
 }
 
@@ -109,6 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Cages, DisplacedBodies, testing::ValuesIn(cases),
 TEST(DisplacedInstances, LetNoRayThrough) {
     Scene scene = displaced_scene(with_seams(creased_cube()), 60, smooth_heights(), 0.2, 0.5);
     scene.graph = instances_of(cube_cage(), 60).graph;
+    expect_boxes_hold(scene, "instances");
     expect_none_escapes(scene, Lod::recursive, "instances", 12'000);
     expect_none_escapes(scene, Lod::object, "instances, one level", 12'000);
 }
@@ -122,6 +165,7 @@ TEST(DisplacedFaces, OfSeveralMaterialsLetNoRayThrough) {
     scene.materials[1].displacement_map.texture = -1; // not displaced
     scene.materials[2].displacement_scale = -0.05F;
     scene.materials[2].displacement_map.scale = {2, 3};
+    expect_boxes_hold(scene, "faces of three materials");
     expect_none_escapes(scene, Lod::recursive, "faces of three materials", 20'000);
 }
 

@@ -80,6 +80,8 @@ TEST(Materials, EveryFieldIsRead) {
         sheen_roughness = 0.625
         emission = 3
         normal_scale = -0.5
+        displacement_scale = -2
+        displacement_midlevel = 0.25
         alpha_cutoff = 0.0625
         light = true
         two_sided = false)");
@@ -95,6 +97,8 @@ TEST(Materials, EveryFieldIsRead) {
     EXPECT_EQ(m.sheen_roughness, 0.625F);
     EXPECT_EQ(m.emission, glm::vec3(3));
     EXPECT_EQ(m.normal_scale, -0.5F);
+    EXPECT_EQ(m.displacement_scale, -2);
+    EXPECT_EQ(m.displacement_midlevel, 0.25F);
     EXPECT_EQ(m.alpha_cutoff, 0.0625F);
     EXPECT_TRUE(m.light);
     EXPECT_FALSE(m.two_sided);
@@ -137,6 +141,22 @@ TEST(Materials, MapsNameTextures) {
     EXPECT_EQ(m.emission, glm::vec3(0, 2, 0));
 }
 
+TEST(Materials, DisplacementReadsHeights) {
+    const TemporaryFolder folder;
+    add_pictures(folder);
+    const Scene scene = build_scene(
+        parsed(std::string(textures) + "[[material]]\nname = \"m\"\ndisplacement_map = \"bricks\"\n" + box,
+               folder.path()));
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.displacement_map, TextureMap{.texture = 0});
+    EXPECT_EQ(m.displacement_scale, 1);
+    EXPECT_EQ(m.displacement_midlevel, 0.5F);
+    EXPECT_TRUE(is_displaced(m));
+    ASSERT_NE(scene.textures[0].heights, nullptr);
+    EXPECT_EQ(scene.textures[0].heights->most, 128.0F / 255) << "as it is in the file, though that is sRGB";
+    EXPECT_EQ(scene.textures[1].heights, nullptr) << "nobody's";
+}
+
 TEST(Materials, PrintedSceneIsTheSame) {
     const TemporaryFolder folder;
     add_pictures(folder);
@@ -148,6 +168,10 @@ TEST(Materials, PrintedSceneIsTheSame) {
         "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nsheen = [0, 0.1, "
         "1]\nsheen_roughness = 0.7\nemission = [1e9, 0, 1]\n"
         "normal_scale = 0.77\nalpha_cutoff = 0.5\nlight = true\ntwo_sided = false\nalbedo_map = \"rough\"\n";
+    text += "[[material]]\nname = \"all \\\"x\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nmetallic = 0.1\nroughness = "
+            "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nemission = [1e9, 0, 1]\n"
+            "normal_scale = 0.77\ndisplacement_map = \"bricks\"\ndisplacement_scale = 0.3\nalpha_cutoff = "
+            "0.5\ntwo_sided = false\nalbedo_map = \"rough\"\n";
     for (int i = 0; i < 40; ++i)
         text += "[[material]]\nname = \"m" + std::to_string(i) +
                 "\"\nnormal_map = { texture = \"bricks\", scale = [0.1, 1], offset = [-0.3, 7], rotation = " +

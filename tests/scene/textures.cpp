@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -379,6 +380,24 @@ TEST(Pictures, BombsAreRefused) {
     EXPECT_NE(message_of([&] { decode_picture(exr, "b", false); }).find("too many"), std::string::npos);
     exr.replace(window + 8, 8, std::string("\xff\x3f\0\0\xff\x3f\0\0", 8));
     EXPECT_NE(message_of([&] { decode_picture(exr, "b", false); }).find("cannot be in"), std::string::npos);
+}
+
+TEST(Heights, AreTheFilesOwnRed) {
+    const TexturePyramid exr =
+        decode_picture(exr_of(2, 2, {{"Y", {-3, 1e6F, 0.123456789F, 5}}}), "h", false, Texels::heights);
+    EXPECT_EQ(exr.kind, Texels::heights);
+    EXPECT_EQ(exr.least, -3);
+    EXPECT_EQ(exr.most, 1e6F);
+    ASSERT_EQ(exr.levels.size(), 2U);
+    EXPECT_EQ(std::bit_cast<float>(exr.levels[0].texels[4]), 0.123456789F) << "all bits";
+    EXPECT_NEAR(std::bit_cast<float>(exr.levels[1].texels[0]), (1e6 + 2.123456789) / 4, 0.1);
+    const TexturePyramid png = decode_picture(png_of(1, 1, {}, {51, 200, 255}), "h", false, Texels::heights);
+    EXPECT_EQ(png.most, 51.0F / 255);
+    EXPECT_EQ(message_of([] {
+                  decode_exr(exr_of(1, 1, {{"R", {std::numeric_limits<float>::quiet_NaN()}}}), "f.exr",
+                             Texels::heights);
+              }),
+              "f.exr: R of the texel in column 0, row 0 is nan; give heights that are finite");
 }
 
 TEST(TextureCache, ReadsNoFileTwice) {
