@@ -68,7 +68,7 @@ class Studies(unittest.TestCase):
 
     def test_samples_by_noise(self):
         rows, table = self.run_study("sampling/adaptive.py", os.path.join(SCENES, "lights.toml"), "--size", "48x32", "--uniform",
-                                     "8,32", "--noise", "0.2,0.1", "--most", "128", "--reference", "256")
+                                     "8,32", "--noise", "0.04,0.02", "--most", "128", "--reference", "256")
         self.assertEqual(len(table.splitlines()), 5)
         even, by_noise = rows[:2], rows[2:]
         self.assertLess(even[1]["error"], even[0]["error"])
