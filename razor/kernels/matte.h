@@ -2,8 +2,8 @@
 #pragma once
 
 #include "razor/kernels/light.h"
-#include "razor/kernels/shade.h"
 #include "razor/kernels/pixel_sums.h"
+#include "razor/kernels/shade.h"
 #include "razor/kernels/sky_map.h"
 
 namespace razor::ISA_TARGET {
