@@ -178,9 +178,10 @@ TEST(Materials, PrintedSceneIsTheSame) {
                 std::to_string(i * 37.712345 - 500) + " }\n";
     for (const char* const kind : {"checker", "bricks", "noise", "turbulence", "marble", "wood"})
         text +=
-            std::string("[[texture]]\nname = \"") + kind + "\"\npattern = \"" + kind +
+            std::string("[[texture]]\nname = \"of ") + kind + "\"\npattern = \"" + kind +
             "\"\nspace = \"texture\"\nsize = 0.3\nlow = [0.1, 0, 1]\nhigh = 0.25\noctaves = 9\ngain = 0.7\n";
-    text += "[[material]]\nname = \"bumpy\"\nbump_map = \"wood\"\nbump = -0.07\nalbedo_map = \"marble\"\n";
+    text +=
+        "[[material]]\nname = \"bumpy\"\nbump_map = \"of wood\"\nbump = -0.07\nalbedo_map = \"of marble\"\n";
     text += box + "material = \"glass\"\n";
     const SceneDescription description = parsed(text, folder.path());
     const std::string printed = to_toml(description);
