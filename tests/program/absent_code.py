@@ -65,7 +65,7 @@ SCENES = [
     ("displaced", DARK + RECTANGLE + BUMPY + OBJ,
      {"normals or texture coordinates on vertices", "rectangle lights", "displacement"}),
     ("under a mapped sky", SKY_MAP + TEXTURE + MATTE + OBJ, {"mapped sky", "textures", "shading by materials' records"}),
-    ("everything but a map of the sky", CONSTANT + RECTANGLE + POINT + CUT + PLAIN + OBJ + SMOOTH, 
+    ("everything but a map of the sky", CONSTANT + RECTANGLE + POINT + CUT + PLAIN + OBJ + SMOOTH,
      set(FEATURES) - {"mapped sky", "patterns", "textures at vertices of grids", "displacement", "sheen", "surfaces that are lights"}),
 ]
 
