@@ -16,6 +16,7 @@ not_sanitized+='|LevelsThatJumpHaveHoles|OfChecksAreTheScenes|RunsCopernicus|Cou
 not_sanitized+='|WritesATimeSeries|CacheOracle.SyntheticStream|ReportsDoNotDependOn|HostThreadsChangeNothing'
 not_sanitized+='|DoNotDependOnWorkers|TilesThatFight|HitsDoNotPop|Fields.*/instances|OnePairOfLevelsAtATimeLeaks'
 not_sanitized+='|NoReportDependsOn|IsAsANewFrame|ClosedFormsPass|SharesTreesAsAsked|HostThreadsChangeNoDigit|LawsHoldOnTheLast|NoRayPassesBetweenLevels|Cutouts.AreNotThere'
+not_sanitized+='|LetNoRayThrough/[d-z]|LetNoRayThrough/ch|LetNoRayThrough/cr|HaveTheirMeanWhereItIs'
 scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
