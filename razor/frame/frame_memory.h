@@ -126,7 +126,8 @@ struct Frame::Impl {
     }
     /// Which materials are used, and what for that.
     void take_materials(const Scene& scene);
-    int map_bits_of(const Instance& i) const;                             // of all its materials
+    void fill_solid(std::size_t n);           // of an instance: its SolidRecord, where there are some
+    int map_bits_of(const Instance& i) const; // of all its materials
     std::int32_t shading_of(const Scene& scene, const Instance& i) const; // InstanceRecord::shading
     void count_records(const Scene& scene);
     void size_arenas();
