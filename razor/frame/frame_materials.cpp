@@ -1,4 +1,4 @@
-// Materials, textures, displacement, emitters and the sky's map in frame memory.
+// Materials, textures, displacement and the sky's map in frame memory.
 #include "razor/frame/frame_memory.h"
 
 #include "razor/frame/displacement.h"
@@ -52,16 +52,6 @@ SolidRecord solid_record(const Instance& i, const glm::dvec3& mesh_origin) {
     }
     r.shrink = static_cast<float>(1 / std::cbrt(std::abs(volume)));
     return r;
-}
-
-/// Of all that it shows; 1 of none.
-glm::vec3 mean_of_map(const Scene& scene, const TextureMap& map) {
-    if (map.texture < 0)
-        return glm::vec3(1);
-    const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
-    if (texture.pattern)
-        return glm::vec3((texture.pattern->low + texture.pattern->high) / 2.0F); // about
-    return unpack_shared_exponent(texture.pyramid->levels.back().texels.front());
 }
 
 } // namespace
@@ -218,46 +208,6 @@ void Frame::Impl::place_sky(const Scene& scene) {
     copy(d.cell_sums, sky->cell_sums);
     copy(d.row_density, sky->row_density);
     header->sky_map.set(sky);
-}
-
-void Frame::Impl::place_emitters(const Scene& scene) {
-    std::vector<glm::dvec3> emitted(scene.materials.size(), glm::dvec3(0));
-    bool mapped = false;
-    for (std::size_t m = 0; m < emitted.size(); ++m) {
-        const Material& material = scene.materials[m];
-        if (!material.light)
-            continue;
-        emitted[m] = material.emission * mean_of_map(scene, material.emission_map);
-        mapped = mapped || material.emission_map.texture >= 0;
-    }
-    const glm::dvec3 dark(0);
-    if (std::all_of(emitted.begin(), emitted.end(), [&](const glm::dvec3& e) { return e == dark; }))
-        return;
-    emitters = std::make_unique<Emitters>(meshes, topologies, geometry.instances, emitted);
-    if (emitters->count() == 0) {
-        emitters.reset();
-        return;
-    }
-    header->emitters.set(region<EmitterRecord>("scene graph", -1, emitters->count()));
-    header->emitter_sums.set(region<float>("scene graph", -1, emitters->count() + 1));
-    header->emitter_maps = mapped ? 1 : 0;
-}
-
-void Frame::Impl::fill_emitters(const Scene& scene) {
-    if (!emitters)
-        return;
-    FrameHeader& h = *header;
-    const int samples = scene.settings.light_samples;
-    const EmitterTables t = samples > 0 ? emitters->tabulate(scene, geometry) : EmitterTables{};
-    std::copy(t.records.begin(), t.records.end(), h.emitters.get());
-    std::copy(t.sums.begin(), t.sums.end(), h.emitter_sums.get());
-    h.emitter_count = static_cast<std::int32_t>(t.records.size());
-    h.emitter_step =
-        t.records.size() < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(t.records.size() - 1));
-    h.emitter_samples = samples;
-    h.emitter_spacing = sample_spacing(scene.settings, t.area, samples);
-    for (std::size_t m = 0; m < scene.materials.size(); ++m)
-        h.materials.get()[m].light_density = m < t.density.size() ? t.density[m] : 0.0F;
 }
 
 } // namespace razor

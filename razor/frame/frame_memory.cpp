@@ -325,8 +325,7 @@ void Frame::Impl::place_view(const Scene& scene) {
     }
     if (options.tile_passes)
         tile_passes = region<TilePass>("frame buffer", -1, static_cast<std::size_t>(screen_tiles(s)));
-    most_lights = scene.lights.size();
-    header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
+    place_lights(scene);
     place_emitters(scene);
     fill_view(scene);
 }
@@ -421,18 +420,6 @@ void Frame::Impl::fill_view(const Scene& scene) {
     h.diffuse_bounces = s.diffuse_bounces;
     h.lobe_spacing = sample_spacing(s, 1, 1);
     h.reach = static_cast<float>(geometry.reach);
-}
-
-void Frame::Impl::fill_lights(const Scene& scene) {
-    const Settings& s = scene.settings;
-    header->light_count = 0;
-    if (s.light_samples == 0)
-        return;
-    for (std::size_t l = 0; l < scene.lights.size(); ++l)
-        if (std::optional<LightRecord> record = light_record(scene.lights[l], s, geometry.origin)) {
-            record->dimension = light_dimension(static_cast<int>(l));
-            header->lights.get()[header->light_count++] = *record;
-        }
 }
 
 bool Frame::Impl::pose(const Scene& scene) {

@@ -98,6 +98,7 @@ struct Frame::Impl {
         return topologies[static_cast<std::size_t>(instance.mesh)];
     }
     std::size_t most_lights = 0;        // that there is room for
+    bool chooses_lights = false;        // there is room for a tree of them
     std::unique_ptr<Emitters> emitters; // null: no surface is a light
     std::size_t clusters_of(std::size_t mesh) const {
         return (topologies[mesh].patches.size() + refit_patches - 1) >> refit_log2;
@@ -164,6 +165,10 @@ struct Frame::Impl {
     void list_clusters(const std::vector<int>& of_meshes);
     void fill_view(const Scene& scene);
     void fill_lights(const Scene& scene);
+    /// Makes a tree of those that are to be chosen from, if any: says which of all.
+    std::vector<bool> choose_lights(const Scene& scene);
+    /// Room for lights.
+    void place_lights(const Scene& scene);
     /// Surfaces that are lights.
     void place_emitters(const Scene& scene);
     void fill_emitters(const Scene& scene);

@@ -16,6 +16,7 @@
 #include "isa/memory_types.h"
 #include "razor/frame/emitter_record.h"
 #include "razor/frame/film_record.h"
+#include "razor/frame/light_node.h"
 #include "razor/frame/light_record.h"
 #include "razor/frame/line.h"
 #include "razor/frame/material_record.h"
@@ -511,12 +512,16 @@ struct FrameHeader {
     /// and of each cluster by how much at most any instance of it is. 0: not at all.
     isa::ref<float> displacement_bounds, cluster_displacements;
     isa::ref<DisplacementRecord> displacements;
-    isa::ref<float>
-        texture_densities;    // of every face: measure_texture_density() in razor/frame/displacement.h
-    std::int32_t cutouts;     // not 0: some material has an alpha_cutoff and opacity in its texture
-    std::int32_t slot_floats; // of a blended block: see razor/frame/scratch.h
-    std::int32_t one_sided;   // not 0: some material is seen from the front only
-    std::int32_t sheens;      // not 0: some material has sheen
+    /// Of every face: measure_texture_density() in razor/frame/displacement.h.
+    isa::ref<float> texture_densities;
+    std::int32_t cutouts;            // not 0: some material has an alpha_cutoff and opacity in its texture
+    std::int32_t slot_floats;        // of a blended block: see razor/frame/scratch.h
+    std::int32_t one_sided;          // not 0: some material is seen from the front only
+    std::int32_t sheens;             // not 0: some material has sheen
+    isa::ref<LightNode> light_nodes; // over chosen_lights
+    isa::ref<LightRecord> chosen_lights; // as of one sample each
+    std::int32_t light_node_count;
+    std::int32_t light_choices;       // rays a hit to lights that are chosen; 0: each has its own
     isa::ref<EmitterRecord> emitters; // triangles of surfaces that are lights
     isa::ref<float> emitter_sums;     // of their chances: before each, and at the end
     std::int32_t emitter_count;

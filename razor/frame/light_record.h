@@ -14,7 +14,9 @@ enum SampleDimension : std::int32_t {
     dimension_count = 5,
     dimension_lobe = -1,   // where a bounce goes within its lobe ...
     dimension_choice = -2, // ... and which lobe it takes
-    dimension_emitters = -3
+    dimension_emitters = -3,
+    dimension_which_light = -4,
+    dimension_chosen_light = -5
 };
 /// Of the scene's light of that number, whether or not those before it have radiance.
 constexpr std::int32_t light_dimension(int light) {

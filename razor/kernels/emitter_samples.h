@@ -132,11 +132,7 @@ template <bool Mapped> struct TowardsEmitters {
                  vfloat (&part)[3 * Response::lobes]) const {
         vfloat own[Response::lobes];
         r.response.reflect(s, l, EachDomain{l.domain}, samples, own);
-        for (int k = 0; k < Response::lobes; ++k) {
-            part[3 * k] = own[k] * l.colour.x;
-            part[3 * k + 1] = own[k] * l.colour.y;
-            part[3 * k + 2] = own[k] * l.colour.z;
-        }
+        tint(own, l.colour, part);
     }
     /// Of rays traced to their closest hits, which arrive; their colours multiplied by what maps show there,
     /// or the mean of them where what a ray sees is not quite there.

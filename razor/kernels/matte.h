@@ -1,6 +1,7 @@
 // Camera samples where everything is matte: closest hits and the light that they receive.
 #pragma once
 
+#include "razor/kernels/chosen_lights.h"
 #include "razor/kernels/light.h"
 #include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/shade.h"
@@ -59,6 +60,11 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
         vvec radiance = load_broadcast_vec(field(light, &LightRecord::radiance));
         reflect(radiance * gathered.lobe[0]);
         light = light + 1;
+    }
+    sint choices = load(field(c.frame, &FrameHeader::light_choices));
+    if (branch(choices > 0)) {
+        vfloat share = reciprocal(vfloat(to_float(choices)));
+        reflect(gather_chosen<F, Mapped>(c, s, Matte{}, choices).of(0) * share);
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {

@@ -3,7 +3,7 @@
 // multiple importance sampling (Veach 1997, chapter 9), lobe by lobe.
 #pragma once
 
-#include "razor/kernels/emitter_samples.h"
+#include "razor/kernels/chosen_lights.h"
 #include "razor/kernels/light.h"
 #include "razor/kernels/pixel_sums.h"
 #include "razor/kernels/seen_lights.h"
@@ -61,6 +61,14 @@ inline void add_light(const Context& c, const Surface& s, const Response& g, con
         Gathered<Response> gathered = gather_light<F, Mapped>(c, s, light, g, taken);
         add(gathered, load_broadcast_vec(field(light, &LightRecord::radiance)), stated, taken);
         light = light + 1;
+    }
+    sint choices = load(field(c.frame, &FrameHeader::light_choices));
+    if (branch(choices > 0)) {
+        sint taken = select(fewer, sint(1), choices);
+        GatheredColours<Response> gathered = gather_chosen<F, Mapped>(c, s, g, taken);
+        vfloat share = reciprocal(vfloat(to_float(taken)));
+        vvec seen = times(coloured(gathered, g, colours) * share, carried);
+        beauty = beauty + select(s.hit, seen, {zero, zero, zero});
     }
     sint emitters = load(field(c.frame, &FrameHeader::emitter_count));
     if (branch(emitters > 0)) {
@@ -120,8 +128,10 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
     sint bounces = load(field(c.frame, &FrameHeader::bounces));
     sint diffuse_bounces = load(field(c.frame, &FrameHeader::diffuse_bounces));
     sint emitters = load(field(c.frame, &FrameHeader::emitter_count));
+    sint choices = load(field(c.frame, &FrameHeader::light_choices));
     sbool sheens = load(field(c.frame, &FrameHeader::sheens)) != 0;
     vvec carried{one, one, one};
+    Surface before; // where bounces left, if lights are chosen
     Bounce bounce;
     bounce.rays = camera;
     bounce.density = vfloat(delta_density);
@@ -154,6 +164,10 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         if (branch(n > 0)) {
             vfloat end = select(hit, h.t, vfloat(infinite));
             vvec met = meet_lights(c, r, end, bounce.density, n > 1);
+            if (branch(choices > 0)) {
+                sint taken = select(n > 1, sint(1), choices);
+                met = met + meet_chosen(c, r, end, bounce.density, before, taken);
+            }
             found = found + select(bounce.diffuse, black, met);
         }
         sums.beauty = sums.beauty + times(found, carried);
@@ -179,6 +193,8 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         if (branch(met))
             emitted = emitted * left_of_emitters(c, s, beyond, h, bounce, n > 1);
         sums.beauty = sums.beauty + select(hit, emitted, black);
+        if (branch(choices > 0))
+            before = s;
         const auto go_on = [&](const auto& response) {
             add_light<F, Mapped>(c, s, response, colours, carried, n > 0, sums.beauty);
             if (branch(n < bounces))

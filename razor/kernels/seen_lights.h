@@ -94,6 +94,21 @@ inline Met meet_directional(pointer<LightRecord> light, const Rays& r) {
     return met;
 }
 
+inline Met meet_light(pointer<LightRecord> light, const Rays& r) {
+    sint shape = load(field(light, &LightRecord::shape));
+    Met met{vfloat(infinite), vfloat(0.0F)};
+    if (branch(shape == light_rectangle)) {
+        met = meet_rectangle(light, r);
+    } else if (branch(shape == light_disk)) {
+        met = meet_disk(light, r);
+    } else if (branch(shape == light_sphere)) {
+        met = meet_sphere(light, r);
+    } else if (branch(shape == light_directional)) {
+        met = meet_directional(light, r);
+    }
+    return met;
+}
+
 /// The radiance that rays meet before they hit anything: of each light the share that its own samples leave.
 /// `density`: of the bounces; `fewer`: whether only one sample was taken of each light where they left.
 [[gnu::noinline]] inline vvec meet_lights(const Context& c, const Rays& r, const vfloat& hit_t,
@@ -104,17 +119,7 @@ inline Met meet_directional(pointer<LightRecord> light, const Rays& r) {
     sint lights = load(field(c.frame, &FrameHeader::light_count));
     pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
     for (sint n = 0; branch(n < lights); ++n) {
-        sint shape = load(field(light, &LightRecord::shape));
-        Met met{vfloat(infinite), zero};
-        if (branch(shape == light_rectangle)) {
-            met = meet_rectangle(light, r);
-        } else if (branch(shape == light_disk)) {
-            met = meet_disk(light, r);
-        } else if (branch(shape == light_sphere)) {
-            met = meet_sphere(light, r);
-        } else if (branch(shape == light_directional)) {
-            met = meet_directional(light, r);
-        }
+        Met met = meet_light(light, r);
         vmask seen = r.active & (met.t < hit_t);
         if (branch(any(seen))) {
             sint samples = load(field(light, &LightRecord::samples));

@@ -156,6 +156,15 @@ template <class Response> struct Tinted {
     Response response;
     Tinted permuted(const vint& from) const { return {response.permuted(from)}; }
 };
+/// What each lobe makes of it, times the colour.
+template <int lobes>
+inline void tint(const vfloat (&lobe)[lobes], const vvec& colour, vfloat (&part)[3 * lobes]) {
+    for (int k = 0; k < lobes; ++k) {
+        part[3 * k] = lobe[k] * colour.x;
+        part[3 * k + 1] = lobe[k] * colour.y;
+        part[3 * k + 2] = lobe[k] * colour.z;
+    }
+}
 
 /// Samples are spread over all directions by density alone.
 struct UnitDomain {
@@ -176,11 +185,7 @@ struct TowardsMappedSky {
         r.response.reflect(s, l, UnitDomain{}, samples, own);
         SkyPlace place = place_in_sky(sky, l.rays.direction);
         vvec colour = sky_colour(context, sky, place, vfloat(0.0F), l.rays.active);
-        for (int k = 0; k < Response::lobes; ++k) {
-            part[3 * k] = own[k] * colour.x;
-            part[3 * k + 1] = own[k] * colour.y;
-            part[3 * k + 2] = own[k] * colour.z;
-        }
+        tint(own, colour, part);
     }
 };
 

@@ -104,11 +104,11 @@ std::string to_toml(const SceneDescription& description) {
     const Settings& settings = description.settings;
     fmt::format_to(out,
                    "name = {}\n\n[settings]\nsize = [{}, {}]\nsamples = {}\nnoise_threshold = "
-                   "{}\nlight_samples = {}\nsky_samples "
+                   "{}\nlight_samples = {}\nlight_choices = {}\nsky_samples "
                    "= {}\nbounces = {}\ndiffuse_bounces = {}\nseed = {}\n",
                    toml_text(description.name), settings.width, settings.height, settings.samples,
-                   toml_number(settings.noise_threshold), settings.light_samples, settings.sky_samples,
-                   settings.bounces, settings.diffuse_bounces, settings.seed);
+                   toml_number(settings.noise_threshold), settings.light_samples, settings.light_choices,
+                   settings.sky_samples, settings.bounces, settings.diffuse_bounces, settings.seed);
     if (const Crop& crop = settings.crop; crop != Crop{}) {
         fmt::format_to(out, "crop = [{}, {}, {}, {}]\n", crop.x, crop.y, crop.width, crop.height);
     }

@@ -48,6 +48,7 @@ TEST(SceneFile, ReadsEveryKey) {
         crop = [600, 479, 40, 1]
         samples = 9
         light_samples = 2
+        light_choices = 7
         sky_samples = 3
         noise_threshold = 0.02
         seed = 11
@@ -94,6 +95,7 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(scene.settings.crop, (Crop{600, 479, 40, 1}));
     EXPECT_EQ(scene.settings.samples, 9);
     EXPECT_EQ(scene.settings.light_samples, 2);
+    EXPECT_EQ(scene.settings.light_choices, 7);
     EXPECT_EQ(scene.settings.sky_samples, 3);
     EXPECT_EQ(scene.settings.noise_threshold, 0.02);
     EXPECT_EQ(scene.settings.seed, 11);

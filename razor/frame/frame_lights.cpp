@@ -1,0 +1,117 @@
+// Lights in frame memory: those that have rays of their own, those that are chosen from, and surfaces.
+#include "razor/frame/frame_memory.h"
+
+#include "razor/frame/light_records.h"
+#include "razor/frame/light_tree.h"
+#include "razor/scene/textures/shared_exponent.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace razor {
+namespace {
+
+/// Of all that it shows; 1 of none.
+glm::vec3 mean_of_map(const Scene& scene, const TextureMap& map) {
+    if (map.texture < 0)
+        return glm::vec3(1);
+    const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
+    if (texture.pattern)
+        return glm::vec3((texture.pattern->low + texture.pattern->high) / 2.0F); // about
+    return unpack_shared_exponent(texture.pyramid->levels.back().texels.front());
+}
+
+} // namespace
+
+void Frame::Impl::place_lights(const Scene& scene) {
+    most_lights = scene.lights.size();
+    header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
+    const int choices = scene.settings.light_choices;
+    chooses_lights =
+        choices > 0 && scene.settings.light_samples > 0 && most_lights > static_cast<std::size_t>(choices);
+    if (chooses_lights) {
+        header->chosen_lights.set(region<LightRecord>("scene graph", -1, most_lights));
+        header->light_nodes.set(region<LightNode>("scene graph", -1, 2 * most_lights));
+    }
+}
+
+std::vector<bool> Frame::Impl::choose_lights(const Scene& scene) {
+    std::vector<bool> chosen(scene.lights.size(), false);
+    if (!chooses_lights)
+        return chosen;
+    Settings once = scene.settings;
+    once.light_samples = 1;
+    std::vector<Light> lights;
+    std::vector<LightRecord> records;
+    for (std::size_t l = 0; l < scene.lights.size(); ++l)
+        if (std::optional<LightRecord> record = light_record(scene.lights[l], once, geometry.origin);
+            record && has_place(scene.lights[l])) {
+            lights.push_back(scene.lights[l]);
+            records.push_back(*record);
+            chosen[l] = true;
+        }
+    if (lights.size() <= static_cast<std::size_t>(scene.settings.light_choices))
+        return std::vector<bool>(scene.lights.size(), false); // each may as well have rays of its own
+    const std::vector<LightNode> nodes = light_tree(lights, geometry.origin);
+    std::copy(records.begin(), records.end(), header->chosen_lights.get());
+    std::copy(nodes.begin(), nodes.end(), header->light_nodes.get());
+    header->light_node_count = static_cast<std::int32_t>(nodes.size());
+    header->light_choices = scene.settings.light_choices;
+    return chosen;
+}
+
+void Frame::Impl::fill_lights(const Scene& scene) {
+    const Settings& s = scene.settings;
+    header->light_count = header->light_node_count = header->light_choices = 0;
+    if (s.light_samples == 0)
+        return;
+    const std::vector<bool> chosen = choose_lights(scene);
+    for (std::size_t l = 0; l < scene.lights.size(); ++l)
+        if (std::optional<LightRecord> record = light_record(scene.lights[l], s, geometry.origin);
+            record && !chosen[l]) {
+            record->dimension = light_dimension(static_cast<int>(l));
+            header->lights.get()[header->light_count++] = *record;
+        }
+}
+
+void Frame::Impl::place_emitters(const Scene& scene) {
+    std::vector<glm::dvec3> emitted(scene.materials.size(), glm::dvec3(0));
+    bool mapped = false;
+    for (std::size_t m = 0; m < emitted.size(); ++m) {
+        const Material& material = scene.materials[m];
+        if (!material.light)
+            continue;
+        emitted[m] = material.emission * mean_of_map(scene, material.emission_map);
+        mapped = mapped || material.emission_map.texture >= 0;
+    }
+    const glm::dvec3 dark(0);
+    if (std::all_of(emitted.begin(), emitted.end(), [&](const glm::dvec3& e) { return e == dark; }))
+        return;
+    emitters = std::make_unique<Emitters>(meshes, topologies, geometry.instances, emitted);
+    if (emitters->count() == 0) {
+        emitters.reset();
+        return;
+    }
+    header->emitters.set(region<EmitterRecord>("scene graph", -1, emitters->count()));
+    header->emitter_sums.set(region<float>("scene graph", -1, emitters->count() + 1));
+    header->emitter_maps = mapped ? 1 : 0;
+}
+
+void Frame::Impl::fill_emitters(const Scene& scene) {
+    if (!emitters)
+        return;
+    FrameHeader& h = *header;
+    const int samples = scene.settings.light_samples;
+    const EmitterTables t = samples > 0 ? emitters->tabulate(scene, geometry) : EmitterTables{};
+    std::copy(t.records.begin(), t.records.end(), h.emitters.get());
+    std::copy(t.sums.begin(), t.sums.end(), h.emitter_sums.get());
+    h.emitter_count = static_cast<std::int32_t>(t.records.size());
+    h.emitter_step =
+        t.records.size() < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(t.records.size() - 1));
+    h.emitter_samples = samples;
+    h.emitter_spacing = sample_spacing(scene.settings, t.area, samples);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        h.materials.get()[m].light_density = m < t.density.size() ? t.density[m] : 0.0F;
+}
+
+} // namespace razor
