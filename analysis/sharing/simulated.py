@@ -24,6 +24,7 @@ import points
 from points import best_of, mean, width
 from simulation import main, split_arguments
 
+TREES = {"nobody": "a tree each", "a core's": "a tree for each core", "a tile's": "a tree for each tile", "all": "one tree for all"}
 NAMES = {"worker": "nobody", "core": "a core's", "tile": "a tile's", "chip": "all"}
 COLUMNS = ("cycles", "work_cycles", "operations", "waiting", "duplicate_nodes", "duplicate_blocks", "built_bytes", "dram_reads",
            "dram_writes")
@@ -133,17 +134,20 @@ def picture(pyplot, options, runs):
         for row in (0, 1):
             a = axes[row][column]
             a.set_xscale("log", base=2)
-            a.set_yscale("log")
             a.set_xticks(options.sizes, [points.name_of(s) for s in options.sizes], rotation=45)
             a.minorticks_off()
-            a.yaxis.set_major_formatter("{x:g}")
-            a.yaxis.set_minor_formatter("{x:g}")
+        axes[1][column].set_yscale("log")  # work hardly differs by the size, traffic by several times
+        axes[1][column].yaxis.set_major_locator(pyplot.matplotlib.ticker.LogLocator(10, subs=(1, 2, 3, 5, 7)))
+        axes[1][column].yaxis.set_minor_locator(pyplot.matplotlib.ticker.NullLocator())
+        axes[1][column].yaxis.set_major_formatter("{x:g}")
     axes[0][0].set_ylabel("work of a worker, million cycles")
     axes[1][0].set_ylabel("lines from and to DRAM, millions")
     for a in axes[1]:
         a.set_xlabel("L2 of a tile")
-    axes[0][0].legend(title="who shares a tree", fontsize=7, title_fontsize=7)
-    figure.tight_layout()
+    handles, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(handles, [TREES[label] for label in labels], loc="upper center",
+                  ncol=len(labels), frameon=False)
+    figure.tight_layout(rect=(0, 0, 1, 0.95))
     return figure
 
 

@@ -437,6 +437,16 @@ FrameStatistics Frame::statistics() const {
     s.plan = plan_text(impl_->plan);
     s.grids = impl_->plan.grids;
     s.look = impl_->plan.look;
+    const MaterialTables& materials = impl_->materials;
+    s.patterns = std::any_of(materials.textures.begin(), materials.textures.end(),
+                             [](const TextureRecord& t) { return t.kind != texture_image; });
+    s.bumps = std::any_of(materials.map_bits.begin(), materials.map_bits.end(),
+                          [](int bits) { return (bits >> map_bump & 1) != 0; });
+    s.displacement = !materials.displacements.empty();
+    s.one_sided = materials.one_sided;
+    s.sheen = materials.sheens;
+    s.mesh_lights = impl_->header->emitter_count > 0;
+    s.chosen_lights = impl_->header->light_choices > 0;
     if (s.look != look_matte)
         s.material_records = static_cast<std::int64_t>(impl_->materials.materials.size());
     s.textured_meshes = static_cast<std::int64_t>(impl_->meshes.size() - impl_->scene_meshes);

@@ -36,11 +36,18 @@ std::vector<Feature> features_of(const Scene& scene, const FrameStatistics& fram
             {"sphere lights", has_light(sphere)},
             {"point lights and spots", has_light(point) || has_light(spot)},
             {"directional lights", has_light(directional)},
+            {"surfaces as lights", frame.mesh_lights},
+            {"lights that rays are given by chance", frame.chosen_lights},
             {"light of the sky", sky},
             {"map of the sky", scene.sky_map.texture >= 0},
             {"reflection, transmission and emission", glossy},
             {"diffuse interreflection", s.diffuse_bounces > 0},
-            {"textures or materials of faces", mapped}};
+            {"sheen", frame.sheen},
+            {"surfaces of one side", frame.one_sided},
+            {"textures or materials of faces", mapped},
+            {"procedural textures", frame.patterns},
+            {"bump maps", frame.bumps},
+            {"displacement", frame.displacement}};
 }
 
 double percent(std::int64_t part, std::int64_t whole) {

@@ -26,6 +26,7 @@ FEATURES = {
     "displacement": r"::place_displaced\(|::make_displaced_normals\(|::displaced_point\(",
     "sheen": r"\bCloth\b",
     "surfaces that are lights": r"::sample_emitters\(|TowardsEmitters",
+    "lights that are chosen": r"TowardsChosen|::choose_light\(|::meet_chosen\(",
     "opacity of textures": r"::sample_map<true>\(|::find_holes\(",
     "paths": r"::sample_bounce[(<]",
     "lights met by bounces": r"::meet_lights\(",
@@ -54,6 +55,7 @@ SCENES = [
     ("smooth, under a constant sky", CONSTANT + PLAIN + SMOOTH, SURFACES | {"constant sky"}),
     ("metal, a point of light", DARK + POINT + METAL + OBJ,
      {"other lights", "paths", "lights met by bounces", "shading by materials' records"}),
+    ("one ray to two lights", "[settings]\nlight_choices = 1\n" + DARK + POINT + POINT + MATTE + OBJ, {"lights that are chosen"}),
     ("textured", DARK + RECTANGLE + MAPPED + OBJ,
      {"rectangle lights", "normals or texture coordinates on vertices", "textures", "shading by materials' records"}),
     ("a smooth pattern", DARK + RECTANGLE + PATTERN + SMOOTH.replace('"matte"', '"m"'),
@@ -66,7 +68,8 @@ SCENES = [
      {"normals or texture coordinates on vertices", "rectangle lights", "displacement"}),
     ("under a mapped sky", SKY_MAP + TEXTURE + MATTE + OBJ, {"mapped sky", "textures", "shading by materials' records"}),
     ("everything but a map of the sky", CONSTANT + RECTANGLE + POINT + CUT + PLAIN + OBJ + SMOOTH,
-     set(FEATURES) - {"mapped sky", "patterns", "textures at vertices of grids", "displacement", "sheen", "surfaces that are lights"}),
+     set(FEATURES) - {"mapped sky", "patterns", "textures at vertices of grids", "displacement", "sheen", "surfaces that are lights",
+                      "lights that are chosen"}),
 ]
 
 
