@@ -41,7 +41,7 @@ void check_settings(std::string_view scene, const Settings& s) {
     check(scene, "settings.samples", s.samples, samples_range);
     check(scene, "settings.noise_threshold", s.noise_threshold, noise_threshold_range);
     check(scene, "settings.light_samples", s.light_samples, shadow_samples_range);
-    check(scene, "settings.light_choices", s.light_choices, shadow_samples_range);
+    check(scene, "settings.light_choices", s.light_choices, light_choices_range);
     check(scene, "settings.sky_samples", s.sky_samples, shadow_samples_range);
     check(scene, "settings.bounces", s.bounces, bounces_range);
     check(scene, "settings.diffuse_bounces", s.diffuse_bounces, bounces_range);

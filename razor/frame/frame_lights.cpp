@@ -3,6 +3,7 @@
 
 #include "razor/frame/light_records.h"
 #include "razor/frame/light_tree.h"
+#include "razor/frame/scratch.h"
 #include "razor/scene/textures/shared_exponent.h"
 
 #include <algorithm>
@@ -21,17 +22,27 @@ glm::vec3 mean_of_map(const Scene& scene, const TextureMap& map) {
     return unpack_shared_exponent(texture.pyramid->levels.back().texels.front());
 }
 
+/// Rays of neighbouring hits to one light are traced together, those to lights that each hit has chosen cost
+/// about twelve times as much (tests/benchmarks/many_lights.py): where there are fewer lights, a ray to each
+/// is both less noisy and faster.
+constexpr std::size_t lights_a_choice = 12;
+
+bool worth_choosing(std::size_t lights, const Settings& s) {
+    return s.light_choices > 0 && lights > lights_a_choice * static_cast<std::size_t>(s.light_choices);
+}
+
 } // namespace
 
 void Frame::Impl::place_lights(const Scene& scene) {
     most_lights = scene.lights.size();
     header->lights.set(region<LightRecord>("scene graph", -1, most_lights));
-    const int choices = scene.settings.light_choices;
-    chooses_lights =
-        choices > 0 && scene.settings.light_samples > 0 && most_lights > static_cast<std::size_t>(choices);
+    chooses_lights = scene.settings.light_samples > 0 && worth_choosing(most_lights, scene.settings);
     if (chooses_lights) {
         header->chosen_lights.set(region<LightRecord>("scene graph", -1, most_lights));
         header->light_nodes.set(region<LightNode>("scene graph", -1, 2 * most_lights));
+        for (int w = 0; w < options.workers; ++w)
+            header->workers.get()[w].cuts.set(
+                coloured<float>("packets", w, 2 * light_cut_floats, colour_cuts));
     }
 }
 
@@ -50,8 +61,8 @@ std::vector<bool> Frame::Impl::choose_lights(const Scene& scene) {
             records.push_back(*record);
             chosen[l] = true;
         }
-    if (lights.size() <= static_cast<std::size_t>(scene.settings.light_choices))
-        return std::vector<bool>(scene.lights.size(), false); // each may as well have rays of its own
+    if (!worth_choosing(lights.size(), scene.settings))
+        return std::vector<bool>(scene.lights.size(), false);
     const std::vector<LightNode> nodes = light_tree(lights, geometry.origin);
     std::copy(records.begin(), records.end(), header->chosen_lights.get());
     std::copy(nodes.begin(), nodes.end(), header->light_nodes.get());

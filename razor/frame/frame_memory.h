@@ -35,7 +35,8 @@ enum Coloured : int {
     colour_nodes,
     colour_lists,
     colour_patches,
-    colour_curve_lengths
+    colour_curve_lengths,
+    colour_cuts
 };
 inline int colour(int owner, Coloured kind) {
     return (owner * 97 + kind * 411) % coloured_lines;

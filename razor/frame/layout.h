@@ -388,6 +388,7 @@ struct alignas(line_bytes) WorkerRecord {
     isa::ref<float> stack;   // traversal stack and builders' scratch
     isa::ref<float> packets; // the rays in flight
     isa::ref<float> blends;  // blocks lately blended
+    isa::ref<float> cuts;    // of the tree of lights, where they are chosen from: light_cut in scratch.h
     std::int32_t place;      // among the workers: who share a tree, and then who are near, have near ones
     isa::ref<WorkerBudget> budget; // null: no memory budget
 };

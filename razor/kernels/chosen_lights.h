@@ -1,6 +1,8 @@
-// One light of many for each shadow ray, chosen by how much it may light the hit: down a tree of lights, at
-// each node by what is known of both children (Conty Estevez & Kulla, Importance Sampling of Many Lights with
-// Adaptive Tree Splitting, HPG 2018; the measure of importance is that of pbrt-4's LightBounds).
+// Shadow rays to a few of many lights. For each hit the tree of lights is cut into as many parts as there are
+// rays, where lights are near and bright into the smallest ones: those that matter most have rays of their
+// own. Each part's ray goes to one of its lights, down the tree by what is known of both children (Conty
+// Estevez & Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, HPG 2018; here the number
+// of parts is given, not the error of one. The measure of importance is that of pbrt-4's LightBounds).
 #pragma once
 
 #include "razor/frame/light_node.h"
@@ -9,6 +11,9 @@
 
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
+
+/// Added to the numbers of pixels for each part of a cut: samples of one have nothing to do with another's.
+inline constexpr std::uint32_t part_step = 0xc2b2ae35U;
 
 /// What a node says, of one node a lane or of one for all.
 struct LightBounds {
@@ -51,7 +56,8 @@ inline vfloat cosine_beyond(const vfloat& cos_a, const vfloat& cos_b) {
 }
 
 /// A bound, but for the size of the bounds, on what lights there give to the hit; 0 where they give nothing.
-inline vfloat importance(const LightBounds& b, const vvec& position, const vvec& normal) {
+/// `spread`: how much lights there differ by where they are, at most 1.
+inline vfloat importance(const LightBounds& b, const vvec& position, const vvec& normal, vfloat& spread) {
     vfloat zero(0.0F);
     vfloat one(1.0F);
     vvec half = (b.high - b.low) * 0.5F;
@@ -68,6 +74,7 @@ inline vfloat importance(const LightBounds& b, const vvec& position, const vvec&
     vfloat cos_emitted = cosine_beyond(cos_normal, cos_bounds);
     vfloat cos_hit = min(max(-dot(normal, towards), -1.0F), 1.0F);
     vfloat cos_received = cosine_beyond(cos_hit, cos_bounds);
+    spread = sqrt(size / max(square, size));
     vmask lit = cos_emitted > b.cos_emission;
     lit = lit & (cos_received > zero);
     vfloat cosines = max(cos_emitted, 0.0F) * cos_received;
@@ -76,21 +83,102 @@ inline vfloat importance(const LightBounds& b, const vvec& position, const vvec&
     return select(lit, value, zero);
 }
 
+inline vfloat importance(const LightBounds& b, const vvec& position, const vvec& normal) {
+    vfloat spread;
+    return importance(b, position, normal, spread);
+}
+
+/// Cuts the tree of lights for each hit, into `parts` or as many as there are lights that may light it: what
+/// gives most, and most unevenly, is divided first.
+[[gnu::noinline]] inline void cut_lights(const Context& c, const Surface& s, sint parts) {
+    phase_scope phase(phase_light);
+    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
+    constexpr int stride = sizeof(LightNode) / 4;
+    pointer<std::int32_t> seconds = field(nodes, &LightNode::second);
+    pointer<std::int32_t> node_at = as<std::int32_t>(c.cuts) + int{cut_node};
+    pointer<float> chance_at = c.cuts + int{cut_chance};
+    pointer<float> worth_at = c.cuts + int{cut_worth};
+    vfloat zero(0.0F);
+    vfloat one(1.0F);
+    vfloat done(-1.0F);
+    store_vector(node_at, vint(0));
+    store_vector(chance_at, one);
+    store_vector(worth_at, one);
+    for (sint k = 1; branch(k < parts); ++k) {
+        sint row = k * isa::width;
+        store_vector(chance_at + row, zero);
+        store_vector(worth_at + row, done);
+    }
+    vint count(1);
+    for (;;) {
+        vfloat best = zero;
+        vint row(0);
+        for (sint k = 0; branch(k < parts); ++k) {
+            sint at = k * isa::width;
+            vfloat worth = load_vector(worth_at + at);
+            vmask more = worth > best;
+            best = select(more, worth, best);
+            row = select(more, vint(k), row);
+        }
+        vmask going = s.hit & (count < vint(parts));
+        going = going & (best > zero);
+        if (branch(none(going)))
+            return;
+        vint at = row * vint(isa::width) + lane_index();
+        vint node = gather(node_at, at, going);
+        vfloat chance = gather(chance_at, at, going);
+        vint first = node + vint(1);
+        vint second = gather(seconds, node * vint(stride), going);
+        vfloat spread;
+        vfloat of_first = importance(bounds_at(nodes, first, going), s.position, s.shading, spread);
+        vfloat worth_of_first = of_first * spread;
+        vfloat of_second = importance(bounds_at(nodes, second, going), s.position, s.shading, spread);
+        vfloat worth_of_second = of_second * spread;
+        // Of leaves there is nothing to divide.
+        vint below = gather(seconds, first * vint(stride), going);
+        worth_of_first = select(below < vint(0), done, worth_of_first);
+        below = gather(seconds, second * vint(stride), going);
+        worth_of_second = select(below < vint(0), done, worth_of_second);
+        vfloat sum = of_first + of_second;
+        vfloat share = of_first / max(sum, 1.0e-37F);
+        // In its row one of the children that give something, none if there is none; in the next row the
+        // other.
+        vmask only_second = of_first <= zero;
+        vmask both = going & (of_second > zero);
+        both = both & !only_second;
+        vmask dark = sum <= zero;
+        vfloat kept = select(only_second, one, share);
+        kept = select(dark, zero, kept);
+        vfloat worth = select(only_second, worth_of_second, worth_of_first);
+        scatter(node_at, at, select(only_second, second, first), going);
+        scatter(chance_at, at, chance * kept, going);
+        scatter(worth_at, at, select(dark, done, worth), going);
+        vint next = count * vint(isa::width) + lane_index();
+        scatter(node_at, next, second, both);
+        vfloat rest = one - share;
+        scatter(chance_at, next, chance * rest, both);
+        scatter(worth_at, next, worth_of_second, both);
+        count = select(both, count + vint(1), count);
+    }
+}
+
 struct LightChoice {
     vint light;
-    vfloat chance; // 0: no light is worth it
+    vfloat chance; // in its part; 0: no light is worth it
 };
 
-[[gnu::noinline]] inline LightChoice choose_light(const Context& c, const Surface& s, const vfloat& number) {
+/// Of the parts with those nodes.
+[[gnu::noinline]] inline LightChoice choose_light(const Context& c, const Surface& s, const vint& part,
+                                                  const vfloat& number) {
     pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
     constexpr int stride = sizeof(LightNode) / 4;
     pointer<std::int32_t> seconds = field(nodes, &LightNode::second);
     vfloat one(1.0F);
     vfloat left_of = number;
-    vint node(0);
+    vint node = part;
     LightChoice choice;
     choice.chance = one;
-    vint second = gather(seconds, node, s.hit);
+    vint second = gather(seconds, node * vint(stride), s.hit);
     vmask going = s.hit & (second >= vint(0));
     while (branch(any(going))) {
         vint first = node + vint(1);
@@ -119,7 +207,7 @@ struct LightChoice {
     return choice;
 }
 
-/// With which chance rays of each lane's hit choose the light of a leaf.
+/// With which chance the tree leads from its root to a leaf.
 [[gnu::noinline]] inline vfloat chance_of_light(const Context& c, sint leaf, const Surface& from) {
     pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
     vfloat chance(1.0F);
@@ -141,7 +229,7 @@ struct LightChoice {
 
 struct ChosenRays : LightRays {
     vvec colour;   // radiance, as LightRecord has it, / chance
-    vfloat domain; // / chance
+    vfloat domain; // of the light, / expected_rays()
 };
 
 /// Towards spheres, as sample_sphere() does, where the rays go to their middles.
@@ -167,13 +255,29 @@ inline void aim_at_spheres(const Surface& s, const vvec& middle, const vfloat& r
     l.rays.active = l.rays.active & (faces | !spheres);
 }
 
-/// A light of each lane's own, of any shape that has a place, and a ray to it.
-[[gnu::noinline]] inline ChosenRays sample_chosen(const Context& c, const Surface& s, const vint& sample) {
+/// How many rays go to a light that the tree leads to with that chance, on average, about: what multiple
+/// importance sampling takes for it on both sides. (How many do is known where the tree is cut, not where a
+/// bounce meets the light.)
+inline vfloat expected_rays(const vfloat& chance, sint parts) {
+    return min(chance * vfloat(to_float(parts)), 1.0F);
+}
+
+/// A light of each lane's own, of any shape that has a place, and a ray to it: of the part of that number of
+/// those that the hit of `lane` has.
+[[gnu::noinline]] inline ChosenRays sample_chosen(const Context& c, const Surface& s, const vint& part,
+                                                  const vint& lane, sint parts) {
     vfloat zero(0.0F);
     vfloat one(1.0F);
-    vpoint which = sample_square(s.pixel, sample, dimension_which_light);
-    LightChoice choice = choose_light(c, s, which.u);
-    vmask some = s.hit & (choice.chance > zero);
+    vmask present = s.hit & (part < vint(parts));
+    vint at = part * vint(isa::width) + lane;
+    vfloat chance = gather(c.cuts + int{cut_chance}, at, present);
+    Surface here = s;
+    here.hit = present & (chance > zero);
+    vint node = gather(as<std::int32_t>(c.cuts) + int{cut_node}, at, here.hit);
+    vint key = s.pixel + part * vint(std::int32_t(part_step));
+    vpoint which = sample_square(key, s.sample, dimension_which_light);
+    LightChoice choice = choose_light(c, here, node, which.u);
+    vmask some = here.hit & (choice.chance > zero);
     pointer<LightRecord> lights = load(field(c.frame, &FrameHeader::chosen_lights));
     constexpr int stride = sizeof(LightRecord) / 4;
     vint record = choice.light * vint(stride);
@@ -183,7 +287,7 @@ inline void aim_at_spheres(const Surface& s, const vvec& middle, const vfloat& r
     const auto three = [&](float(LightRecord::*member)[3]) {
         return gather_vec(field(lights, member), record, vint(1), some);
     };
-    vpoint square = sample_square(s.pixel, sample, dimension_chosen_light);
+    vpoint square = sample_square(key, s.sample, dimension_chosen_light);
     vint shape = gather(field(lights, &LightRecord::shape), record, some);
     vmask disk = shape == vint(light_disk);
     vmask flat = disk | (shape == vint(light_rectangle));
@@ -223,33 +327,44 @@ inline void aim_at_spheres(const Surface& s, const vvec& middle, const vfloat& r
     leave_surface(c, s, growth_to_area(s.target, spacing, cos_light, inverse), l.rays);
     vfloat per_chance = reciprocal(select(some, choice.chance, one));
     l.colour = three(&LightRecord::radiance) * per_chance;
-    l.domain = number(&LightRecord::domain) * per_chance;
+    vfloat rays = expected_rays(chance * choice.chance, parts);
+    vfloat domain = number(&LightRecord::domain);
+    l.domain = domain / select(some, rays, one);
     return l;
 }
 
 struct TowardsChosen {
     static constexpr RayKind kind = kind_light;
-    ChosenRays sample(const Context& c, const Surface& s, const vint& number) const {
-        return sample_chosen(c, s, number);
+    sint parts;
+    ChosenRays sample_lane(const Context& c, const Surface& s, const vint& number, const vint& lane) const {
+        return sample_chosen(c, s, number, lane, parts);
     }
     template <class Response>
-    void reflect(const Tinted<Response>& r, const Surface& s, const ChosenRays& l, sint samples,
+    void reflect(const Tinted<Response>& r, const Surface& s, const ChosenRays& l, sint,
                  vfloat (&part)[3 * Response::lobes]) const {
         vfloat lobe[Response::lobes];
-        r.response.reflect(s, l, EachDomain{l.domain}, samples, lobe);
+        r.response.reflect(s, l, EachDomain{l.domain}, sint(1), lobe);
         tint(lobe, l.colour, part);
     }
 };
 
+/// Sums over so many rays.
 template <Features F, bool Mapped, class Response>
 inline GatheredColours<Response> gather_chosen(const Context& c, const Surface& s, const Response& response,
-                                               sint samples) {
-    return {gather_light<F, Mapped>(c, s, TowardsChosen{}, Tinted<Response>{response}, samples)};
+                                               sint parts) {
+    cut_lights(c, s, parts);
+    return {gather_light<F, Mapped>(c, s, TowardsChosen{parts}, Tinted<Response>{response}, parts)};
+}
+
+/// How many parts the tree is cut into where bounces hit: a few, as what they find counts for less.
+inline sint parts_after_bounces(sint parts) {
+    sint quarter = parts >> 2;
+    return max(quarter, sint(1));
 }
 
 /// As meet_lights(), of lights that are chosen from. `from`: where the rays left.
 [[gnu::noinline]] inline vvec meet_chosen(const Context& c, const Rays& r, const vfloat& hit_t,
-                                          const vfloat& density, const Surface& from, sint samples) {
+                                          const vfloat& density, const Surface& from, sint parts) {
     phase_scope phase(phase_light);
     vfloat zero(0.0F);
     vvec sum{zero, zero, zero};
@@ -285,8 +400,8 @@ inline GatheredColours<Response> gather_chosen(const Context& c, const Surface& 
         vmask seen = r.active & (at.t < hit_t);
         if (branch(any(seen))) {
             vfloat chance = chance_of_light(c, n - 1, from);
-            vfloat of_samples = chance * vfloat(to_float(samples));
-            vfloat share = vfloat(1.0F) - power_share(at.density * of_samples, density);
+            vfloat of_rays = at.density * expected_rays(chance, parts);
+            vfloat share = vfloat(1.0F) - power_share(of_rays, density);
             vvec emitted = load_broadcast_vec(field(light, &LightRecord::emitted));
             sum = sum + select(seen, emitted * share, {zero, zero, zero});
         }

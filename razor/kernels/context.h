@@ -40,6 +40,7 @@ struct Context {
     pointer<float> stack;   // traversal stack, then builders' scratch (scratch.h)
     pointer<float> packets; // rays in flight (scratch.h)
     pointer<float> blends;  // blocks lately blended (scratch.h)
+    pointer<float> cuts;    // of the tree of lights (scratch.h), where there is one
     sint slot_floats;       // from one blended block to the next
     sbool discards;         // what is done with is said to be dead
     isa::page_service* pages = nullptr;
@@ -76,6 +77,7 @@ inline Context make_context(pointer<FrameHeader> frame, sint worker) {
     c.stack = load(field(c.self, &WorkerRecord::stack));
     c.packets = load(field(c.self, &WorkerRecord::packets));
     c.blends = load(field(c.self, &WorkerRecord::blends));
+    c.cuts = load(field(c.self, &WorkerRecord::cuts));
     c.slot_floats = load(field(frame, &FrameHeader::slot_floats));
     sint discards = load(field(frame, &FrameHeader::discards));
     c.discards = discards != 0;

@@ -70,6 +70,8 @@ inline void discard_bounded(const Context& c, pointer<TreeBudget> tree) {
     discard_lines(as<Line>(c.blends), c.slot_floats * blend_slots >> line_floats_log2);
     discard_lines(as<Line>(c.packets), 2 * spare_packets / floats);
     discard_lines(as<Line>(c.stack), 2 * spare_stack / floats);
+    if (branch(!is_null(c.cuts)))
+        discard_lines(as<Line>(c.cuts), 2 * light_cut_floats / floats);
 }
 
 } // namespace build_kernel

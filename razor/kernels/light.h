@@ -67,6 +67,16 @@ struct TowardsSky {
     }
 };
 
+/// Of each hit its sample of that number, where `first` come before it; `lane`: the hit's.
+template <class Towards>
+inline auto sample_towards(const Context& c, const Towards& towards, const Surface& here, const vint& number,
+                           const vint& first, const vint& lane) {
+    if constexpr (requires { towards.sample_lane(c, here, number, lane); })
+        return towards.sample_lane(c, here, number, lane);
+    else
+        return towards.sample(c, here, number + first);
+}
+
 /// Of each lobe.
 template <class Response> struct Gathered { vfloat lobe[Response::lobes]; };
 template <class Response> inline pointer<float> lobe_sums(const Context& c, int lobe) {
@@ -101,7 +111,7 @@ template <Features F, bool Mapped, class Towards, class Response>
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
             vmask wanted = number < vint(samples);
-            auto l = towards.sample(c, here, number + first_sample);
+            auto l = sample_towards(c, towards, here, number, first_sample, lane);
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
                 vmask arrives;

@@ -63,8 +63,7 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     }
     sint choices = load(field(c.frame, &FrameHeader::light_choices));
     if (branch(choices > 0)) {
-        vfloat share = reciprocal(vfloat(to_float(choices)));
-        reflect(gather_chosen<F, Mapped>(c, s, Matte{}, choices).of(0) * share);
+        reflect(gather_chosen<F, Mapped>(c, s, Matte{}, choices).of(0));
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
     if (branch(sky_samples > 0)) {

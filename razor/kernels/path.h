@@ -64,10 +64,10 @@ inline void add_light(const Context& c, const Surface& s, const Response& g, con
     }
     sint choices = load(field(c.frame, &FrameHeader::light_choices));
     if (branch(choices > 0)) {
-        sint taken = select(fewer, sint(1), choices);
-        GatheredColours<Response> gathered = gather_chosen<F, Mapped>(c, s, g, taken);
-        vfloat share = reciprocal(vfloat(to_float(taken)));
-        vvec seen = times(coloured(gathered, g, colours) * share, carried);
+        sint few = parts_after_bounces(choices);
+        sint parts = select(fewer, few, choices);
+        GatheredColours<Response> gathered = gather_chosen<F, Mapped>(c, s, g, parts);
+        vvec seen = times(coloured(gathered, g, colours), carried);
         beauty = beauty + select(s.hit, seen, {zero, zero, zero});
     }
     sint emitters = load(field(c.frame, &FrameHeader::emitter_count));
@@ -165,8 +165,9 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             vfloat end = select(hit, h.t, vfloat(infinite));
             vvec met = meet_lights(c, r, end, bounce.density, n > 1);
             if (branch(choices > 0)) {
-                sint taken = select(n > 1, sint(1), choices);
-                met = met + meet_chosen(c, r, end, bounce.density, before, taken);
+                sint few = parts_after_bounces(choices);
+                sint parts = select(n > 1, few, choices);
+                met = met + meet_chosen(c, r, end, bounce.density, before, parts);
             }
             found = found + select(bounce.diffuse, black, met);
         }

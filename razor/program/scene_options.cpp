@@ -60,9 +60,10 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
                    "pixels")
         ->type_name("R");
     app.add_option("--light-samples", light_samples_, "shadow rays a hit to each light")->type_name("N");
-    app.add_option("--light-choices", light_choices_,
-                   "where there are more lights than so many, so many shadow rays a hit, each to one that is "
-                   "chosen by what it may give; 0: some to each")
+    app.add_option(
+           "--light-choices", light_choices_,
+           "where there are more than twelve times so many lights, so many shadow rays a hit, to lights "
+           "that are chosen by what they may give; 0: always some to each")
         ->type_name("N");
     app.add_option("--sky-samples", sky_samples_, "shadow rays a hit to the sky")->type_name("N");
     app.add_option("--bounces", bounces_, "reflections and refractions in a row that are followed")
@@ -134,7 +135,7 @@ SceneDescription SceneOptions::describe_moving() const {
             settings.light_samples = parse_whole("--light-samples", light_samples_, shadow_samples_range);
         }
         if (!light_choices_.empty()) {
-            settings.light_choices = parse_whole("--light-choices", light_choices_, shadow_samples_range);
+            settings.light_choices = parse_whole("--light-choices", light_choices_, light_choices_range);
         }
         if (!sky_samples_.empty()) {
             settings.sky_samples = parse_whole("--sky-samples", sky_samples_, shadow_samples_range);

@@ -175,8 +175,8 @@ struct Settings {
     /// (razor/native/adaptive_sampling.h says what is measured).
     double noise_threshold = 0;
     int light_samples = 4; // shadow rays a hit to each light; 0: lights are left out
-    /// Where more lights than so many have a place, so many shadow rays a hit go to some that are chosen by
-    /// what they may give, in place of some to each; 0: always to each.
+    /// Where more than twelve times so many lights have a place, so many shadow rays a hit go to some that
+    /// are chosen by what they may give, in place of some to each; 0: always to each.
     int light_choices = 16;
     int sky_samples = 4;      // shadow rays a hit to the sky; 0: it lights nothing
     int bounces = 4;          // reflections and refractions in a row that are followed

@@ -50,7 +50,7 @@ Settings read_settings(TomlTable table) {
     settings.noise_threshold =
         table.number("noise_threshold", settings.noise_threshold, noise_threshold_range);
     settings.light_samples = table.whole("light_samples", settings.light_samples, shadow_samples_range);
-    settings.light_choices = table.whole("light_choices", settings.light_choices, shadow_samples_range);
+    settings.light_choices = table.whole("light_choices", settings.light_choices, light_choices_range);
     settings.sky_samples = table.whole("sky_samples", settings.sky_samples, shadow_samples_range);
     settings.bounces = table.whole("bounces", settings.bounces, bounces_range);
     settings.diffuse_bounces = table.whole("diffuse_bounces", settings.diffuse_bounces, bounces_range);

@@ -55,7 +55,7 @@ SCENES = [
     ("smooth, under a constant sky", CONSTANT + PLAIN + SMOOTH, SURFACES | {"constant sky"}),
     ("metal, a point of light", DARK + POINT + METAL + OBJ,
      {"other lights", "paths", "lights met by bounces", "shading by materials' records"}),
-    ("one ray to two lights", "[settings]\nlight_choices = 1\n" + DARK + POINT + POINT + MATTE + OBJ, {"lights that are chosen"}),
+    ("one ray to many lights", "[settings]\nlight_choices = 1\n" + DARK + POINT * 13 + MATTE + OBJ, {"lights that are chosen"}),
     ("textured", DARK + RECTANGLE + MAPPED + OBJ,
      {"rectangle lights", "normals or texture coordinates on vertices", "textures", "shading by materials' records"}),
     ("a smooth pattern", DARK + RECTANGLE + PATTERN + SMOOTH.replace('"matte"', '"m"'),
