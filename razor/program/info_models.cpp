@@ -21,11 +21,11 @@ template <class List, class Show> std::string line_of(std::string_view title, co
 }
 
 std::string shown(const CarriedCamera& camera) {
-    if (!camera.perspective)
-        return "orthographic, not read";
-    return camera.aspect_ratio > 0 ? fmt::format("{:g} degrees, {:g} times as wide as high",
-                                                 camera.fov_degrees, camera.aspect_ratio)
-                                   : fmt::format("{:g} degrees", camera.fov_degrees);
+    std::string text = camera.perspective ? fmt::format("{:g} degrees", camera.fov_degrees)
+                                          : fmt::format("orthographic, height {:g}", camera.height);
+    if (camera.aspect_ratio > 0)
+        text += fmt::format(", {:g} times as wide as high", camera.aspect_ratio);
+    return text;
 }
 
 } // namespace
@@ -78,6 +78,8 @@ nlohmann::ordered_json json_of(const std::vector<GltfContents>& files) {
                        {"projection", camera.perspective ? "perspective" : "orthographic"}};
             if (camera.perspective)
                 entry["fov"] = camera.fov_degrees;
+            else
+                entry["height"] = camera.height;
             if (camera.aspect_ratio > 0)
                 entry["aspect_ratio"] = camera.aspect_ratio;
             json["cameras"].push_back(std::move(entry));

@@ -24,9 +24,8 @@ bool is_called(const auto& carried, const std::string& name) {
 /// Null: there is none.
 const CarriedCamera* find_camera(const FromModel& from) {
     const auto& cameras = from.stage->cameras();
-    const auto found = std::find_if(cameras.begin(), cameras.end(), [&](const CarriedCamera& c) {
-        return c.perspective && is_called(c, from.name);
-    });
+    const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                    [&](const CarriedCamera& c) { return is_called(c, from.name); });
     return found == cameras.end() ? nullptr : &*found;
 }
 
@@ -103,13 +102,8 @@ void load_stage(FromModel& from, bool camera) {
             fail_to_find(from, "light", from.stage->lights());
         return;
     }
-    if (has_camera(from))
-        return;
-    const auto& cameras = from.stage->cameras();
-    if (std::any_of(cameras.begin(), cameras.end(),
-                    [&](const CarriedCamera& c) { return is_called(c, from.name); }))
-        fail(from, "the camera is orthographic, which is not read; give a perspective one");
-    fail_to_find(from, "camera", cameras);
+    if (!has_camera(from))
+        fail_to_find(from, "camera", from.stage->cameras());
 }
 
 bool has_camera(const FromModel& from) {
@@ -127,12 +121,20 @@ Camera camera_of(const FromModel& from, const Settings& settings, double seconds
     camera.target =
         camera.position + std::max(from.scale, 1e-9 * std::max({far.x, far.y, far.z})) * place.ahead();
     camera.up = place.up();
-    camera.fov_degrees = carried.fov_degrees;
     const double aspect = static_cast<double>(settings.width) / settings.height;
-    if (carried.aspect_ratio > aspect)
+    const double wider = std::max(1.0, carried.aspect_ratio / aspect);
+    if (!carried.perspective) {
+        camera.projection = Projection::orthographic;
+        camera.height = carried.height * from.scale * wider;
+        if (!(camera.height >= height_range.least && camera.height <= height_range.most))
+            fail(from, fmt::format("the camera is {:g} high, which is not from {:g} to {:g}; mend its scale",
+                                   camera.height, height_range.least, height_range.most));
+        return camera;
+    }
+    camera.fov_degrees = carried.fov_degrees;
+    if (wider > 1)
         camera.fov_degrees =
-            std::min(2 * glm::degrees(std::atan(std::tan(0.5 * glm::radians(carried.fov_degrees)) *
-                                                carried.aspect_ratio / aspect)),
+            std::min(2 * glm::degrees(std::atan(std::tan(0.5 * glm::radians(carried.fov_degrees)) * wider)),
                      fov_range.most);
     return camera;
 }

@@ -17,7 +17,7 @@ namespace razor {
 
 struct FromModel {
     std::string file;    // absolute path of a glTF file
-    std::string name;    // of the camera, or of one light; empty: the first perspective camera, all lights
+    std::string name;    // of the camera, or of one light; empty: the first camera, all lights
     Playback playback{}; // of its nodes: clip, cycle, start, speed, moment
     // A point p of the file lies at translate + Rz Ry Rx (scale p), as of [[mesh]]; intensities of points and
     // spots grow by the square of the scale, so that all looks the same.
@@ -34,9 +34,10 @@ void load_stage(FromModel& from, bool camera);
 /// Whether the file has such a camera; what follows of cameras and lights needs them to be there.
 bool has_camera(const FromModel& from);
 
-/// The camera `seconds` after the scene's beginning. Its vertical angle is that of the file, but wider where
-/// the picture is narrower than the camera's aspect ratio, so that all that it shows is seen. Its target lies
-/// one unit of the file ahead. Throws UserError where its node has no direction.
+/// The camera `seconds` after the scene's beginning. Its vertical angle or height is that of the file, but
+/// larger where the picture is narrower than the camera's aspect ratio, so that all that it shows is seen;
+/// the scale of its node does not change it (glTF 2.0, 3.10.2), that of `from` scales the height. Its target
+/// lies one unit of the file ahead. Throws UserError where its node has no direction.
 Camera camera_of(const FromModel& from, const Settings& settings, double seconds);
 
 /// The lights likewise, as many at all times.

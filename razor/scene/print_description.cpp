@@ -27,9 +27,11 @@ bool is_whole(std::string_view shape, std::string_view parameter) {
 }
 
 void print_camera(std::string& text, const Camera& camera, const FromModel& from) {
-    fmt::format_to(std::back_inserter(text), "\n[camera]\n{}aperture_radius = {}\nfocus_distance = {}\n",
-                   to_toml(from, true), toml_number(camera.aperture_radius),
-                   toml_number(camera.focus_distance));
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "\n[camera]\n{}", to_toml(from, true));
+    if (camera.projection == Projection::perspective)
+        fmt::format_to(out, "aperture_radius = {}\nfocus_distance = {}\n",
+                       toml_number(camera.aperture_radius), toml_number(camera.focus_distance));
 }
 
 void print_camera(std::string& text, const Camera& camera, const CameraKeys& keys, std::string_view header) {

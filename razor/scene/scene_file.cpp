@@ -68,6 +68,14 @@ void check(const TomlTable& table, const std::optional<Mistake>& mistake) {
     }
 }
 
+void refuse_lens(const TomlTable& table, std::initializer_list<std::string_view> keys) {
+    for (const std::string_view key : keys)
+        if (table.has(key))
+            table.fail(key, fmt::format("{}.{} is of a perspective camera, and this one is orthographic; "
+                                        "leave it out",
+                                        table.name(), key));
+}
+
 /// What the lens adds to a camera that a model brings.
 Camera read_lens(TomlTable& table, Camera camera) {
     camera.aperture_radius = table.number("aperture_radius", camera.aperture_radius, aperture_range);
@@ -82,11 +90,7 @@ Camera read_camera(TomlTable& table) {
     camera.up = table.vector("up", camera.up, coordinate_range);
     camera.projection = choose(table, "projection", camera.projection, projection_words);
     if (camera.projection == Projection::orthographic) {
-        for (const std::string_view key : {"fov", "aperture_radius", "focus_distance"})
-            if (table.has(key))
-                table.fail(key, fmt::format("{}.{} is of a perspective camera, and this one is orthographic; "
-                                            "leave it out",
-                                            table.name(), key));
+        refuse_lens(table, {"fov", "aperture_radius", "focus_distance"});
         if (!table.has("height"))
             table.fail("height",
                        "an orthographic camera needs a height; write how much of the scene it shows, "
@@ -150,7 +154,10 @@ void read_camera(TomlTable& table, SceneDescription& scene, const std::filesyste
     } catch (const UserError& error) {
         table.fail("from", error.what());
     }
-    scene.camera = read_lens(table, scene.camera);
+    if (scene.camera.projection == Projection::orthographic)
+        refuse_lens(table, {"aperture_radius", "focus_distance"});
+    else
+        scene.camera = read_lens(table, scene.camera);
     table.finish();
 }
 

@@ -64,7 +64,7 @@ TEST_F(Info, TellsWhatGltfFilesHold) {
     w.json["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
     w.json["cameras"] = {
         {{"type", "perspective"}, {"perspective", {{"yfov", 1.5707963267948966}, {"aspectRatio", 2}}}},
-        {{"type", "orthographic"}, {"name", "plan"}}};
+        {{"type", "orthographic"}, {"name", "plan"}, {"orthographic", {{"xmag", 3}, {"ymag", 2}}}}};
     w.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}}};
     w.add("nodes", {{"camera", 1}});
     w.json["scenes"][0]["nodes"] = {0, 1};
@@ -76,17 +76,19 @@ TEST_F(Info, TellsWhatGltfFilesHold) {
     for (const std::string scene : {"m.glb", "g.toml"}) {
         const Outcome result = info(scene + " --json i.json");
         EXPECT_EQ(result.code, 0) << result.err;
-        EXPECT_NE(result.out.find(
-                      "glTF files: 1\n  " + (folder_ / "m.glb").string() +
-                      "\n    cameras: Body (90 degrees, 2 times as wide as high), plan (orthographic, not "
-                      "read)\n    lights: Body (spot)\n    animations: Run (1.25 s)\n"),
-                  std::string::npos)
+        EXPECT_NE(
+            result.out.find("glTF files: 1\n  " + (folder_ / "m.glb").string() +
+                            "\n    cameras: Body (90 degrees, 2 times as wide as high), plan (orthographic, "
+                            "height 4, 1.5 times as wide as high)\n    lights: Body (spot)\n    animations: "
+                            "Run (1.25 s)\n"),
+            std::string::npos)
             << result.out;
         std::ifstream file(folder_ / "i.json");
         const auto json = nlohmann::json::parse(file)["gltf_files"];
         ASSERT_EQ(json.size(), 1U);
         EXPECT_EQ(json[0]["cameras"][0]["aspect_ratio"], 2.0);
         EXPECT_EQ(json[0]["cameras"][1]["projection"], "orthographic");
+        EXPECT_EQ(json[0]["cameras"][1]["height"], 4.0);
         EXPECT_EQ(json[0]["lights"][0]["kind"], "spot");
         EXPECT_EQ(json[0]["animations"][0]["seconds"], 1.25);
     }

@@ -24,6 +24,10 @@ Json perspective(double yfov, double aspect = 0) {
         camera["perspective"]["aspectRatio"] = aspect;
     return camera;
 }
+Json orthographic(double xmag, double ymag) {
+    return {{"type", "orthographic"},
+            {"orthographic", {{"xmag", xmag}, {"ymag", ymag}, {"znear", 0.1}, {"zfar", 9}}}};
+}
 Json lit(int light) {
     return {{"KHR_lights_punctual", {{"light", light}}}};
 }
@@ -125,7 +129,7 @@ TEST_F(GltfStageTest, WhatAModelLacksIsPlaced) {
     ASSERT_EQ(camera.lights.size(), 1U);
     EXPECT_EQ(camera.lights[0].kind, LightKind::rectangle);
     w = writer();
-    w.json["cameras"][0] = {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}}}};
+    w.json["nodes"][2].erase("camera");
     const Scene lights = load_scene(write(w, "c.glb"));
     EXPECT_EQ(lights.lights.size(), 3U);
     expect_same(lights.camera, bare.camera);
@@ -181,7 +185,7 @@ TEST_F(GltfStageTest, ScenesTakeThemFromFiles) {
 TEST_F(GltfStageTest, CamerasAreChosenByName) {
     GltfWriter w = writer();
     w.json["cameras"].push_back(perspective(0.5));
-    w.json["cameras"].push_back({{"type", "orthographic"}});
+    w.json["cameras"].push_back(orthographic(1, 1));
     w.json["nodes"][0]["camera"] = 2;
     w.json["nodes"][0]["name"] = "Plan";
     w.json["nodes"][5]["camera"] = 1;
@@ -189,15 +193,14 @@ TEST_F(GltfStageTest, CamerasAreChosenByName) {
     const auto fov = [&](const std::string& name) {
         return pose_at(scene("[camera]\nfrom = \"m.glb\"\n" + name), 0).camera.fov_degrees;
     };
-    EXPECT_NEAR(fov(""), 0.5 * 180 / pi, 1e-9)
-        << "the first, node by node from the root, perspective ones alone";
+    EXPECT_NEAR(fov("name = \"Sun\"\n"), 0.5 * 180 / pi, 1e-9);
     EXPECT_NEAR(fov("name = \"View\"\n"), 60, 1e-9);
     EXPECT_NEAR(fov("name = \"Camera.001\"\n"), 60, 1e-9);
-    EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\nname = \"Plan\"\n").find("s.toml:3:8: "),
-              std::string::npos);
-    EXPECT_NE(
-        message("[camera]\nfrom = \"m.glb\"\nname = \"Plan\"\n").find("the camera is orthographic, which"),
-        std::string::npos);
+    for (const char* const name : {"", "name = \"Plan\"\n"})
+        EXPECT_EQ(pose_at(scene(std::string("[camera]\nfrom = \"m.glb\"\n") + name), 0).camera.projection,
+                  Projection::orthographic)
+            << "the first, node by node from the root";
+    EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\nname = \"x\"\n").find("s.toml:3:8: "), std::string::npos);
     EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\nname = \"x\"\n")
                   .find("no camera is named 'x'; there are: Plan, Sun, View"),
               std::string::npos);
@@ -221,6 +224,47 @@ TEST_F(GltfStageTest, NarrowPicturesAreWidened) {
     EXPECT_NEAR(half(300, 200), stated, 1e-12);
     EXPECT_NEAR(half(900, 200), stated, 1e-12) << "more is seen at the sides";
     EXPECT_NEAR(half(300, 400), 2 * stated, 1e-12) << "as wide as before";
+}
+
+/// xmag and ymag are halves of what is seen (glTF 2.0, 3.10.3.4), which the node's scale of 3 does not
+/// change.
+TEST_F(GltfStageTest, OrthographicCamerasShowTwiceTheirMagnifications) {
+    GltfWriter w = writer();
+    w.json["cameras"][0] = orthographic(3, 2);
+    w.channel(1, "translation", {0, 2}, {5, 0, 0, 9, 0, 0}, 3);
+    const std::string path = write(w);
+    const auto height = [&](int width, int rows) {
+        SceneDescription d = scene("[camera]\nfrom = \"m.glb\"\nscale = 2.0\n");
+        d.settings.width = width;
+        d.settings.height = rows;
+        return pose_at(d, 0).camera.height;
+    };
+    EXPECT_EQ(height(300, 200), 8);
+    EXPECT_EQ(height(900, 200), 8) << "more is seen at the sides";
+    EXPECT_EQ(height(300, 400), 16) << "as wide as before";
+    const SceneDescription bare = describe(path, {});
+    EXPECT_TRUE(is_animated(bare));
+    const SceneDescription stated = scene("[camera]\nfrom = \"m.glb\"\n");
+    for (const SceneDescription& d : {bare, stated}) {
+        const SceneDescription again = parse_scene_file(to_toml(d), "t", {});
+        EXPECT_EQ(to_toml(again), to_toml(d));
+        for (const double t : {0.0, 1.0}) {
+            const Scene s = build_scene(pose_at(d, t));
+            EXPECT_EQ(s.camera.projection, Projection::orthographic);
+            EXPECT_DOUBLE_EQ(
+                s.camera.height * s.settings.width / s.settings.height,
+                s.settings.width > 1.5 * s.settings.height ? 4.0 * s.settings.width / s.settings.height : 6);
+            expect_near(s.camera.position, {7 + 2 * t, 1, 0});
+            expect_near(view(s.camera), {-1, 0, 0});
+            expect_near(s.camera.up, {0, 1, 0});
+            EXPECT_EQ(s.camera.aperture_radius, 0);
+            expect_same(build_scene(pose_at(again, t)), s);
+            expect_same(build_scene(parse_scene_file(to_toml(pose_at(d, t)), "t", {})), s);
+        }
+    }
+    EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\naperture_radius = 0.5\n")
+                  .find("camera.aperture_radius is of a perspective camera"),
+              std::string::npos);
 }
 
 TEST_F(GltfStageTest, MoveWithTheirNodes) {
@@ -295,6 +339,15 @@ TEST_F(GltfStageTest, RefusesClearly) {
          "camera 0 perspective has no yfov"},
         {[](GltfWriter& w) { w.json["cameras"][0] = perspective(3.2); }, "has no yfov between 0 and pi"},
         {[](GltfWriter& w) { w.json["cameras"][0] = perspective(-1); }, "has no yfov between 0 and pi"},
+        {[](GltfWriter& w) {
+             w.json["cameras"][0] = {{"type", "orthographic"}};
+         },
+         "camera 0 orthographic has no xmag above 0"},
+        {[](GltfWriter& w) { w.json["cameras"][0] = orthographic(1, 0); },
+         "camera 0 orthographic has no ymag above 0"},
+        {[](GltfWriter& w) { w.json["cameras"][0] = orthographic(-1, 1); }, "has no xmag above 0"},
+        {[](GltfWriter& w) { w.json["cameras"][0] = orthographic(1, 1e30); },
+         "high, which is not from 1e-30 to 1e+30; mend its scale"},
         {[](GltfWriter& w) { light(w, 0)["type"] = "area"; }, "light 0 is of type 'area'"},
         {[](GltfWriter& w) {
              light(w, 0)["color"] = {1, 1};

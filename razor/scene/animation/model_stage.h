@@ -14,8 +14,9 @@ namespace razor {
 struct CarriedCamera {
     std::string name, node_name; // either may be empty
     int node = 0;
-    bool perspective = true; // orthographic ones are known, but not used
-    double fov_degrees = 0;  // vertical, full angle
+    bool perspective = true; // else orthographic
+    double fov_degrees = 0;  // of a perspective one: vertical, full angle
+    double height = 0;       // of an orthographic one: of what it shows, in the file's units
     double aspect_ratio = 0; // width over height of what it shows; 0: of any picture
 
     /// By its node, else by itself.

@@ -40,12 +40,26 @@ public:
     }
 
 private:
+    /// Half of what is seen in one direction (glTF 2.0, 3.10.3.4). A negative one would mirror the picture,
+    /// which its text advises against.
+    static double magnification(const Fields& orthographic, const char* key) {
+        const double half = orthographic.real(key, 0, {-height_range.most, height_range.most});
+        if (!(half > 0))
+            orthographic.fail(fmt::format("has no {} above 0", key));
+        return half;
+    }
+
     static CarriedCamera read_camera(const Fields& f) {
         CarriedCamera camera;
         camera.name = f.text("name", "");
         const std::string type = f.text("type", "");
         if (type == "orthographic") {
+            const Fields orthographic = f.object("orthographic");
+            const double half_width = magnification(orthographic, "xmag");
+            const double half_height = magnification(orthographic, "ymag");
             camera.perspective = false;
+            camera.height = 2 * half_height;
+            camera.aspect_ratio = half_width / half_height;
             return camera;
         }
         if (type != "perspective")
