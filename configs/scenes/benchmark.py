@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Writes the four benchmark scenes beside itself: courtyard, interior, forest and showcase (.toml), all animated; and the
-same with patterns and bumps on most surfaces (-textured.toml).
+"""Writes the four benchmark scenes beside itself: courtyard, interior, forest and showcase (.toml), all animated; the
+same with patterns and bumps on most surfaces (-textured.toml); and the showcase with displaced and mirroring ones
+(showcase-displaced.toml), whose height maps are heights-*.png.
 
     configs/scenes/benchmark.py            # writes them
     configs/scenes/benchmark.py --check    # says which of them are not what it would write
@@ -13,17 +14,20 @@ import itertools
 import math
 import os
 import random
+import struct
 import sys
+import zlib
 
 
 class Scene:
     """Text of a scene file, table by table."""
 
-    def __init__(self, name, about, scheme, textured):
+    def __init__(self, name, about, scheme, variant):
         self.scheme = scheme
-        self.textured = textured
-        if textured:
-            name, about = f"{name}-textured", about + ["With patterns and bumps."]
+        self.variant = variant
+        if variant:
+            name = f"{name}-{variant}"
+            about = about + [{"textured": "With patterns and bumps.", "displaced": "Displaced, or mirrors."}[variant]]
         self.text = [f"# {line}" for line in about] + [f'name = "{name}"']
 
     def table(self, header, **values):
@@ -63,6 +67,8 @@ def number(value):
         return f'"{value}"'
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(number(x) for x in value) + "]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {number(x)}" for key, x in value.items()) + " }"
     if isinstance(value, int):
         return str(value)
     return f"{round(value, 4) + 0.0:g}"
@@ -139,6 +145,76 @@ PATTERNS = {
 }
 
 
+def periodic(cosines):
+    """Of (columns, rows, phase in turns, weight): their sum over a texture, at (u, v)."""
+    return lambda u, v: sum(weight * math.cos(2 * math.pi * (columns * u + rows * v + phase))
+                            for columns, rows, phase, weight in cosines)
+
+
+def rough():
+    """Noise: cosines of random directions and phases, whose weights fall with their frequencies."""
+    chance = random.Random(3)
+    waves = [(a, b) for a in range(0, 13) for b in range(-12, 13) if (a > 0 or b > 0) and 3 <= math.hypot(a, b) <= 12]
+    return periodic([(a, b, chance.random(), math.hypot(a, b) ** -1.6) for a, b in chance.sample(waves, 48)])
+
+
+def scale(u, v):
+    """Two rows of scales, each of which rises from its upper end to its round lower one and covers what is below."""
+    heights = [0.0]
+    for row in range(-1, 3):
+        for column in range(-1, 2):
+            x, y = (u - column - 0.5 * (row % 2) - 0.25) / 0.5, (v - 0.5 * row) / 0.75
+            inside = 1 - x * x - max(0.0, 0.45 - y) ** 2 / 0.2
+            if inside > 0 and 0 <= y < 1:
+                heights.append(min(1.0, 5 * inside) * (1 - 0.8 * y) * (1 - 0.35 * x * x) * min(1.0, (1 - y) / 0.2))
+    return max(heights)
+
+
+def ripple(u, v):
+    """Rings about the middle that fade towards the edge."""
+    r = math.hypot(u - 0.5, v - 0.5) / 0.5
+    return math.cos(2 * math.pi * 6 * r) * max(0.0, 1 - r * r)
+
+
+# Height maps: columns, rows, and heights at (u, v), of which the least and the largest become 0 and 65535.
+HEIGHTS = {"rough": (128, 128, rough()), "scales": (96, 96, scale), "ripples": (192, 192, ripple),
+           "dimples": (48, 48, lambda u, v: -max(0.0, 1 - math.hypot(u - 0.5, v - 0.5) ** 2 / 0.2) ** 2),
+           "ribs": (64, 4, lambda u, v: abs(math.cos(math.pi * u)) ** 0.7)}
+# Of materials: heights, how high (in the mesh's own unit, from the lowest to the highest), how often the map repeats.
+DISPLACED = {"jade": ("scales", 0.07, [36, 4]), "ivory": ("rough", 0.09, [2, 2]), "ink": ("dimples", 0.05, [24, 12]),
+             "rose": ("ribs", 0.06, [18, 1]), "cream": ("ripples", 0.16, [1, 1]), "marble": ("rough", 0.025, [1, 1])}
+# Polished metals: what they reflect.
+MIRRORS = {"copper": [0.95, 0.64, 0.54], "saffron": [1.0, 0.78, 0.34], "chrome": [0.77, 0.78, 0.78]}
+
+
+def displaced_materials(scene, materials):
+    for name in sorted({heights for heights, _, _ in DISPLACED.values()}):
+        scene.table("[[texture]]", name=name, file=f"heights-{name}.png", color_space="linear")
+    for name, albedo in materials.items():
+        if name in MIRRORS:
+            scene.table("[[material]]", name=name, kind="principled", albedo=MIRRORS[name], metallic=1, roughness=0)
+        elif name in DISPLACED:
+            heights, height, repeat = DISPLACED[name]
+            scene.table("[[material]]", name=name, kind="principled", albedo=albedo, roughness=0.35,
+                        displacement_map={"texture": heights, "scale": repeat}, displacement_scale=height)
+        else:
+            scene.table("[[material]]", name=name, albedo=albedo)
+
+
+def height_map(columns, rows, height):
+    """A PNG of 16 bits a texel, as bytes; v upwards."""
+    values = [[height((x + 0.5) / columns, 1 - (y + 0.5) / rows) for x in range(columns)] for y in range(rows)]
+    least, most = min(map(min, values)), max(map(max, values))
+    rows_of_bytes = b"".join(b"\0" + struct.pack(f">{columns}H", *(round(65535 * (h - least) / (most - least)) for h in row))
+                             for row in values)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", columns, rows, 16, 0, 0, 0, 0)) + \
+        chunk(b"IDAT", zlib.compress(rows_of_bytes, 9)) + chunk(b"IEND", b"")
+
+
 def head(scene, camera, lights, background, materials, size=(1024, 1024)):
     """A frame takes 36 rays a pixel where nothing faces away: 4 samples, each with 4 to each of two lights."""
     scene.table("[settings]", size=list(size), samples=4, light_samples=4, sky_samples=0)
@@ -147,7 +223,10 @@ def head(scene, camera, lights, background, materials, size=(1024, 1024)):
     scene.table("[sky]", radiance=background)
     for light in lights:
         scene.table("[[light]]", **light)
-    patterns = {name: PATTERNS[name] for name in materials if name in PATTERNS and scene.textured}
+    if scene.variant == "displaced":
+        displaced_materials(scene, materials)
+        return
+    patterns = {name: PATTERNS[name] for name in materials if name in PATTERNS and scene.variant == "textured"}
     for name, (pattern, depth, bump, values) in patterns.items():
         albedo = materials[name]
         scene.table("[[texture]]", name=name, pattern=pattern, low=[round(x * (1 - depth), 3) for x in albedo],
@@ -161,8 +240,8 @@ def head(scene, camera, lights, background, materials, size=(1024, 1024)):
             scene.table("[[material]]", name=name, albedo_map=name, bump_map=name, bump=patterns[name][2])
 
 
-def courtyard(textured=False):
-    scene = Scene("courtyard", ["64 figures walk in a walled court. Written by benchmark.py."], "bilinear", textured)
+def courtyard(variant=None):
+    scene = Scene("courtyard", ["64 figures walk in a walled court. Written by benchmark.py."], "bilinear", variant)
     head(scene, {"position": [10.6, 4.3, 11.0], "target": [0.0, 0.3, 0.0], "fov": 54},
          [{"corner": [-26.0, 30.0, 8.0], "edge_u": [6.0, 6.0, 0.0], "edge_v": [-3.5355, 3.5355, 6.0], "radiance": [190, 170, 140]},
           facing([-3, -6, -4], [14.0, 30.0, 18.0], 8.0, 1.0, [1.0, 1.15, 1.35])],
@@ -210,9 +289,9 @@ def courtyard(textured=False):
     return scene
 
 
-def interior(textured=False):
+def interior(variant=None):
     scene = Scene("interior", ["A house of twenty rooms with two people in each; the camera is in one room. Written by benchmark.py."],
-                  "bilinear", textured)
+                  "bilinear", variant)
     head(scene, {"position": [14.7, 1.8, 9.7], "target": [11.4, 0.95, 6.2], "fov": 64},
          [{"corner": [13.9, 2.93, 6.7], "edge_u": [0.0, 0.0, 1.6], "edge_v": [-2.4, 0.0, 0.0], "radiance": [8.5, 7.8, 6.6]},
           {"corner": [14.8, 0.9, 9.88], "edge_u": [-4.6, 0.0, 0.0], "edge_v": [0.0, 1.9, 0.0], "radiance": [1.7, 1.9, 2.2]}],
@@ -280,8 +359,8 @@ def ground(x, z):
     return height, rise_x, rise_z
 
 
-def forest(textured=False):
-    scene = Scene("forest", ["A forest on hills: trees and plants that sway, creatures that pass. Written by benchmark.py."], "catmark", textured)
+def forest(variant=None):
+    scene = Scene("forest", ["A forest on hills: trees and plants that sway, creatures that pass. Written by benchmark.py."], "catmark", variant)
     head(scene, {"position": [3.0, 3.4, 27.0], "target": [-1.0, 2.2, 0.0], "fov": 48},
          [{"corner": [-52.0, 46.0, 30.0], "edge_u": [12.0, 10.0, 0.0], "edge_v": [-4.0, 4.8, 14.0], "radiance": [130, 115, 90]},
           facing([-1, -3, -4], [12.0, 40.0, 48.0], 6.0, 1.0, [6.0, 7.0, 8.3])],
@@ -369,14 +448,15 @@ def forest(textured=False):
     return scene
 
 
-def showcase(textured=False):
-    scene = Scene("showcase", ["Creased subdivision surfaces on turning plinths. Written by benchmark.py."], "catmark", textured)
+def showcase(variant=None):
+    scene = Scene("showcase", ["Creased subdivision surfaces on turning plinths. Written by benchmark.py."], "catmark", variant)
     head(scene, {"position": [0.0, 4.6, 11.6], "target": [0.0, 1.1, -0.5], "fov": 43},
          [{"corner": [-5.5, 8.5, 3.5], "edge_u": [3.4, 0.0, 0.0], "edge_v": [0.0, -1.6, 3.2], "radiance": [28, 26, 23]},
           facing([-3, -2, -4], [8.0, 6.0, 11.0], 2.0, 0.25, [1.2, 1.3, 1.5])],
          [0.42, 0.45, 0.50],
          {"marble": [0.68, 0.66, 0.63], "jade": [0.20, 0.44, 0.32], "copper": [0.62, 0.30, 0.17], "ivory": [0.76, 0.71, 0.60],
-          "ink": [0.09, 0.11, 0.20], "saffron": [0.74, 0.50, 0.12], "rose": [0.62, 0.24, 0.30], "hall": [0.46, 0.45, 0.44]})
+          "ink": [0.09, 0.11, 0.20], "saffron": [0.74, 0.50, 0.12], "rose": [0.62, 0.24, 0.30], "hall": [0.46, 0.45, 0.44],
+          **({"cream": [0.80, 0.74, 0.62], "chrome": [0.77, 0.78, 0.78]} if variant == "displaced" else {})})
     scene.mesh("hall", "plane", "hall", {"width": 40.0, "depth": 40.0})
     scene.mesh("backdrop", "plane", "hall", {"width": 40.0, "depth": 16.0}, rotate=[90, 0, 0], translate=[0.0, 6.0, -7.0])
     scene.mesh("plinth", "box", "marble", {"width": 1.5, "height": 0.9, "depth": 1.5, "sharpness": 3.2})
@@ -384,7 +464,9 @@ def showcase(textured=False):
               ("sponge", "ivory", {"strut": 0.45, "sharpness": 2.0}, 0.52, 0.72, 9.0), ("urchin", "saffron", {"length": 0.9, "sharpness": 2.2}, 0.42, 0.78, 5.0),
               ("bowl", "ink", {"segments": 24}, 0.72, 0.02, 12.0), ("canopy", "rose", {"petals": 8}, 0.78, 0.12, 7.0),
               ("dish", "saffron", {"petals": 5, "rings": 5, "wave": 0.35}, 0.72, 0.25, 8.0), ("pawn", "ink", {"segments": 16}, 0.6, 0.0, 10.0))
+    other = {"canopy": "chrome", "dish": "cream", "pawn": "rose"} if variant == "displaced" else {}
     for name, material, parameters, scale, _, _ in pieces:
+        material = other.get(name, material)
         deform = [{"kind": "twist", "amount": 24.0, "period": 5.0}] if name in ("sponge", "pawn") else \
             [{"kind": "wave", "axis": [1, 0, 1], "direction": [0, 1, 0], "amount": 0.06, "wavelength": 1.1, "period": 2.0}] if name == "canopy" else []
         scene.mesh(name, "{}".format(name), material, parameters, scale=scale, deform=deform)
@@ -399,18 +481,26 @@ def showcase(textured=False):
     return scene
 
 
+def files():
+    """Of every file that belongs beside this one: its name and bytes."""
+    variants = [*itertools.product((courtyard, interior, forest, showcase), (None, "textured")), (showcase, "displaced")]
+    for scene, variant in variants:
+        yield f"{scene.__name__}{f'-{variant}' if variant else ''}.toml", scene(variant).write().encode()
+    for name, heights in HEIGHTS.items():
+        yield f"heights-{name}.png", height_map(*heights)
+
+
 def main():
     if sys.argv[1:] not in ([], ["--check"]):
         sys.exit("usage: benchmark.py [--check]")
     folder = os.path.dirname(os.path.abspath(__file__))
     stale = []
-    for scene, textured in itertools.product((courtyard, interior, forest, showcase), (False, True)):
-        file = os.path.join(folder, f"{scene.__name__}{'-textured' if textured else ''}.toml")
-        text = scene(textured).write()
+    for name, data in files():
+        file = os.path.join(folder, name)
         if not sys.argv[1:]:
-            with open(file, "w") as out:
-                out.write(text)
-        elif not os.path.exists(file) or open(file).read() != text:
+            with open(file, "wb") as out:
+                out.write(data)
+        elif not os.path.exists(file) or open(file, "rb").read() != data:
             stale.append(file)
     if stale:
         sys.exit(f"{', '.join(stale)}: not what benchmark.py writes; run it")

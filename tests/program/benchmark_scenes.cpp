@@ -1,4 +1,4 @@
-// The four benchmark scenes: frames of a sequence, and each alone by other workers.
+// The benchmark scenes: frames of a sequence, and each alone by other workers.
 #include "tests/program/pictures.h"
 #include "tests/program/run.h"
 
@@ -35,8 +35,13 @@ TEST_P(BenchmarkScene, EachFrameIsTheOneRenderedAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BenchmarkScene,
-                         ::testing::Values("courtyard", "interior", "forest", "showcase"),
-                         [](const auto& name) { return std::string(name.param); });
+                         ::testing::Values("courtyard", "interior", "forest", "showcase",
+                                           "showcase-displaced"),
+                         [](const auto& name) {
+                             std::string text = name.param;
+                             std::erase(text, '-');
+                             return text;
+                         });
 
 } // namespace
 } // namespace razor

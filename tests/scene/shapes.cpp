@@ -124,5 +124,56 @@ TEST(Shapes, ExerciseWhatTheyAreThereFor) {
     EXPECT_EQ(find_shape_kind("none"), nullptr);
 }
 
+/// Texture coordinates turn as faces do and are as far apart as points are, so that textures are neither
+/// mirrored nor torn: of neighbouring faces either both ends of their edge have the same ones, or it is a
+/// seam.
+TEST(Shapes, TextureCoordinatesFollowTheFaces) {
+    const std::map<std::string_view, int> seams{
+        // Edges on whose sides they differ: a net of six squares keeps five of a box's twelve; of what is turned
+        // a foot's rim, a line along the profile, and all that meet at the pole.
+        {"plane", 0},
+        {"box", 7},
+        {"knot", 48 + 4},
+        {"dish", 0},
+        {"bowl", 12 + 10 + 12},
+        {"pawn", 10 + 13 + 10},
+    };
+    for (const ShapeKind& kind : shape_kinds()) {
+        SCOPED_TRACE(kind.name);
+        const Mesh mesh = preset(kind.name);
+        const bool none = kind.name == "gear" || kind.name == "urchin" || kind.name == "canopy";
+        ASSERT_EQ(mesh.face_texcoords.size(), none ? 0 : mesh.face_vertices.size());
+        if (none)
+            continue;
+        std::map<std::pair<int, int>, std::pair<int, int>> sides; // of half-edges
+        std::size_t first = 0;
+        for (const int size : mesh.face_sizes) {
+            const auto n = static_cast<std::size_t>(size);
+            const auto at = [&](std::size_t i) {
+                return glm::dvec2(
+                    mesh.texcoords.at(static_cast<std::size_t>(mesh.face_texcoords[first + i % n])));
+            };
+            double area = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                area += 0.5 * (at(i).x * at(i + 1).y - at(i + 1).x * at(i).y);
+                sides[{mesh.face_vertices[first + i], mesh.face_vertices[first + (i + 1) % n]}] = {
+                    mesh.face_texcoords[first + i], mesh.face_texcoords[first + (i + 1) % n]};
+            }
+            EXPECT_GT(area, 0) << first;
+            first += n;
+        }
+        int torn = 0;
+        for (const auto& [edge, ends] : sides) {
+            const auto other = sides.find({edge.second, edge.first});
+            if (edge.first < edge.second && other != sides.end() &&
+                other->second != std::pair(ends.second, ends.first))
+                ++torn;
+        }
+        if (seams.contains(kind.name)) {
+            EXPECT_EQ(torn, seams.at(kind.name));
+        }
+    }
+}
+
 } // namespace
 } // namespace razor

@@ -4,6 +4,8 @@
 #include "razor/scene/scene.h"
 
 #include <initializer_list>
+#include <map>
+#include <tuple>
 #include <vector>
 
 namespace razor {
@@ -20,6 +22,20 @@ public:
     /// Adds a face; corners counter-clockwise seen from outside.
     void face(std::initializer_list<int> corners) { add_face(corners); }
     void face(const std::vector<int>& corners) { add_face(corners); }
+
+    /// Likewise, with texture coordinates of each corner. Faces that give a point the same ones are
+    /// continuous there. A cage has them at all faces or at none.
+    void face(const std::vector<int>& corners, const std::vector<glm::dvec2>& coordinates) {
+        add_face(corners);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::vec2 at(coordinates[i]);
+            const auto [entry, is_new] =
+                known_.try_emplace({corners[i], at.x, at.y}, static_cast<int>(mesh_.texcoords.size()));
+            if (is_new)
+                mesh_.texcoords.push_back(at);
+            mesh_.face_texcoords.push_back(entry->second);
+        }
+    }
 
     /// Sharpens the edge a-b; nothing where sharpness is 0.
     void crease(int a, int b, double sharpness) {
@@ -38,6 +54,7 @@ private:
     }
 
     Mesh mesh_;
+    std::map<std::tuple<int, float, float>, int> known_; // texture coordinates of points
 };
 
 } // namespace razor

@@ -29,16 +29,27 @@ Mesh make(std::span<const double> values) {
             cage.point(r * std::sin(angle), y, r * std::cos(angle));
         }
     }
+    const auto seen_from_above = [&](int point) {
+        const glm::dvec3& p = cage.points()[static_cast<std::size_t>(point)];
+        return glm::dvec2(0.5 + 0.5 * p.x, 0.5 - 0.5 * p.z);
+    };
+    const auto face = [&](const std::vector<int>& corners) {
+        std::vector<glm::dvec2> coordinates;
+        for (const int corner : corners) {
+            coordinates.push_back(seen_from_above(corner));
+        }
+        cage.face(corners, coordinates);
+    };
     std::vector<int> middle;
     for (int i = 0; i < segments; ++i) {
         middle.push_back(i);
     }
-    cage.face(middle);
+    face(middle);
     for (int ring = 1; ring < rings; ++ring) {
         for (int i = 0; i < segments; ++i) {
             const int j = (i + 1) % segments;
             const int inner = (ring - 1) * segments, outer = ring * segments;
-            cage.face({inner + i, outer + i, outer + j, inner + j});
+            face({inner + i, outer + i, outer + j, inner + j});
         }
     }
     return cage.take();

@@ -1,4 +1,9 @@
 // Every shape's maker, one a source file beside this; the table of them all is in shapes.cpp.
+//
+// Texture coordinates (u, v): of a plane (0, 0) to (1, 1) from its corner at -x and z to the one at x and -z;
+// of a box a net, each side a unit square; of what is turned u around, from z to x, v along the profile, a
+// foot's disk in the unit square; of a knot u along, v around; of a dish as seen from above; of a sponge each
+// side's by the two axes that it lies along, 0 to 1. Gears, urchins and canopies have none.
 #pragma once
 
 #include "razor/scene/shapes/shapes.h"

@@ -48,7 +48,10 @@ Mesh make(std::span<const double> values) {
         const int next = 4 * ((i + 1) % segments);
         for (int side = 0; side < 4; ++side) {
             const int other = (side + 1) % 4;
-            cage.face({here + side, next + side, next + other, here + other});
+            const double from = double(i) / segments, to = double(i + 1) / segments;
+            const double below = 0.25 * side, above = 0.25 * (side + 1);
+            cage.face({here + side, next + side, next + other, here + other},
+                      {{from, below}, {to, below}, {to, above}, {from, above}});
             cage.crease(here + side, next + side, values[4]);
         }
     }

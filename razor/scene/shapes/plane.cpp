@@ -25,7 +25,10 @@ Mesh make(std::span<const double> values) {
     for (int j = 0; j < rows; ++j) {
         for (int i = 0; i < columns; ++i) {
             const int corner = j * (columns + 1) + i;
-            cage.face({corner, corner + columns + 1, corner + columns + 2, corner + 1});
+            const double left = double(i) / columns, right = double(i + 1) / columns;
+            const double far = 1 - double(j) / rows, near = 1 - double(j + 1) / rows;
+            cage.face({corner, corner + columns + 1, corner + columns + 2, corner + 1},
+                      {{left, far}, {left, near}, {right, near}, {right, far}});
         }
     }
     return cage.take();

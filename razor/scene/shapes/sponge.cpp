@@ -56,7 +56,13 @@ Mesh make(std::span<const double> values) {
                     return point(at);
                 };
                 const int a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-                side == 1 ? cage.face({a, b, c, d}) : cage.face({a, d, c, b});
+                const auto at = [&](int p) { // from the other side u goes the other way
+                    const glm::dvec3& q = cage.points()[static_cast<std::size_t>(p)];
+                    return 0.5 + 0.5 * glm::dvec2((side == 1 ? 1 : -1) * q[static_cast<glm::length_t>(u)],
+                                                  q[static_cast<glm::length_t>(v)]);
+                };
+                side == 1 ? cage.face({a, b, c, d}, {at(a), at(b), at(c), at(d)})
+                          : cage.face({a, d, c, b}, {at(a), at(d), at(c), at(b)});
             }
         }
     }
