@@ -35,13 +35,20 @@ private:
 };
 
 constexpr std::size_t pixel_bytes = sizeof(float);
+static_assert(sizeof(std::uint32_t) == pixel_bytes);
+
+Imf::PixelType type_of(const Plane& plane) {
+    return plane.ids.empty() ? Imf::FLOAT : Imf::UINT;
+}
 
 /// A view of a plane; OpenEXR wants a non-const pointer for reading and writing alike.
-Imf::Slice slice_of(const float* values, int x, int y, std::size_t width) {
+Imf::Slice slice_of(const Plane& plane, int x, int y, std::size_t width) {
     const std::size_t row_bytes = pixel_bytes * width;
+    const void* const pixels = plane.ids.empty() ? static_cast<const void*>(plane.values.data())
+                                                 : static_cast<const void*>(plane.ids.data());
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
-    return Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(values), {x, y}, static_cast<std::int64_t>(width),
-                            1, pixel_bytes, row_bytes);
+    return Imf::Slice::Make(type_of(plane), const_cast<void*>(pixels), {x, y},
+                            static_cast<std::int64_t>(width), 1, pixel_bytes, row_bytes);
 }
 
 Imath::M44f matrix_of(const std::array<float, 16>& rows) {
@@ -93,9 +100,9 @@ void write_exr(const std::filesystem::path& path, const Film& film, const ImageA
         const Imath::V2i corner = header.dataWindow().min;
         Imf::FrameBuffer pixels;
         for (const Plane& plane : film.planes) {
-            header.channels().insert(plane.name, Imf::Channel(Imf::FLOAT));
-            pixels.insert(plane.name, slice_of(plane.values.data(), corner.x, corner.y,
-                                               static_cast<std::size_t>(film.width)));
+            header.channels().insert(plane.name, Imf::Channel(type_of(plane)));
+            pixels.insert(plane.name,
+                          slice_of(plane, corner.x, corner.y, static_cast<std::size_t>(film.width)));
         }
         for (const auto& [name, value] : attributes) {
             header.insert(name, Imf::StringAttribute(value));
@@ -138,9 +145,10 @@ Film read_exr(const std::filesystem::path& path, ImageAttributes* attributes) {
                 throw UserError(fmt::format("{}: channel {} is subsampled, which is not read; convert it",
                                             name, printable(channel.name())));
             }
-            const Plane& plane = film.add(channel.name());
-            pixels.insert(plane.name, slice_of(plane.values.data(), window.min.x, window.min.y,
-                                               static_cast<std::size_t>(width)));
+            const bool whole = channel.channel().type == Imf::UINT;
+            const Plane& plane = whole ? film.add_ids(channel.name()) : film.add(channel.name());
+            pixels.insert(plane.name,
+                          slice_of(plane, window.min.x, window.min.y, static_cast<std::size_t>(width)));
         }
         exr.setFrameBuffer(pixels);
         exr.readPixels(window.min.y, window.max.y);

@@ -19,6 +19,16 @@ float light_of(double encoded) {
                                                  : std::pow((encoded + 0.055) / 1.055, 2.4));
 }
 
+std::size_t size_of(const Plane& plane) {
+    return plane.ids.empty() ? plane.values.size() : plane.ids.size();
+}
+
+bool is_there(const Plane& plane, std::size_t i, const std::function<bool(float)>& missing) {
+    if (!plane.ids.empty())
+        return plane.ids[i] != no_id;
+    return std::isfinite(plane.values[i]) && !missing(plane.values[i]);
+}
+
 } // namespace
 
 glm::vec3 false_colour(double x) {
@@ -42,11 +52,11 @@ glm::vec3 name_colour(double number) {
 
 ValueRange range_of(const Plane& plane, const std::function<bool(float)>& missing) {
     ValueRange range{1, 0};
-    for (const float value : plane.values)
-        if (std::isfinite(value) && !missing(value)) {
+    for (std::size_t i = 0; i < size_of(plane); ++i)
+        if (is_there(plane, i, missing)) {
             const bool first = range.low > range.high;
-            range.low = first ? value : std::min<double>(range.low, value);
-            range.high = first ? value : std::max<double>(range.high, value);
+            range.low = first ? plane.at(i) : std::min(range.low, plane.at(i));
+            range.high = first ? plane.at(i) : std::max(range.high, plane.at(i));
         }
     return range.low > range.high ? ValueRange{} : range;
 }
@@ -57,10 +67,10 @@ Film false_coloured(const Film& film, const Plane& plane, bool names, const Valu
     for (const char* name : {"R", "G", "B"})
         colours.add(name);
     const double span = range.high > range.low ? range.high - range.low : 1;
-    for (std::size_t i = 0; i < plane.values.size(); ++i) {
-        const float value = plane.values[i];
-        if (!std::isfinite(value) || missing(value))
+    for (std::size_t i = 0; i < size_of(plane); ++i) {
+        if (!is_there(plane, i, missing))
             continue;
+        const double value = plane.at(i);
         const glm::vec3 colour = names ? name_colour(value) : false_colour((value - range.low) / span);
         for (std::size_t c = 0; c < 3; ++c)
             colours.planes[c].values[i] = light_of(colour[static_cast<int>(c)]);

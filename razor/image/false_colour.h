@@ -24,8 +24,8 @@ glm::vec3 name_colour(double number);
 struct ValueRange {
     double low = 0, high = 1;
 };
-/// Of the values that are finite and not `missing`; 0 to 1 if there are none. A single value is its own low
-/// and high.
+/// Of the values that are finite and not `missing` (names always are where there is none); 0 to 1 if there
+/// are none. A single value is its own low and high.
 ValueRange range_of(const Plane& plane, const std::function<bool(float)>& missing);
 
 /// The plane in colours: a film of R, G and B that write_png() with the default tone shows as these, off by 1

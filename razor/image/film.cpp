@@ -4,8 +4,19 @@
 
 namespace razor {
 
+double Plane::at(std::size_t pixel) const {
+    if (ids.empty())
+        return double{values[pixel]};
+    return ids[pixel] == no_id ? -1.0 : static_cast<double>(ids[pixel]);
+}
+
 Plane& Film::add(std::string_view name) {
     return planes.emplace_back(Plane{std::string(name), std::vector<float>(pixel_count())});
+}
+
+Plane& Film::add_ids(std::string_view name) {
+    return planes.emplace_back(
+        Plane{std::string(name), {}, std::vector<std::uint32_t>(pixel_count(), no_id)});
 }
 
 const Plane* Film::find(std::string_view name) const {

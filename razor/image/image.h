@@ -1,7 +1,9 @@
-// A rendered picture: named planes of floats, rows from the top.
+// A rendered picture: named planes of floats or of whole numbers, rows from the top.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +17,16 @@ namespace razor {
 struct Plane {
     std::string name;
     std::vector<float> values; // width * height
+    /// Of planes whose numbers name things, as many, instead of `values`: floats tell apart no more than
+    /// 2^24.
+    std::vector<std::uint32_t> ids{};
+
+    /// The value, or the number that is a name; of no_id -1.
+    double at(std::size_t pixel) const;
 };
+
+/// Where there is nothing that has a name.
+inline constexpr std::uint32_t no_id = std::numeric_limits<std::uint32_t>::max();
 
 /// Where a film lies in the whole picture, and that one's size, in pixels from its top left corner.
 struct PictureWindow {
@@ -50,6 +61,8 @@ struct Film {
     }
     /// Adds a plane of zeros; the reference holds until the next plane is added.
     Plane& add(std::string_view name);
+    /// Likewise one of names, all no_id.
+    Plane& add_ids(std::string_view name);
     /// The plane of that name, or null.
     const Plane* find(std::string_view name) const;
     Plane* find(std::string_view name);

@@ -78,15 +78,6 @@ bool is_missing(const Layer& layer, float value) {
            (layer.missing == Missing::infinite && value == std::numeric_limits<float>::infinity());
 }
 
-float layer_value(const Layer& layer, double number) {
-    constexpr double most = 16777216;
-    if (layer.names && number > most)
-        throw UserError(fmt::format("layer {}: number {:.0f} is more than a picture's floats tell apart "
-                                    "({:.0f}); leave the layers `{}` out",
-                                    layer.name, number, most, group_name(layer.group)));
-    return static_cast<float>(number);
-}
-
 const Layer* find_layer(std::string_view name) {
     const auto found = std::find_if(std::begin(layers), std::end(layers),
                                     [&](const Layer& layer) { return layer.name == name; });

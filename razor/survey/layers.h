@@ -20,13 +20,13 @@ enum class LayerSource : std::uint8_t {
     tile    // the frame's own rays of each kind; one figure for all pixels of a screen tile
 };
 
-/// What a layer has where the ray hits nothing.
+/// What a layer has where the ray hits nothing; of names that is no_id.
 enum class Missing : std::uint8_t { never, minus_one, infinite };
 
 struct Layer {
     std::string_view name;
     LayerGroup group;
-    bool names; // its numbers name things: neighbouring ones have nothing in common
+    bool names; // its numbers name things (Plane::ids): neighbouring ones have nothing in common
     Missing missing;
     std::string_view meaning; // with the unit
 };
@@ -34,9 +34,6 @@ struct Layer {
 std::span<const Layer> all_layers();
 /// Whether it says that nothing is hit.
 bool is_missing(const Layer& layer, float value);
-/// The number as planes hold it. Throws UserError where it names something and is larger than those that a
-/// float tells apart (2^24).
-float layer_value(const Layer& layer, double number);
 /// The layer of that name, or null.
 const Layer* find_layer(std::string_view name);
 

@@ -35,14 +35,16 @@ class Surveyor {
 public:
     Surveyor(Frame& frame, const Crop& part, const SurveyOptions& options, Film& film)
         : frame_(frame), h_(frame.header()), part_(part), options_(options),
-          values_(all_layers().size(), nullptr) {
+          values_(all_layers().size(), nullptr), ids_(all_layers().size(), nullptr) {
         // All planes first: those that are there move when others are added.
         for (const Layer& layer : all_layers())
             if (options.layers.has(layer.group) && source_of(layer.group) != LayerSource::tile)
-                film.add(layer.name);
+                layer.names ? film.add_ids(layer.name) : film.add(layer.name);
         for (std::size_t i = 0; i < values_.size(); ++i)
-            if (Plane* plane = film.find(all_layers()[i].name))
-                values_[i] = plane->values.data();
+            if (Plane* plane = film.find(all_layers()[i].name)) {
+                values_[i] = all_layers()[i].names ? nullptr : plane->values.data();
+                ids_[i] = all_layers()[i].names ? plane->ids.data() : nullptr;
+            }
     }
 
     bool run() {
@@ -89,14 +91,20 @@ private:
 
     /// of(lane) to each pixel of the packet, if the layer is asked for.
     template <class Of> void put(std::string_view name, Of of) {
-        const Layer* layer = find_layer(name);
-        float* values = values_[static_cast<std::size_t>(layer - all_layers().data())];
+        float* values = values_[static_cast<std::size_t>(find_layer(name) - all_layers().data())];
         if (values == nullptr)
             return;
         for (std::size_t lane = 0; lane < pixels_.size(); ++lane) {
             if (pixels_[lane] >= 0)
-                values[pixels_[lane]] = layer_value(*layer, of(lane));
+                values[pixels_[lane]] = static_cast<float>(of(lane));
         }
+    }
+    /// Likewise a name; -1: there is none.
+    template <class Of> void put_id(std::string_view name, Of of) {
+        std::uint32_t* ids = ids_[static_cast<std::size_t>(find_layer(name) - all_layers().data())];
+        for (std::size_t lane = 0; ids != nullptr && lane < pixels_.size(); ++lane)
+            if (const std::int32_t id = of(lane); pixels_[lane] >= 0)
+                ids[pixels_[lane]] = id < 0 ? no_id : static_cast<std::uint32_t>(id);
     }
 
     void put_sights() {
@@ -115,15 +123,15 @@ private:
         }
         const double unit = frame_.unit();
         const auto is_hit = [this](std::size_t lane) { return packet_.patch[lane] >= 0; };
-        put("pick.mesh", [&](std::size_t i) { return sights[i].mesh; });
-        put("pick.instance", [&](std::size_t i) { return sights[i].instance; });
-        put("pick.face", [&](std::size_t i) { return sights[i].face; });
-        put("pick.part", [&](std::size_t i) { return sights[i].part; });
+        put_id("pick.mesh", [&](std::size_t i) { return sights[i].mesh; });
+        put_id("pick.instance", [&](std::size_t i) { return sights[i].instance; });
+        put_id("pick.face", [&](std::size_t i) { return sights[i].face; });
+        put_id("pick.part", [&](std::size_t i) { return sights[i].part; });
         put("pick.u", [&](std::size_t i) { return sights[i].u; });
         put("pick.v", [&](std::size_t i) { return sights[i].v; });
         put("pick.Z", [&](std::size_t i) { return is_hit(i) ? packet_.t[i] * unit : infinity; });
-        put("patch.id", [&](std::size_t i) { return sights[i].patch; });
-        put("patch.block", [&](std::size_t i) { return sights[i].block; });
+        put_id("patch.id", [&](std::size_t i) { return sights[i].patch; });
+        put_id("patch.block", [&](std::size_t i) { return sights[i].block; });
         put("lod.level",
             [&](std::size_t i) { return is_hit(i) ? sights[i].absolute + std::log2(unit) : infinity; });
         put("lod.depth", [&](std::size_t i) { return is_hit(i) ? sights[i].level : -1; });
@@ -155,7 +163,8 @@ private:
     const FrameHeader& h_;
     const Crop& part_;
     const SurveyOptions& options_;
-    std::vector<float*> values_; // of each layer; null: it is not asked for
+    std::vector<float*> values_;      // of each layer; null: it is not asked for
+    std::vector<std::uint32_t*> ids_; // likewise, of those of names
     Packet packet_;
     std::vector<std::ptrdiff_t> pixels_; // of its lanes; -1: not in the film
 };

@@ -35,8 +35,7 @@ struct SurveyOptions {
 
 /// Adds the layers to the film of the part of the picture that the frame's settings crop it to. For layers by
 /// tile the frame must have been made with FrameOptions::tile_costs and rendered since its last reset().
-/// False: cancelled, and the film is not whole. Throws UserError where a number is larger than those that a
-/// float tells apart (2^24).
+/// False: cancelled, and the film is not whole.
 bool survey(Frame& frame, const Crop& part, const SurveyOptions& options, Film& film);
 
 } // namespace razor

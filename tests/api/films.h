@@ -10,7 +10,7 @@
 namespace razor {
 
 inline bool same_bits(const Plane& a, const Plane& b) {
-    return a.values.size() == b.values.size() &&
+    return a.ids == b.ids && a.values.size() == b.values.size() &&
            std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
 }
 

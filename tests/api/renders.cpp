@@ -114,11 +114,11 @@ TEST(Renders, HaveLayersAsTheirFilesDo) {
     const Film without = other.render();
     int wheel = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        const float instance = film.find("pick.instance")->values[i],
-                    mesh = film.find("pick.mesh")->values[i];
-        const bool shows = instance >= 0 && instances.at(static_cast<std::size_t>(instance)) == "wheel";
-        EXPECT_EQ(shows, mesh >= 0 && meshes.at(static_cast<std::size_t>(mesh)) == "gear");
-        EXPECT_EQ(shows, without.find("pick.instance")->values[i] != instance) << i;
+        const std::uint32_t instance = film.find("pick.instance")->ids[i],
+                            mesh = film.find("pick.mesh")->ids[i];
+        const bool shows = instance != no_id && instances.at(static_cast<std::size_t>(instance)) == "wheel";
+        EXPECT_EQ(shows, mesh != no_id && meshes.at(static_cast<std::size_t>(mesh)) == "gear");
+        EXPECT_EQ(shows, without.find("pick.instance")->ids[i] != instance) << i;
         wheel += shows ? 1 : 0;
     }
     EXPECT_GT(wheel, 20);
@@ -132,7 +132,7 @@ TEST(Renders, HaveLayersAsTheirFilesDo) {
     const Film names = api::in_colours(film, "pick.instance");
     for (std::size_t i = 0; i < film.pixel_count(); ++i) { // black is nothing
         EXPECT_EQ(colours.find("G")->values[i] == 0, film.find(plane)->values[i] > 1e30F);
-        EXPECT_EQ(names.find("G")->values[i] == 0, film.find("pick.instance")->values[i] == -1);
+        EXPECT_EQ(names.find("G")->values[i] == 0, film.find("pick.instance")->ids[i] == no_id);
     }
     EXPECT_THROW(api::plane_name("layer", "lot"), UserError);
     EXPECT_THROW(api::in_colours(film, "kd.depth"), std::invalid_argument);

@@ -1,4 +1,5 @@
 // razor render --layers and --false-colour: what is in files, and mistakes.
+#include "razor/survey/layers.h"
 #include "tests/program/pictures.h"
 #include "tests/program/run.h"
 
@@ -69,10 +70,48 @@ TEST_F(Layers, AreInTheFileBesideAllElse) {
         if (plain.find(plane.name) == nullptr)
             groups.insert(plane.name.substr(0, plane.name.find('.')));
     EXPECT_EQ(groups, (std::set<std::string>{"pick", "shading", "steps"}));
-    std::set<float> meshes;
-    for (const float mesh : more.find("pick.mesh")->values)
-        meshes.insert(mesh);
-    EXPECT_EQ(meshes, (std::set<float>{-1, 0, 1}));
+    const std::vector<std::uint32_t>& meshes = more.find("pick.mesh")->ids;
+    EXPECT_EQ(std::set(meshes.begin(), meshes.end()), (std::set<std::uint32_t>{0, 1, no_id}));
+    for (const Layer& layer : all_layers())
+        if (layer.group == LayerGroup::pick)
+            EXPECT_EQ(more.find(layer.name)->ids.empty(), !layer.names) << layer.name;
+}
+
+/// Larger names than floats tell apart, by all that reads layers.
+TEST_F(Layers, NamesAreExactInFiles) {
+    const std::vector<std::uint32_t> ids{16777216, 16777217, 16777219, 4294967294, 0, no_id};
+    const auto write = [&](const char* name, std::uint32_t first) {
+        Film film(3, 2);
+        for (const char* const plane : {"R", "G", "B"})
+            film.add(plane).values = {1, 2, 3, 4, 5, 6};
+        film.add_ids("pick.face").ids = ids;
+        film.add("pick.u").values = {0.25F, 0.5F, -1, 1, 0, -1};
+        film.find("pick.face")->ids[0] = first;
+        write_exr(folder_ / name, film);
+        return film;
+    };
+    const Film film = write("a.exr", 16777216);
+    write("b.exr", 16777217);
+    const Film again = read_exr(folder_ / "a.exr");
+    EXPECT_EQ(again.find("pick.face")->ids, ids);
+    EXPECT_TRUE(again.find("pick.face")->values.empty());
+    EXPECT_EQ(again.find("pick.u")->values, film.find("pick.u")->values);
+    EXPECT_EQ(again.find("pick.face")->at(3), 4294967294.0);
+    EXPECT_EQ(again.find("pick.face")->at(5), -1);
+    const auto compare = [&](const std::string& arguments) {
+        return run(quoted_argument(RAZOR_PROGRAM) + " compare " + arguments, folder_.path());
+    };
+    EXPECT_EQ(compare("--identical a.exr a.exr").code, 0);
+    EXPECT_EQ(compare("--identical a.exr b.exr").code, 1) << "floats of both are the same";
+    EXPECT_EQ(compare("a.exr b.exr -o d.exr").code, 0);
+    EXPECT_EQ(read_exr(folder_ / "d.exr").find("pick.face")->values[0], -1);
+    const Outcome python = run("/usr/bin/python3 -c \"import sys; sys.path.insert(0, '" RAZOR_SOURCE_DIR
+                               "/analysis/sampling'); import exr; w, h, p = exr.read('a.exr'); "
+                               "print(w, h, *p['pick.face'], *p['pick.u'])\"",
+                               folder_.path());
+    EXPECT_EQ(python.out,
+              "3 2 16777216 16777217 16777219 4294967294 0 4294967295 0.25 0.5 -1.0 1.0 0.0 -1.0\n")
+        << python.err;
 }
 
 TEST_F(Layers, OfASequenceAreThoseOfItsFrames) {

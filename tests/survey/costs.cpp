@@ -129,8 +129,10 @@ TEST(Costs, OfATileInPlaceOfAWaitAreItsOwn) {
 }
 
 void expect_equal_planes(const Film& a, const Film& b) {
-    for (const Plane& plane : a.planes)
+    for (const Plane& plane : a.planes) {
         EXPECT_EQ(plane.values, b.find(plane.name)->values) << plane.name;
+        EXPECT_EQ(plane.ids, b.find(plane.name)->ids) << plane.name;
+    }
 }
 
 LayerSet all_but_time() {
@@ -170,8 +172,8 @@ TEST(Survey, OfAPartIsAPartOfTheWholes) {
         for (const Plane& plane : whole.planes)
             for (int y = 0; y < crop.height; ++y)
                 for (int x = 0; x < crop.width; ++x)
-                    ASSERT_EQ(plane.values[static_cast<std::size_t>((crop.y + y) * 45 + crop.x + x)],
-                              part.find(plane.name)->values[static_cast<std::size_t>(y * crop.width + x)])
+                    ASSERT_EQ(plane.at(static_cast<std::size_t>((crop.y + y) * 45 + crop.x + x)),
+                              part.find(plane.name)->at(static_cast<std::size_t>(y * crop.width + x)))
                         << plane.name << ' ' << x << ' ' << y;
     }
 }

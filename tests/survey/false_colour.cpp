@@ -57,6 +57,19 @@ TEST(FalseColour, RangeLeavesOutWhatIsMissing) {
     EXPECT_EQ(range_of({"x", {-1, infinity}}, minus_one).high, 1);
 }
 
+TEST(FalseColour, NamesBeyondFloatsHaveColoursOfTheirOwn) {
+    Film film(3, 1);
+    film.add_ids("x").ids = {16777216, 16777217, no_id};
+    const auto never = [](float) { return false; };
+    EXPECT_EQ(range_of(film.planes[0], never).high, 16777217);
+    const Film shown = false_coloured(film, film.planes[0], true, {}, never);
+    const auto colour = [&](std::size_t i) {
+        return std::tuple(shown.planes[0].values[i], shown.planes[1].values[i], shown.planes[2].values[i]);
+    };
+    EXPECT_NE(colour(0), colour(1));
+    EXPECT_EQ(colour(2), std::tuple(0.0F, 0.0F, 0.0F));
+}
+
 TEST(FalseColour, FilmShowsItsColours) {
     Film film(6, 1);
     film.add("x").values = {2, 6, 4, -1, infinity, 100};

@@ -51,7 +51,7 @@ TEST(KdLeaf, IsOneOfTheTree) {
                 &mesh = *film.find("pick.mesh");
     float most = -1;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        if (mesh.values[i] < 0) {
+        if (mesh.at(i) < 0) {
             EXPECT_EQ(depth.values[i], -1);
             continue;
         }

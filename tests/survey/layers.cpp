@@ -59,14 +59,6 @@ TEST(Layers, RefuseOthersInOneLine) {
     EXPECT_THROW(parse_layers("--layers", "bytes", false), UserError);
 }
 
-TEST(Layers, RefuseNamesThatFloatsDoNotTellApart) {
-    const Layer &face = *find_layer("pick.face"), &steps = *find_layer("steps.nodes");
-    EXPECT_EQ(layer_value(face, 16777215), 16777215);
-    EXPECT_EQ(layer_value(face, -1), -1);
-    EXPECT_THROW(layer_value(face, 16777217), UserError);
-    EXPECT_EQ(layer_value(steps, 16777218), 16777218) << "no name";
-}
-
 TEST(Layers, SayWhereNothingIsHit) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     EXPECT_TRUE(is_missing(*find_layer("pick.face"), -1));

@@ -44,7 +44,7 @@ Tally expect_levels(const Scene& scene) {
         for (int x = 0; x < scene.settings.width; ++x) {
             SCOPED_TRACE(testing::Message() << x << ' ' << y);
             const double distance = at("pick.Z", x, y);
-            const float level = at("lod.level", x, y), depth = at("lod.depth", x, y);
+            const double level = at("lod.level", x, y), depth = at("lod.depth", x, y);
             if (!std::isfinite(distance)) {
                 EXPECT_EQ(level, std::numeric_limits<float>::infinity());
                 EXPECT_EQ(depth, -1);
@@ -61,7 +61,7 @@ Tally expect_levels(const Scene& scene) {
             }
             ++tally.hits;
             tally.as_asked += level == std::floor(asked) ? 1 : 0;
-            tally.levels.insert(level);
+            tally.levels.insert(static_cast<float>(level));
         }
     return tally;
 }
@@ -132,7 +132,7 @@ TEST(Levels, AreInWorldUnits) {
     scene.camera.target *= factor;
     scene.lights.clear();
     const Film large = surveyed(scene, layers({LayerGroup::lod, LayerGroup::pick})).film;
-    const auto value = [](const Film& f, const char* name, std::size_t i) { return f.find(name)->values[i]; };
+    const auto value = [](const Film& f, const char* name, std::size_t i) { return f.find(name)->at(i); };
     std::size_t hits = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (!std::isfinite(value(film, "pick.Z", i)) || !std::isfinite(value(large, "pick.Z", i)))

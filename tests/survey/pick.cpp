@@ -251,11 +251,11 @@ TEST(Pick, LooksThroughWhatIsCutOut) {
     board.material = 1;
     scene.meshes.push_back(board);
     scene.textures = {nothing()};
-    EXPECT_EQ(surveyed(scene, layers({LayerGroup::pick})).film.find("pick.face")->values,
-              without.find("pick.face")->values);
+    EXPECT_EQ(surveyed(scene, layers({LayerGroup::pick})).film.find("pick.face")->ids,
+              without.find("pick.face")->ids);
     scene.materials[1].alpha_cutoff = 0; // opaque
     const Film opaque = surveyed(scene, layers({LayerGroup::pick})).film;
-    for (const float mesh : opaque.find("pick.mesh")->values)
+    for (const std::uint32_t mesh : opaque.find("pick.mesh")->ids)
         EXPECT_EQ(mesh, 1);
 }
 

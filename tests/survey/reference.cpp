@@ -21,10 +21,10 @@ RenderResult surveyed(const Scene& scene, const LayerSet& layers, RenderOptions 
     return render_native(scene, options);
 }
 
-float Pixels::operator()(std::string_view plane, int x, int y) const {
-    return film_.find(plane)->values.at(static_cast<std::size_t>(y - part_.y) *
-                                            static_cast<std::size_t>(part_.width) +
-                                        static_cast<std::size_t>(x - part_.x));
+double Pixels::operator()(std::string_view plane, int x, int y) const {
+    return film_.find(plane)->at(static_cast<std::size_t>(y - part_.y) *
+                                     static_cast<std::size_t>(part_.width) +
+                                 static_cast<std::size_t>(x - part_.x));
 }
 
 namespace {

@@ -21,7 +21,7 @@ RenderResult surveyed(const Scene& scene, const LayerSet& layers, RenderOptions 
 class Pixels {
 public:
     Pixels(const Film& film, const Settings& settings) : film_(film), part_(shown_part(settings)) {}
-    float operator()(std::string_view plane, int x, int y) const;
+    double operator()(std::string_view plane, int x, int y) const;
 
 private:
     const Film& film_;

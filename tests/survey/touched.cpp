@@ -33,7 +33,7 @@ TEST(Touched, AreWholeLinesOfKindsOfMemory) {
     const Scene scene = small_scene();
     const LayerSet asked = layers({LayerGroup::bytes, LayerGroup::steps, LayerGroup::pick});
     const Film film = surveyed(scene, asked, measured()).film;
-    const auto value = [&](const char* name, std::size_t i) { return film.find(name)->values[i]; };
+    const auto value = [&](const char* name, std::size_t i) { return film.find(name)->at(i); };
     bool grids = false;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         const double lines = value("bytes.touched", i) * 32 / 64; // of a packet of 32 rays
@@ -108,8 +108,10 @@ TEST(Touched, PacketsAreTheNativeOnes) {
         return film;
     };
     const Film a = planes(native), b = planes(simulated::kernels);
-    for (const Plane& plane : a.planes)
+    for (const Plane& plane : a.planes) {
         EXPECT_EQ(plane.values, b.find(plane.name)->values) << plane.name;
+        EXPECT_EQ(plane.ids, b.find(plane.name)->ids) << plane.name;
+    }
 }
 
 } // namespace
