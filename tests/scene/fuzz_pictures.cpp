@@ -3,6 +3,7 @@
 #include "razor/scene/error.h"
 #include "razor/scene/textures/picture.h"
 #include "tests/scene/picture_writer.h"
+#include "tests/scene/radiance_writer.h"
 
 #include <array>
 #include <cstdlib>
@@ -16,7 +17,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-const std::array<std::string, 7> seeds{
+const std::array<std::string, 9> seeds{
     razor::png_of(5, 3, {}, Bytes(45, 99)),
     razor::png_of(9, 9, {.colour = PNG_COLOR_TYPE_RGB_ALPHA, .interlaced = true}, Bytes(324, 7)),
     razor::png_of(8, 2, {.depth = 2, .colour = PNG_COLOR_TYPE_PALETTE, .palette = {{1, 2, 3}, {4, 5, 6}}},
@@ -25,6 +26,8 @@ const std::array<std::string, 7> seeds{
     razor::jpeg_of(16, 8, 3, Bytes(384, 50), true),
     razor::jpeg_of(8, 8, 1, Bytes(64, 50)),
     razor::exr_of(4, 3, {{"R", std::vector<float>(12, 1)}, {"A", std::vector<float>(12, 0.5F)}}),
+    razor::radiance_of(9, 3, razor::ramp_of_pixels(27), razor::RadianceRuns::each),
+    razor::radiance_of(5, 2, razor::ramp_of_pixels(10), razor::RadianceRuns::old),
 };
 
 void require(bool condition) {

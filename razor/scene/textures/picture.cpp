@@ -25,8 +25,6 @@ constexpr std::pair<std::string_view, std::string_view> not_read[] = {
     {"\xabKTX", "a KTX texture"},
     {"II*", "a TIFF picture"},
     {"MM", "a TIFF picture"},
-    {"#?RADIANCE", "a Radiance picture"},
-    {"#?RGBE", "a Radiance picture"},
     {"8BPS", "a Photoshop picture"},
     {"version https://git-lfs", "a pointer to a file in Git LFS, not the file"},
 };
@@ -55,15 +53,17 @@ TexturePyramid decode_picture(std::string_view bytes, std::string_view name, boo
             return decode_jpeg(bytes, name, linear, kind);
         if (bytes.starts_with(exr_magic))
             return decode_exr(bytes, name, kind);
+        if (bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE"))
+            return decode_radiance(bytes, name, kind);
     } catch (const std::bad_alloc&) {
         throw UserError(
             fmt::format("{}: the picture does not fit in memory; give a smaller one", printable(name, 1000)));
     }
     for (const auto& [magic, what] : not_read)
         if (bytes.starts_with(magic))
-            throw UserError(
-                fmt::format("{}: is {}; convert it to PNG, JPEG or OpenEXR", printable(name, 1000), what));
-    throw UserError(fmt::format("{}: is {}; give PNG, JPEG or OpenEXR", printable(name, 1000),
+            throw UserError(fmt::format("{}: is {}; convert it to PNG, JPEG, OpenEXR or Radiance",
+                                        printable(name, 1000), what));
+    throw UserError(fmt::format("{}: is {}; give PNG, JPEG, OpenEXR or Radiance", printable(name, 1000),
                                 bytes.empty() ? "empty" : "no picture that is read"));
 }
 
