@@ -28,16 +28,21 @@ int InfoCommand::run() const {
     const SceneDescription moving = scene_.describe_moving(), description = pose_of_frame(moving, frame);
     const std::vector<GltfContents> files = contents_of(moving);
     const Scene scene = build_scene(description);
+    const std::vector<std::string> notes = notes_of(moving);
     const SceneUse use = use_of(scene, mesh_bounds(description));
     const OutputGuard guard;
     if (!json_.empty()) {
         nlohmann::ordered_json report{{"program", "razor"}, {"version", version()}};
         report.update(json_of(scene, use));
         report["gltf_files"] = json_of(files);
+        report["notes"] = notes;
         // Names need not be UTF-8.
         write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
     fmt::print("{}{}", text_of(scene, use), text_of(files));
+    for (const std::string& note : notes) {
+        fmt::print("not read: {}\n", note);
+    }
     return 0;
 }
 

@@ -191,7 +191,13 @@ int RenderCommand::run() const {
         fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
         return 0;
     }
-    api::Scene scene(sequence ? scene_.describe_moving() : scene_.describe());
+    const SceneDescription description = sequence ? scene_.describe_moving() : scene_.describe();
+    for (const std::string& note : notes_of(description)) {
+        if (!quiet_) {
+            fmt::print(stderr, "razor: {}\n", note);
+        }
+    }
+    api::Scene scene(description);
     if (layers_.shows_samples() && scene.settings().noise_threshold <= 0) {
         throw UserError("--false-colour samples is of samples taken by noise; add --noise-threshold X");
     }

@@ -282,6 +282,21 @@ Mesh build_mesh(const SceneDescription& description, std::size_t number) {
     return build_mesh(description, number, OwnMaterials(description));
 }
 
+std::vector<std::string> notes_of(const SceneDescription& description) {
+    std::vector<std::string> notes;
+    for (const MeshDescription& mesh : description.meshes) {
+        if (!OwnMaterials::uses_own(mesh)) {
+            continue;
+        }
+        for (const std::string& note : mesh.source->own_materials->notes) {
+            if (std::find(notes.begin(), notes.end(), note) == notes.end()) {
+                notes.push_back(note);
+            }
+        }
+    }
+    return notes;
+}
+
 Scene build_scene(const SceneDescription& description) {
     Scene scene;
     scene.name = description.name;

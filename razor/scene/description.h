@@ -112,6 +112,9 @@ Mesh build_mesh(const SceneDescription& description, std::size_t mesh);
 /// What keys say is left out: see animation/pose.h.
 Scene build_scene(const SceneDescription& description);
 
+/// What of its models' files was not read though it would be seen, a line each.
+std::vector<std::string> notes_of(const SceneDescription& description);
+
 /// A complete scene file: loading it gives the same scene.
 std::string to_toml(const SceneDescription& description);
 

@@ -55,6 +55,8 @@ struct Corner {
 struct ModelMaterials {
     std::vector<Material> materials;
     std::vector<Texture> textures;
+    /// What of their files was not read though it would be seen: a line each, for users.
+    std::vector<std::string> notes{};
 };
 
 /// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face

@@ -47,8 +47,7 @@ protected:
 TEST_F(Mtl, MattePhongGlassMirror) {
     Material want{.name = "m", .albedo = {0.5F, 0.25F, 0.125F}};
     EXPECT_EQ(material("Kd 0.5 0.25 0.125"), want);
-    EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKa 1 1 1\nTf 1 1 1\nsharpness 60\nbump x.png\nmap_Bump y.png\n"),
-              want);
+    EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKa 1 1 1\nTf 1 1 1\nsharpness 60\nmap_Ks x.png\n"), want);
     EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKs 0 0 0\nNi 1.0\nd 1.0\nillum 2"), want);
     EXPECT_EQ(material("Kd 0.5 0.25 0.125\nKs 1 1 1\nillum 2"), want) << "no exponent";
     want.specular = 1;
@@ -110,7 +109,81 @@ TEST_F(Mtl, MapsWithOptionsAndBlanksInNames) {
     EXPECT_EQ(m.alpha_cutoff, 0.5F);
 }
 
+/// "bump" multiplies heights by -bm, -mm replaces v by base + gain v ("MTL material format").
+TEST_F(Mtl, BumpsAndDisplacementAreHeights) {
+    folder_.file("h.png", png_of(2, 1, {.colour = PNG_COLOR_TYPE_GRAY}, {51, 204}));
+    for (const char* const keyword : {"bump", "map_bump", "map_Bump"}) {
+        const ModelMaterials own = read(std::string("newmtl m\n") + keyword + " -s 2 3 -bm -0.25 h.png\n");
+        const Material& m = own.materials[0];
+        EXPECT_EQ(m.bump_map, (TextureMap{.texture = 0, .scale = {2, 3}})) << keyword;
+        EXPECT_EQ(m.bump, -0.25F);
+        EXPECT_EQ(m.normal_map.texture, -1);
+        EXPECT_TRUE(own.textures[0].linear);
+        EXPECT_EQ(own.textures[0].heights, nullptr) << "nothing is displaced";
+        EXPECT_TRUE(own.notes.empty());
+    }
+    EXPECT_EQ(material("bump h.png").bump, 1);
+    EXPECT_EQ(material("bump -bm 0.5 -mm 3 0.25 h.png").bump, 0.125F) << "slopes do not know a base";
+    EXPECT_EQ(material("bump -bm 0 h.png").bump_map.texture, -1);
+
+    const ModelMaterials own = read("newmtl m\ndisp -mm -0.25 0.5 -clamp on -o 0.5 0 h.png\nmap_Kd h.png\n");
+    const Material& m = own.materials[0];
+    ASSERT_TRUE(is_displaced(m));
+    EXPECT_EQ(m.displacement_map.offset, glm::vec2(0.5F, 0));
+    const Texture& heights = own.textures[static_cast<std::size_t>(m.displacement_map.texture)];
+    EXPECT_EQ(heights.wrap_u, Wrap::clamp);
+    ASSERT_NE(heights.heights, nullptr);
+    const auto height = [&](double v) {
+        return m.displacement_scale * (v - double{m.displacement_midlevel});
+    };
+    EXPECT_NEAR(height(heights.heights->least), -0.25 + 0.5 * 0.2, 1e-6);
+    EXPECT_NEAR(height(heights.heights->most), -0.25 + 0.5 * 0.8, 1e-6);
+    EXPECT_EQ(material("disp h.png").displacement_scale, 1);
+    EXPECT_EQ(material("disp h.png").displacement_midlevel, 0);
+    EXPECT_FALSE(is_displaced(material("disp -mm 1 0 h.png")));
+}
+
+TEST_F(Mtl, NormalMapsThatAreCalledBumpsAreThat) {
+    folder_.file("m.png", png_of(2, 1, {}, {128, 128, 255, 140, 110, 240}));
+    const Material m = material("map_Bump -bm 0.5 m.png");
+    EXPECT_EQ(m.bump_map.texture, -1);
+    EXPECT_EQ(m.normal_map.texture, 0);
+    EXPECT_EQ(m.normal_scale, 0.5F);
+    EXPECT_EQ(material("bump a b.png").normal_map.texture, -1) << "orange";
+}
+
+TEST_F(Mtl, OptionsThatArePassedOverAreNoted) {
+    folder_.file("h.png", png_of(1, 1, {}, {51, 51, 51}));
+    const auto notes = [&](const std::string& fields) { return read("newmtl m\n" + fields).notes; };
+    EXPECT_TRUE(notes("map_Kd -blendu off -blendv on -boost 2 -cc on -texres 64 -t 0 0 0 -mm 0 1 h.png\n"
+                      "bump -imfchan l h.png\ndisp -imfchan r h.png\nmap_d -imfchan m h.png\n")
+                    .empty());
+    EXPECT_EQ(
+        notes("map_Kd -t 0.5 0.5 -mm 0 2 h.png\nbump -imfchan r -fancy 7 h.png\ndisp -bm 2 h.png\n"),
+        (std::vector<std::string>{
+            (folder_ / "l.mtl").string() +
+            ": options of maps that are passed over: -t (line 2), -mm (line 2), -imfchan (line 3), -fancy "
+            "(line 3) and 1 more"}));
+    EXPECT_TRUE(read("newmtl other\nmap_Kd -fancy 7 h.png\nnewmtl m\n").notes.empty()) << "not used";
+    EXPECT_EQ(material("bump -imfchan r -fancy 7 h.png").bump_map.texture, 0);
+    folder_.file("l.mtl", "newmtl m\nmap_Kd -fancy 7 h.png\n");
+    folder_.file("o.obj", points + "mtllib l.mtl\nusemtl m\nf 1 2 3\n");
+    const auto of = [&](const std::string& mesh) {
+        return notes_of(parse_scene_file("[[material]]\nname = \"x\"\n" + mesh, "s.toml", folder_.path()));
+    };
+    EXPECT_EQ(of("[[mesh]]\nfile = \"o.obj\"\n[[mesh]]\nfile = \"o.obj\"\nname = \"b\"\n").size(), 1U);
+    EXPECT_TRUE(of("[[mesh]]\nfile = \"o.obj\"\nmaterial = \"x\"\n").empty());
+}
+
 TEST_F(Mtl, MistakesNameTheLine) {
+    folder_.file("h.png", png_of(1, 1, {}, {51, 51, 51}));
+    EXPECT_NE(message("bump -bm x h.png").find("l.mtl:2: -bm is 'x', not a number; mend it"),
+              std::string::npos);
+    EXPECT_NE(message("Kd 1\ndisp -mm 0 h.png").find("l.mtl:3: -mm is 'h.png', not a number; mend it"),
+              std::string::npos);
+    EXPECT_NE(message("disp none.png").find("l.mtl:2: the texture 'none.png' is not there"),
+              std::string::npos);
+
     EXPECT_NE(message("Kd 1 x 1").find("l.mtl:2: Kd is 'x', not a number; mend it"), std::string::npos);
     EXPECT_NE(message("Ns").find("l.mtl:2: Ns is missing"), std::string::npos);
     EXPECT_NE(message("Kd 1 1 1\nmap_Kd none.png")

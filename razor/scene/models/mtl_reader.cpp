@@ -1,27 +1,22 @@
 #include "razor/scene/models/mtl_reader.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/models/mtl_map.h"
 #include "razor/scene/models/obj_cursor.h"
+#include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
+#include "razor/scene/textures/shared_exponent.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 namespace razor {
 namespace {
-
-/// A map statement: options, then a file's name, which may hold blanks.
-struct MapStatement {
-    std::string file;
-    std::int64_t line = 0;
-    glm::vec2 scale{1, 1}, offset{0, 0};
-    bool clamp = false;
-};
 
 /// What a library says of one material.
 struct Statement {
@@ -29,65 +24,11 @@ struct Statement {
     std::optional<glm::vec3> kd, ks, ke;
     std::optional<double> ns, ni, d, pr, pm, pc, pcr, ps;
     std::optional<std::int64_t> illum;
-    std::optional<MapStatement> map_kd, map_ke, map_pr, map_pm, map_d, norm;
+    std::optional<MtlMap> map_kd, map_ke, map_pr, map_pm, map_d, norm, bump, disp;
 };
 
 bool is_black(const glm::vec3& colour) {
     return colour == glm::vec3(0);
-}
-
-std::optional<double> to_number(std::string_view word) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || stop != word.data() + word.size() || !std::isfinite(value))
-        return std::nullopt;
-    return value;
-}
-
-/// Takes the first word off.
-std::string_view take_word(std::string_view& text) {
-    const std::string_view word = text.substr(0, text.find_first_of(" \t"));
-    text.remove_prefix(word.size());
-    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-    return word;
-}
-
-/// Up to three numbers, of which the first two count.
-void take_numbers(std::string_view& text, glm::vec2& values) {
-    for (int i = 0; i < 3; ++i) {
-        std::string_view behind = text;
-        const std::optional<double> number = to_number(take_word(behind));
-        if (!number || behind.empty())
-            return;
-        if (i < 2)
-            values[i] = static_cast<float>(*number);
-        text = behind;
-    }
-}
-
-MapStatement parse_map(std::string_view text, std::int64_t line) {
-    MapStatement map;
-    map.line = line;
-    while (text.starts_with('-')) {
-        const std::string_view option = take_word(text);
-        if (option == "-s") {
-            take_numbers(text, map.scale);
-        } else if (option == "-o") {
-            take_numbers(text, map.offset);
-        } else if (option == "-clamp") {
-            map.clamp = take_word(text) == "on";
-        } else if (option == "-t") {
-            glm::vec2 turbulence{};
-            take_numbers(text, turbulence);
-        } else if (option == "-mm") {
-            take_word(text);
-            take_word(text);
-        } else { // of one value each: -blendu, -blendv, -bm, -boost, -cc, -imfchan, -texres, -type
-            take_word(text);
-        }
-    }
-    map.file = text;
-    return map;
 }
 
 float part(double value) {
@@ -120,9 +61,13 @@ private:
         };
         const std::pair<std::string_view, std::optional<glm::vec3>*> colours[] = {
             {"Kd", &s.kd}, {"Ks", &s.ks}, {"Ke", &s.ke}};
-        const std::pair<std::string_view, std::optional<MapStatement>*> maps[] = {
-            {"map_Kd", &s.map_kd}, {"map_Ke", &s.map_ke}, {"map_Pr", &s.map_pr},
-            {"map_Pm", &s.map_pm}, {"map_d", &s.map_d},   {"norm", &s.norm},
+        using Use = MtlMapUse;
+        const std::tuple<std::string_view, Use, std::optional<MtlMap>*> maps[] = {
+            {"map_Kd", Use::colour, &s.map_kd}, {"map_Ke", Use::colour, &s.map_ke},
+            {"map_Pr", Use::scalar, &s.map_pr}, {"map_Pm", Use::scalar, &s.map_pm},
+            {"map_d", Use::scalar, &s.map_d},   {"norm", Use::colour, &s.norm},
+            {"bump", Use::bump, &s.bump},       {"map_bump", Use::bump, &s.bump},
+            {"map_Bump", Use::bump, &s.bump},   {"disp", Use::displacement, &s.disp},
         };
         for (const auto& [name, value] : numbers)
             if (name == keyword)
@@ -130,9 +75,9 @@ private:
         for (const auto& [name, value] : colours)
             if (name == keyword)
                 *value = read_colour(keyword);
-        for (const auto& [name, value] : maps)
+        for (const auto& [name, use, value] : maps)
             if (name == keyword)
-                read_map(*value);
+                read_map(use, *value);
         if (keyword == "Tr")
             s.d = 1 - read_number(keyword);
         if (keyword == "illum")
@@ -157,11 +102,16 @@ private:
         return glm::clamp(colour, 0.0F, 1e9F);
     }
 
-    void read_map(std::optional<MapStatement>& map) {
+    void read_map(MtlMapUse use, std::optional<MtlMap>& map) {
         const std::int64_t line = cursor_.line();
-        MapStatement stated = parse_map(cursor_.rest(), line);
-        if (!stated.file.empty())
-            map = std::move(stated);
+        const std::string_view text = cursor_.rest();
+        try {
+            MtlMap stated = parse_mtl_map(text, use, line);
+            if (!stated.file.empty())
+                map = std::move(stated);
+        } catch (const UserError& error) {
+            cursor_.fail_at(line, error.what());
+        }
     }
 
     ObjCursor cursor_;
@@ -190,6 +140,17 @@ public:
         m.sheen = glm::vec3(part(s.ps.value_or(0)));
         set_maps(s, m);
         return m;
+    }
+
+    /// After all: which options were not read, or nothing.
+    std::string note() const {
+        constexpr std::size_t shown = 4;
+        std::string text;
+        for (std::size_t i = 0; i < std::min(passed_over_.size(), shown); ++i)
+            text += (i > 0 ? ", " : "") + passed_over_[i];
+        if (passed_over_.size() > shown)
+            text += fmt::format(" and {} more", passed_over_.size() - shown);
+        return text;
     }
 
 private:
@@ -240,11 +201,48 @@ private:
             m.roughness = s.pr && *s.pr > 0 ? m.roughness : 1;
             m.specular = 1;
         }
+        if (s.bump)
+            set_bump(*s.bump, m);
         if (s.norm)
             m.normal_map = use(*s.norm, true);
+        if (s.disp && s.disp->gain != 0) {
+            m.displacement_map = use(*s.disp, true);
+            m.displacement_scale = static_cast<float>(s.disp->gain);
+            m.displacement_midlevel = static_cast<float>(-s.disp->base / s.disp->gain);
+            read_heights(*s.disp, result_.textures[static_cast<std::size_t>(m.displacement_map.texture)]);
+        }
     }
 
-    TextureMap use(const MapStatement& map, bool linear) {
+    /// Normals that somebody wrote as a bump map have heights of nothing.
+    void set_bump(const MtlMap& map, Material& m) {
+        const TextureMap used = use(map, true);
+        const TexturePyramid& pyramid = *result_.textures[static_cast<std::size_t>(used.texture)].pyramid;
+        const double height = map.bump * map.gain;
+        if (holds_normals(pyramid)) {
+            m.normal_map = used;
+            m.normal_scale =
+                static_cast<float>(std::clamp(height, normal_scale_range.least, normal_scale_range.most));
+        } else if (height != 0) {
+            m.bump_map = used;
+            m.bump = static_cast<float>(height);
+        }
+    }
+    static bool holds_normals(const TexturePyramid& pyramid) {
+        const glm::vec3 mean = unpack_shared_exponent(pyramid.levels.back().texels.front());
+        return std::abs(mean.x - 0.5F) < 0.1F && std::abs(mean.y - 0.5F) < 0.1F && mean.z > 0.75F;
+    }
+
+    void read_heights(const MtlMap& map, Texture& texture) {
+        try {
+            texture.heights = cache_.read(texture.file, true, Texels::heights);
+        } catch (const UserError& error) {
+            library_.fail_at(map.line, error.what());
+        }
+    }
+
+    TextureMap use(const MtlMap& map, bool linear) {
+        for (const std::string& option : map.passed_over)
+            passed_over_.push_back(fmt::format("{} (line {})", printable(option), map.line));
         Texture texture;
         const std::filesystem::path file = find_beside(folder_, map.file);
         if (file.empty())
@@ -274,6 +272,7 @@ private:
     const std::filesystem::path& folder_;
     TextureCache& cache_;
     ModelMaterials& result_;
+    std::vector<std::string> passed_over_;
 };
 
 } // namespace
@@ -293,6 +292,9 @@ void MtlReader::read(const std::filesystem::path& file) {
             std::none_of(result_.materials.begin(), result_.materials.end(), is_known))
             result_.materials.push_back(converter.convert(statement));
     }
+    if (const std::string passed_over = converter.note(); !passed_over.empty())
+        result_.notes.push_back(fmt::format("{}: options of maps that are passed over: {}",
+                                            printable(file.string(), 1000), passed_over));
 }
 
 std::filesystem::path find_beside(const std::filesystem::path& folder, std::string_view name) {
