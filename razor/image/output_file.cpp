@@ -59,7 +59,10 @@ std::uint64_t OutputFile::position() {
 }
 
 void OutputFile::commit() {
-    if (std::fflush(file_) != 0) {
+    if (!failure_.empty()) {
+        throw UserError(failure_);
+    }
+    if (std::fflush(file_) != 0 || std::ferror(file_) != 0) {
         fail("cannot be written");
     }
     const int closed = std::fclose(file_);
@@ -73,9 +76,10 @@ void OutputFile::commit() {
     }
 }
 
-void OutputFile::fail(std::string_view action) const {
-    throw UserError(
-        fmt::format("{}: {} ({}); choose another place", printable(path_.string(), 1000), action, reason()));
+void OutputFile::fail(std::string_view action) {
+    failure_ =
+        fmt::format("{}: {} ({}); choose another place", printable(path_.string(), 1000), action, reason());
+    throw UserError(failure_);
 }
 
 void check_writable(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace razor {
@@ -20,12 +21,15 @@ public:
     void write(const void* bytes, std::size_t count);
     void seek(std::uint64_t position);
     std::uint64_t position();
-    /// Closes the file and gives it its name. Throws UserError, for example where the disk is full.
+    /// Closes the file and gives it its name. Throws UserError, for example where the disk is full, or was
+    /// when something before failed.
     void commit();
 
 private:
-    [[noreturn]] void fail(std::string_view action) const;
+    [[noreturn]] void fail(std::string_view action);
 
+    /// Of the first that failed: libraries that write in destructors may have passed over its exception.
+    std::string failure_;
     std::filesystem::path path_, temporary_;
     std::FILE* file_ = nullptr;
 };

@@ -83,7 +83,7 @@ void write_png(const std::filesystem::path& path, const Film& film, const ImageA
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         glm::vec3 light(0);
         for (std::size_t c = 0; c < 3; ++c) {
-            light[static_cast<int>(c)] = planes[c] != nullptr ? planes[c]->values[i] : 0.0F;
+            light[static_cast<int>(c)] = planes[c] != nullptr ? static_cast<float>(planes[c]->at(i)) : 0.0F;
         }
         const glm::vec3 colour = display_colour(light, tone);
         for (std::size_t c = 0; c < 3; ++c) {
