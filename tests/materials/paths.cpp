@@ -1,4 +1,5 @@
 // Whole pictures of small rooms against paths that are followed one by one in double.
+#include "tests/displacement/heights.h"
 #include "tests/kernels/targets.h"
 #include "tests/materials/floor.h"
 #include "tests/materials/plain_paths.h"
@@ -78,6 +79,18 @@ void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* a
             EXPECT_LT(std::abs(c.relative[k]), 0.02) << scene.name;
         EXPECT_LT(c.noise, 0.007) << "noise hides mistakes: " << scene.name;
     }
+}
+
+/// That the comparison would see it if the picture were that of the other scene: else it says nothing.
+void expect_other_picture(const Scene& scene, const Scene& other, int samples_a_pixel) {
+    const std::vector<BlockSums> a = plain_picture(scene, side, samples_a_pixel),
+                                 b = plain_picture(other, side, samples_a_pixel);
+    double worst = 0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        for (int c = 0; c < 3; ++c)
+            worst = std::max(worst, std::abs(a[k].mean()[c] - b[k].mean()[c]) /
+                                        std::sqrt(std::max(a[k].variance()[c] + b[k].variance()[c], 1e-12)));
+    EXPECT_GT(worst, 8) << scene.name;
 }
 
 /// Each mesh mirrored, and drawn mirrored again.
@@ -236,6 +249,123 @@ TEST(Paths, GlassBox) {
             const Scene mirrored = twice_mirrored(s);
             expect_same_picture(s, 160, &mirrored);
         }
+    }
+}
+
+Texture pattern_texture(PatternKind kind, double size, float amount, const glm::vec3& low,
+                        const glm::vec3& high) {
+    Texture t;
+    t.name = "pattern";
+    t.pattern = Pattern{.kind = kind, .size = size, .low = low, .high = high, .octaves = 3};
+    t.pattern->amount = amount;
+    return t;
+}
+
+// Filters as narrow as rays allow: what they are of is compared elsewhere.
+TEST(Paths, Patterns) {
+    const std::pair<PatternKind, PatternKind> pairs[] = {{PatternKind::checker, PatternKind::noise},
+                                                         {PatternKind::bricks, PatternKind::turbulence},
+                                                         {PatternKind::wood, PatternKind::marble}};
+    for (const auto& [of_floor, of_box] : pairs) {
+        Scene s = room();
+        s.name = fmt::format("patterns {} and {}", static_cast<int>(of_floor), static_cast<int>(of_box));
+        s.textures = {pattern_texture(of_floor, 1.7, 0.15F, {0.1F, 0.2F, 0.6F}, {0.9F, 0.7F, 0.3F}),
+                      pattern_texture(of_box, 1.1, 0.8F, {0.2F, 0.4F, 0.9F}, {1, 1, 0.5F})};
+        s.meshes.push_back(box("box", {-1.4, 0, -0.6}, {1.6, 1.8, 1.2}, 25, 3));
+        s.materials[0].albedo = {1, 1, 1};
+        s.materials[0].albedo_map.texture = 0;
+        s.materials.push_back(named("box", {0.9F, 0.8F, 0.7F})); // a metal whose roughness and colour vary
+        s.materials[3].metallic = 1;
+        s.materials[3].roughness = 0.8F;
+        s.materials[3].albedo_map.texture = s.materials[3].roughness_map.texture = 1;
+        s.settings.diffuse_bounces = 1;
+        s.settings.edge_pixels = 0.1;
+        expect_same_picture(s, 160);
+        for (const std::size_t t : {0U, 1U}) {
+            Scene other = s;
+            other.textures[t].pattern->size *= 1.6;
+            expect_other_picture(s, other, 80);
+        }
+    }
+}
+
+TEST(Paths, Bumps) {
+    for (const bool plastic : {false, true}) {
+        Scene s = room();
+        s.name = plastic ? "bumps of plastic" : "bumps";
+        s.textures = {pattern_texture(PatternKind::marble, 2, 0.2F, {0, 0, 0}, {1, 1, 1}),
+                      pattern_texture(PatternKind::noise, 1.2, 0, {1, 0, 0}, {0, 1, 0})};
+        s.meshes.push_back(box("box", {-1.4, 0, -0.6}, {1.6, 1.8, 1.2}, 25, 3));
+        s.materials.push_back(named("box", {0.6F, 0.7F, 0.5F}));
+        s.materials[0].bump_map.texture = 0;
+        s.materials[0].bump = 0.35F;
+        s.materials[3].bump_map.texture = 1;
+        s.materials[3].bump = 1.2F;
+        for (const std::size_t m : {0U, 3U}) {
+            s.materials[m].specular = plastic ? 1.0F : 0.0F;
+            s.materials[m].roughness = 0.5F;
+        }
+        s.settings.diffuse_bounces = 1;
+        s.settings.edge_pixels = 0.1;
+        expect_same_picture(s, 320);
+        for (const std::size_t m : {0U, 3U}) {
+            Scene other = s;
+            other.materials[m].bump = 0;
+            expect_other_picture(s, other, 320);
+        }
+    }
+}
+
+TEST(Paths, Displacement) {
+    for (const bool metal : {false, true}) {
+        Scene s = room();
+        s.name = metal ? "displaced metal" : "displaced";
+        s.textures = {height_texture(96, 96, [](int x, int y) {
+            const auto wave = [](int k) { return std::sin(0.065449847F * (static_cast<float>(k) + 0.5F)); };
+            return 0.5F + 0.3F * wave(x) * wave(y) + 0.2F * wave(x + y);
+        })};
+        Mesh panel = quad("panel", {-1.6, 0.2, 0.2}, {2.6, 0, 0.6}, {-0.2, 1.7, -1.2}, 3);
+        panel.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        panel.face_texcoords = {0, 1, 2, 3};
+        panel.edge_length = 1.0 / 64;
+        s.meshes.push_back(panel);
+        s.materials.push_back(named("panel", {0.8F, 0.6F, 0.4F}));
+        Material& m = s.materials.back();
+        m.displacement_map.texture = 0;
+        m.displacement_scale = 0.4F;
+        m.metallic = metal ? 1.0F : 0.0F;
+        m.roughness = 0.5F;
+        s.settings.diffuse_bounces = 1;
+        s.settings.edge_pixels = 0.1;
+        expect_same_picture(s, 160);
+        Scene other = s;
+        other.materials[3].displacement_scale = 0;
+        expect_other_picture(s, other, 80);
+    }
+}
+
+// Backs that are seen, that shine, that are lit and that mirrors see are not there.
+TEST(Paths, SurfacesOfOneSide) {
+    Scene s = room();
+    s.name = "surfaces of one side";
+    s.meshes.push_back(quad("away", {-1, 0, 0.2}, {0, 1.4, 0}, {1.2, 0, 0.3}, 3)); // its back to the camera
+    s.meshes.push_back(quad("toward", {0.4, 0, 0.4}, {0.9, 0, 0.2}, {0, 1.1, -0.2}, 3));
+    s.meshes.push_back(quad("lamp", {-1.8, 0.6, 0.4}, {0, 0.9, 0}, {0.7, 0, -0.8}, 4));
+    s.meshes[1].material = 5;
+    s.materials.push_back(named("board", {0.8F, 0.4F, 0.2F}));
+    s.materials.push_back(named("lamp", {0.2F, 0.2F, 0.2F}));
+    s.materials[4].emission = {5, 4, 2};
+    s.materials[4].light = true;
+    s.materials[3].two_sided = s.materials[4].two_sided = false;
+    s.materials.push_back(named("mirror", {0.9F, 0.9F, 0.8F}));
+    s.materials[5].metallic = 1;
+    s.materials[5].roughness = 0;
+    s.settings.diffuse_bounces = 1;
+    expect_same_picture(s, 160);
+    for (const std::size_t m : {3U, 4U}) {
+        Scene other = s;
+        other.materials[m].two_sided = true;
+        expect_other_picture(s, other, 80);
     }
 }
 

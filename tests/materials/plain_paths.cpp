@@ -1,5 +1,7 @@
 #include "tests/materials/plain_paths.h"
 
+#include "tests/displacement/heights.h"
+#include "tests/materials/plain_pattern.h"
 #include "tests/materials/plain_surface.h"
 #include "tests/materials/skies.h"
 
@@ -25,6 +27,87 @@ constexpr double smooth = 1e-3; // widths below are of mirrors
 struct Facet {
     dvec3 a, e1, e2, normal;
     const Material* material;
+    /// Of a part of a displaced face: normals of the heights at a, and from there to the other corners.
+    dvec3 smooth_a{0}, smooth_e1{0}, smooth_e2{0};
+};
+
+/// Facets, and a box about them: rays that miss it miss them.
+struct Body {
+    dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+    std::vector<Facet> facets;
+
+    void add(const Facet& f) {
+        for (const dvec3& p : {f.a, f.a + f.e1, f.a + f.e2}) {
+            low = glm::min(low, p - 1e-9);
+            high = glm::max(high, p + 1e-9);
+        }
+        facets.push_back(f);
+    }
+    bool may_meet(const dvec3& o, const dvec3& d) const {
+        double begin = 0, end = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            const double a = (low[axis] - o[axis]) / d[axis], b = (high[axis] - o[axis]) / d[axis];
+            if (std::isnan(a) || std::isnan(b)) // along the box's side
+                continue;
+            begin = std::max(begin, std::min(a, b));
+            end = std::min(end, std::max(a, b));
+        }
+        return begin <= end;
+    }
+};
+
+/// A quad moved along its normal by heights, cut into `parts` x `parts` squares.
+struct DisplacedQuad {
+    std::array<dvec3, 4> points;
+    std::array<glm::dvec2, 4> texcoords;
+    const Material& material;
+    const Texture& texture;
+
+    template <class Value> static Value at(const std::array<Value, 4>& corners, double u, double v) {
+        return (1 - v) * ((1 - u) * corners[0] + u * corners[1]) +
+               v * ((1 - u) * corners[3] + u * corners[2]);
+    }
+    dvec3 flat_normal() const {
+        return glm::normalize(glm::cross(points[1] - points[0], points[3] - points[0]));
+    }
+    dvec3 place(double u, double v) const {
+        const glm::dvec2 where = at(texcoords, u, v) * glm::dvec2(material.displacement_map.scale) +
+                                 glm::dvec2(material.displacement_map.offset);
+        const double height = double{material.displacement_scale} *
+                              (lookup(texture, where, 0) - double{material.displacement_midlevel});
+        return at(points, u, v) + height * flat_normal();
+    }
+    /// By differences over a texel or so.
+    dvec3 normal(double u, double v) const {
+        constexpr double step = 0.01;
+        return glm::normalize(
+            glm::cross(place(u + step, v) - place(u - step, v), place(u, v + step) - place(u, v - step)));
+    }
+    void cut(int parts, Body& body) const {
+        for (int j = 0; j < parts; ++j)
+            for (int i = 0; i < parts; ++i) {
+                const double u = double(i) / parts, v = double(j) / parts, step = 1.0 / parts;
+                for (const bool upper : {false, true}) {
+                    const glm::dvec2 b = upper ? glm::dvec2(u + step, v + step) : glm::dvec2(u + step, v);
+                    const glm::dvec2 c = upper ? glm::dvec2(u, v + step) : glm::dvec2(u + step, v + step);
+                    Facet f{place(u, v),
+                            place(b.x, b.y) - place(u, v),
+                            place(c.x, c.y) - place(u, v),
+                            {},
+                            &material};
+                    f.normal = glm::normalize(glm::cross(f.e1, f.e2));
+                    f.smooth_a = normal(u, v);
+                    f.smooth_e1 = normal(b.x, b.y) - f.smooth_a;
+                    f.smooth_e2 = normal(c.x, c.y) - f.smooth_a;
+                    body.add(f);
+                }
+            }
+    }
+};
+
+struct Meeting {
+    double t = std::numeric_limits<double>::infinity(), u = 0, v = 0;
+    const Facet* facet = nullptr;
 };
 
 /// The normal and two directions across it.
@@ -50,8 +133,15 @@ class Tracer {
 public:
     explicit Tracer(const Scene& scene) : scene_(scene) {
         for (const Mesh& mesh : scene.meshes) {
+            const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+            Body& body = bodies_.emplace_back();
             std::size_t first = 0;
             for (const int size : mesh.face_sizes) {
+                if (is_displaced(material)) {
+                    displaced(mesh, first, material).cut(parts, body);
+                    first += static_cast<std::size_t>(size);
+                    continue;
+                }
                 const auto corner = [&](int k) {
                     return mesh.points[static_cast<std::size_t>(
                         mesh.face_vertices[first + static_cast<std::size_t>(k)])];
@@ -59,49 +149,106 @@ public:
                 for (int k = 1; k + 1 < size; ++k) {
                     Facet f{corner(0), corner(k) - corner(0), corner(k + 1) - corner(0), {}, nullptr};
                     f.normal = glm::normalize(glm::cross(f.e1, f.e2));
-                    f.material = &scene.materials[static_cast<std::size_t>(mesh.material)];
-                    facets_.push_back(f);
+                    f.material = &material;
+                    body.add(f);
                 }
                 first += static_cast<std::size_t>(size);
             }
         }
+        for (const Body& body : bodies_)
+            for (const Facet& f : body.facets)
+                if (f.material->light)
+                    lamps_.push_back(&f);
     }
 
     double next() { return static_cast<double>(random_()) / 4294967296.0; }
 
     /// `n`: bounces before. `diffuse`: the last one went in all directions.
     dvec3 radiance(const dvec3& o, const dvec3& d, int n, bool diffuse) {
-        double t = std::numeric_limits<double>::infinity();
-        const Facet* facet = nullptr;
-        for (const Facet& f : facets_)
-            if (const double at = meet(f, o, d); at < t) {
-                t = at;
-                facet = &f;
-            }
+        Meeting m;
+        for (const Body& body : bodies_)
+            if (body.may_meet(o, d))
+                for (const Facet& f : body.facets)
+                    meet(f, o, d, m);
         dvec3 sum(0);
         if (n > 0 && !diffuse)
             for (const Light& light : scene_.lights)
-                sum += met_light(light, o, d, t);
-        if (facet == nullptr)
+                sum += met_light(light, o, d, m.t);
+        if (m.facet == nullptr)
             return diffuse ? sum : sum + sky_radiance(scene_, d);
-        const bool sampled = facet->material->light && diffuse;
-        const dvec3 emitted = sampled ? dvec3(0) : dvec3(facet->material->emission);
-        return sum + emitted + reflected(*facet, o + t * d, -d, n);
+        const bool sampled = m.facet->material->light && diffuse;
+        const dvec3 emitted = sampled ? dvec3(0) : dvec3(m.facet->material->emission);
+        return sum + emitted + reflected(m, o + m.t * d, -d, n);
     }
 
 private:
-    static double meet(const Facet& f, const dvec3& o, const dvec3& d) {
-        constexpr double miss = std::numeric_limits<double>::infinity();
+    static constexpr int parts = 24; // of a displaced face, both ways
+
+    DisplacedQuad displaced(const Mesh& mesh, std::size_t first, const Material& material) const {
+        DisplacedQuad quad{
+            {}, {}, material, scene_.textures[static_cast<std::size_t>(material.displacement_map.texture)]};
+        for (std::size_t k = 0; k < 4; ++k) {
+            quad.points[k] = mesh.points[static_cast<std::size_t>(mesh.face_vertices[first + k])];
+            quad.texcoords[k] = mesh.texcoords[static_cast<std::size_t>(mesh.face_texcoords[first + k])];
+        }
+        return quad;
+    }
+
+    /// Whether the ray meets it before `m`, which then says so. Backs of what has one side are not there.
+    static bool meet(const Facet& f, const dvec3& o, const dvec3& d, Meeting& m) {
         const dvec3 p = glm::cross(d, f.e2), s = o - f.a, q = glm::cross(s, f.e1);
         const double det = glm::dot(f.e1, p);
         if (det == 0)
-            return miss;
+            return false;
         const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, t = glm::dot(f.e2, q) / det;
-        return u >= 0 && v >= 0 && u + v <= 1 && t > 1e-7 ? t : miss;
+        const bool one_sided = !f.material->two_sided && f.material->transmission == 0;
+        if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 1e-7 && t < m.t) ||
+            (one_sided && glm::dot(f.normal, d) > 0))
+            return false;
+        m = {t, u, v, &f};
+        return true;
     }
     bool open(const dvec3& o, const dvec3& d, double end) const {
-        return std::none_of(facets_.begin(), facets_.end(),
-                            [&](const Facet& f) { return meet(f, o, d) < end * (1 - 1e-9); });
+        Meeting m;
+        m.t = end * (1 - 1e-9);
+        return std::none_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+            return body.may_meet(o, d) && std::any_of(body.facets.begin(), body.facets.end(),
+                                                      [&](const Facet& f) { return meet(f, o, d, m); });
+        });
+    }
+
+    dvec3 pattern_at(const TextureMap& map, const dvec3& p) const {
+        const Pattern& pattern = *scene_.textures[static_cast<std::size_t>(map.texture)].pattern;
+        const double x = plain_value(pattern, p / pattern.size);
+        return dvec3(pattern.low) + x * (dvec3(pattern.high) - dvec3(pattern.low));
+    }
+    /// With what maps say at this point.
+    Material material_at(const Facet& facet, const dvec3& p) const {
+        Material m = *facet.material;
+        if (m.albedo_map.texture >= 0)
+            m.albedo *= glm::vec3(pattern_at(m.albedo_map, p));
+        if (m.roughness_map.texture >= 0)
+            m.roughness *= static_cast<float>(pattern_at(m.roughness_map, p).y);
+        return m;
+    }
+    /// Of the front; bent as Blinn has it (1978): by the slopes of heights along the surface.
+    dvec3 normal_at(const Meeting& m, const dvec3& p) const {
+        const Facet& f = *m.facet;
+        const dvec3 n = f.smooth_a == dvec3(0)
+                            ? f.normal
+                            : glm::normalize(f.smooth_a + m.u * f.smooth_e1 + m.v * f.smooth_e2);
+        const TextureMap& map = f.material->bump_map;
+        if (map.texture < 0)
+            return n;
+        const Frame3 frame(n);
+        const auto height = [&](const dvec3& at) {
+            return double{f.material->bump} * glm::dot(pattern_at(map, at), dvec3(0.2126, 0.7152, 0.0722));
+        };
+        constexpr double step = 1e-4;
+        const auto slope = [&](const dvec3& way) {
+            return (height(p + step * way) - height(p - step * way)) / (2 * step);
+        };
+        return glm::normalize(n - slope(frame.x) * frame.x - slope(frame.y) * frame.y);
     }
     static dvec3 met_light(const Light& l, const dvec3& o, const dvec3& d, double end) {
         const dvec3 n = glm::cross(l.edge_u, l.edge_v);
@@ -123,7 +270,10 @@ private:
     }
 
     /// Light of lights and, in all directions, of the sky. `glossy`: what rough lobes reflect of lights too.
-    dvec3 direct(const Frame3& frame, const PlainSurface& all, const dvec3& p, const dvec3& v, bool glossy) {
+    /// `front`: the geometric normal on the viewer's side, which light comes from.
+    dvec3 direct(const Frame3& frame, const dvec3& front, const PlainSurface& all, const dvec3& p,
+                 const dvec3& v, bool glossy) {
+        const auto lit = [&](const dvec3& l, const dvec3& d) { return l.z > 0 && glm::dot(front, d) > 0; };
         const auto reflectance = [&](const dvec3& l) {
             return glossy ? all.reflectance(v, l) : all.scattered(v, l);
         };
@@ -135,24 +285,24 @@ private:
             const double away = glm::length(way);
             const dvec3 d = way / away, l = frame.in(d);
             const double facing = -glm::dot(n, d);
-            if (l.z > 0 && facing > 0 && open(p, d, away))
+            if (lit(l, d) && facing > 0 && open(p, d, away))
                 sum += reflectance(l) * dvec3(light.radiance) * (l.z * facing / (away * away));
         }
-        for (const Facet& f : facets_) {
-            if (!f.material->light)
-                continue;
+        for (const Facet* lamp : lamps_) {
+            const Facet& f = *lamp;
             const double root = std::sqrt(next()), part = next();
             const dvec3 way = f.a + root * (1 - part) * f.e1 + root * part * f.e2 - p;
             const double away = glm::length(way), area = glm::length(glm::cross(f.e1, f.e2)) / 2;
             const dvec3 d = way / away, l = frame.in(d);
-            const double facing = std::abs(glm::dot(f.normal, d));
-            if (l.z > 0 && facing > 0 && open(p, d, away * (1 - 1e-6)))
+            const double way_out = -glm::dot(f.normal, d);
+            const double facing = f.material->two_sided ? std::abs(way_out) : way_out;
+            if (lit(l, d) && facing > 0 && open(p, d, away * (1 - 1e-6)))
                 sum += reflectance(l) * dvec3(f.material->emission) * (l.z * facing * area / (away * away));
         }
         if (largest(dvec3(scene_.sky)) > 0) {
             const dvec3 l = cosine_direction();
             const dvec3 seen = scene_.sky_map.texture >= 0 ? reflectance(l) : all.scattered(v, l);
-            if (l.z > 0 && open(p, frame.out(l), std::numeric_limits<double>::infinity()))
+            if (lit(l, frame.out(l)) && open(p, frame.out(l), std::numeric_limits<double>::infinity()))
                 sum += seen * sky_radiance(scene_, frame.out(l)) * pi;
         }
         return sum;
@@ -198,14 +348,17 @@ private:
                                     dvec3(m.albedo)});
     }
 
-    dvec3 reflected(const Facet& facet, const dvec3& p, const dvec3& toward, int n) {
-        const Material& m = *facet.material;
+    dvec3 reflected(const Meeting& met, const dvec3& p, const dvec3& toward, int n) {
+        const Facet& facet = *met.facet;
+        const Material m = material_at(facet, p);
         const bool inside = glm::dot(facet.normal, toward) < 0;
-        const Frame3 frame(inside ? -facet.normal : facet.normal);
-        const dvec3 v = frame.in(toward);
+        const dvec3 shading = normal_at(met, p), front = inside ? -facet.normal : facet.normal;
+        const Frame3 frame(inside ? -shading : shading);
+        dvec3 v = frame.in(toward);
+        v.z = std::max(v.z, 1e-4); // slopes of bumps that face away are seen as at grazing
         const PlainSurface all(m);
         const bool last = n == scene_.settings.bounces;
-        const dvec3 sum = direct(frame, all, p, v, last);
+        const dvec3 sum = direct(frame, front, all, p, v, last);
         if (last)
             return sum;
         const double alpha = width(m.roughness), coat_alpha = width(m.coat_roughness);
@@ -259,13 +412,16 @@ private:
             if (largest(b.factor) <= 0)
                 return sum;
             const dvec3 d = glm::normalize(frame.out(b.direction));
+            if ((b.direction.z > 0) != (glm::dot(front, d) > 0))
+                return sum; // into the surface that a bump only bends
             return sum + b.factor * (weights / b.weight) * radiance(p, d, n + 1, b.diffuse);
         }
         return sum;
     }
 
     const Scene& scene_;
-    std::vector<Facet> facets_;
+    std::vector<Body> bodies_;
+    std::vector<const Facet*> lamps_;
     std::mt19937 random_{4711};
 };
 
