@@ -28,6 +28,13 @@ public:
         }
         return place.number;
     }
+    /// The same without making room for it.
+    std::uint32_t find(std::uint64_t line) const {
+        std::size_t at = home(line);
+        while (places_[at].number != none && places_[at].line != line)
+            at = (at + 1) & mask_;
+        return places_[at].number;
+    }
     /// Takes a line out that is in.
     void erase(std::uint64_t line) {
         std::size_t hole = home(line);

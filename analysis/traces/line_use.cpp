@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
+#include <utility>
 
 namespace analysis {
 
@@ -62,6 +64,44 @@ std::vector<LineUse::Group> LineUse::groups() const {
         }
     }
     return out;
+}
+
+std::vector<LineUse::Shared> LineUse::shared() const {
+    std::map<std::pair<std::uint32_t, std::uint64_t>, Shared> out;
+    for (const Known& known : known_) {
+        std::uint64_t threads = 0;
+        bool written = false;
+        for (std::uint32_t u = known.users; u != LineMap::none; u = users_[u].next, ++threads)
+            written = written || users_[u].written != 0;
+        Shared& s = out[{known.group, threads}];
+        s.group = known.group;
+        s.threads = threads;
+        ++s.lines;
+        s.touches += known.touches;
+        s.written += written ? 1 : 0;
+    }
+    std::vector<Shared> rows;
+    for (const auto& [key, row] : out)
+        rows.push_back(row);
+    return rows;
+}
+
+std::vector<LineUse::Footprint> LineUse::footprints() const {
+    std::map<std::uint32_t, Footprint> out;
+    for (const Known& known : known_)
+        for (std::uint32_t u = known.users; u != LineMap::none; u = users_[u].next) {
+            const User& user = users_[u];
+            Footprint& f = out[user.stream];
+            f.stream = user.stream;
+            ++f.lines;
+            f.alone += users_[known.users].next == LineMap::none ? 1 : 0;
+            f.bytes += static_cast<std::uint64_t>(std::popcount(user.touched)) << part_shift_;
+            f.written += user.written != 0 ? 1 : 0;
+        }
+    std::vector<Footprint> rows;
+    for (const auto& [stream, row] : out)
+        rows.push_back(row);
+    return rows;
 }
 
 std::vector<LineUse::Line> LineUse::hottest(std::size_t count) const {

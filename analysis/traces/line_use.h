@@ -30,6 +30,23 @@ public:
         std::uint64_t false_touches = 0; // of lines that are falsely shared
     };
     std::vector<Group> groups() const;
+    /// Of lines that so many threads touch, by the group that touched them first.
+    struct Shared {
+        std::uint32_t group = 0;
+        std::uint64_t threads = 0, lines = 0, touches = 0;
+        std::uint64_t written = 0; // lines that at least one thread writes
+    };
+    /// Ascending by group and number of threads; those that there are.
+    std::vector<Shared> shared() const;
+    /// What a thread touches.
+    struct Footprint {
+        std::uint32_t stream = 0;
+        std::uint64_t lines = 0, alone = 0; // nobody else touches these
+        std::uint64_t bytes = 0;            // touched at least once
+        std::uint64_t written = 0;          // lines that it writes
+    };
+    /// Ascending by stream.
+    std::vector<Footprint> footprints() const;
     struct Line {
         std::uint64_t line, touches;
         std::uint32_t group;

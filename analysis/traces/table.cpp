@@ -14,6 +14,8 @@ std::string plain(const Table::Cell& cell, const char* of_double) {
         return *text;
     if (const auto* number = std::get_if<std::uint64_t>(&cell))
         return fmt::format("{}", *number);
+    if (const auto* number = std::get_if<std::int64_t>(&cell))
+        return fmt::format("{:+}", *number);
     const double value = std::get<double>(cell);
     return std::isnan(value) ? "-" : fmt::format(fmt::runtime(of_double), value);
 }

@@ -9,7 +9,7 @@
 namespace analysis {
 
 struct Table {
-    using Cell = std::variant<std::string, std::uint64_t, double>;
+    using Cell = std::variant<std::string, std::uint64_t, std::int64_t, double>;
     std::vector<std::string> columns;
     std::vector<std::vector<Cell>> rows;
 

@@ -1,80 +1,56 @@
-// The commands of razor-trace that answer questions about caches.
+// The commands of razor-trace that answer questions about caches and memory: a file each.
 #pragma once
 
 #include "traces/program/analysis_options.h"
 
 #include <CLI/CLI.hpp>
 
-#include <string>
+#include <memory>
+#include <vector>
 
 namespace traces {
 
-/// Misses by the size of a cache: LRU, sets of some ways, Belady's optimum; exact, or from a sample of lines.
-class CurveCommand {
+class AnalysisCommand {
 public:
-    void add_to(CLI::App& app);
+    /// `by`: what references are told apart by if nothing else is asked for; null: they are not.
+    AnalysisCommand(const char* name, const char* meaning, const char* by)
+        : name_(name), meaning_(meaning), by_(by) {}
+    AnalysisCommand(const AnalysisCommand&) = delete;
+    AnalysisCommand& operator=(const AnalysisCommand&) = delete;
+    virtual ~AnalysisCommand() = default;
+
+    void add_to(CLI::App& app) {
+        app_ = app.add_subcommand(name_, meaning_);
+        options_.add_to(*app_, by_);
+        add_options(*app_);
+    }
     bool parsed() const { return app_->parsed(); }
-    void run();
+    /// Throws Error, Interrupted.
+    virtual void run() = 0;
+
+protected:
+    /// Its own, besides those of all.
+    virtual void add_options(CLI::App&) {}
+    AnalysisOptions options_;
 
 private:
-    analysis::Table exact();
-    analysis::Table sampled(double rate);
-
+    const char *name_, *meaning_, *by_;
     CLI::App* app_ = nullptr;
-    AnalysisOptions options_;
-    std::string sizes_, ways_, rate_, heading_;
-    bool optimum_ = false;
 };
 
-/// How many others are touched between two touches of a line.
-class ReuseCommand {
-public:
-    void add_to(CLI::App& app);
-    bool parsed() const { return app_->parsed(); }
-    void run();
+/// All of them, as --help lists them.
+std::vector<std::unique_ptr<AnalysisCommand>> analyses();
 
-private:
-    CLI::App* app_ = nullptr;
-    AnalysisOptions options_;
-};
-
-/// What a trace touches and misses over time.
-class WindowsCommand {
-public:
-    void add_to(CLI::App& app);
-    bool parsed() const { return app_->parsed(); }
-    void run();
-
-private:
-    CLI::App* app_ = nullptr;
-    AnalysisOptions options_;
-    std::string length_, sizes_;
-};
-
-/// What becomes of lines: bytes used, sharing, false sharing, the hottest.
-class LinesCommand {
-public:
-    void add_to(CLI::App& app);
-    bool parsed() const { return app_->parsed(); }
-    void run();
-
-private:
-    CLI::App* app_ = nullptr;
-    AnalysisOptions options_;
-    int hottest_ = 0;
-};
-
-/// LRU caches of objects of any size.
-class ObjectsCommand {
-public:
-    void add_to(CLI::App& app);
-    bool parsed() const { return app_->parsed(); }
-    void run();
-
-private:
-    CLI::App* app_ = nullptr;
-    AnalysisOptions options_;
-    std::string sizes_;
-};
+std::unique_ptr<AnalysisCommand> curve_command();
+std::unique_ptr<AnalysisCommand> reuse_command();
+std::unique_ptr<AnalysisCommand> windows_command();
+std::unique_ptr<AnalysisCommand> causes_command();
+std::unique_ptr<AnalysisCommand> lines_command();
+std::unique_ptr<AnalysisCommand> use_command();
+std::unique_ptr<AnalysisCommand> strides_command();
+std::unique_ptr<AnalysisCommand> footprint_command();
+std::unique_ptr<AnalysisCommand> replicas_command();
+std::unique_ptr<AnalysisCommand> objects_command();
+std::unique_ptr<AnalysisCommand> picture_command();
 
 } // namespace traces

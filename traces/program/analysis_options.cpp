@@ -91,7 +91,29 @@ std::vector<std::uint64_t> parse_sizes(std::string_view option, const std::strin
     return out;
 }
 
-void AnalysisOptions::add_to(CLI::App& app, bool grouped) {
+std::uint64_t parse_window(std::string_view option, std::string_view text) {
+    std::uint64_t out = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    if (error != std::errc() || end != text.data() + text.size() || out == 0)
+        throw Error(fmt::format("{} '{}': no length; give a whole number of units of the trace's time, "
+                                "at least 1",
+                                option, text));
+    return out;
+}
+
+std::vector<std::uint64_t> lines_of(std::string_view option, const std::vector<std::uint64_t>& sizes,
+                                    std::uint64_t line_bytes) {
+    std::vector<std::uint64_t> out;
+    for (const std::uint64_t size : sizes) {
+        if (size % line_bytes != 0)
+            throw Error(
+                fmt::format("{} {}: lines have {} bytes; give multiples of that", option, size, line_bytes));
+        out.push_back(size / line_bytes);
+    }
+    return out;
+}
+
+void AnalysisOptions::add_to(CLI::App& app, const char* by) {
     app.add_option("TRACE", file_, "a trace of any format, or -")->required();
     app.add_option("--from", from_, "its format; without it, as it begins or is named")->type_name("FORMAT");
     app.add_option("--line", line_, "bytes of a line, a power of two; without it, those of the trace, or 64")
@@ -99,10 +121,16 @@ void AnalysisOptions::add_to(CLI::App& app, bool grouped) {
     app.add_option("--kinds", kinds_,
                    "kinds of references that count, with commas between; without it, read,write,modify,fetch")
         ->type_name("KINDS");
-    if (grouped)
-        app.add_option("--by", by_name_,
-                       fmt::format("tell references apart by: {}", fmt::join(analysis::by_names, ", ")))
+    if (by != nullptr) {
+        by_names_ = by;
+        app.add_option(
+               "--by", by_names_,
+               fmt::format("tell references apart by some of, with commas between: {}; without it, {}",
+                           fmt::join(analysis::by_names, ", "), by))
             ->type_name("WHAT");
+        app.add_option("--window", window_, "units of the trace's time a window, for --by window")
+            ->type_name("N");
+    }
     app.add_option("--csv", csv_, "write the table for programs, whole or not at all; - is standard output")
         ->type_name("FILE");
     app.add_option("--json", json_, "likewise, with what was analysed")->type_name("FILE");
@@ -114,7 +142,19 @@ void AnalysisOptions::prepare() {
         for (const std::string& kind : split(kinds_))
             kinds_in_[number_of("--kinds", kind, kind_names)] = true;
     }
-    by_ = static_cast<analysis::By>(number_of("--by", by_name_, analysis::by_names));
+    for (const std::string& name : split(by_names_)) {
+        const auto by = static_cast<analysis::By>(number_of("--by", name, analysis::by_names));
+        if (std::find(by_.begin(), by_.end(), by) != by_.end())
+            throw Error(fmt::format("--by {}: names {} twice; name it once", by_names_, name));
+        if (by != analysis::By::all)
+            by_.push_back(by);
+    }
+    const bool windows = std::find(by_.begin(), by_.end(), analysis::By::window) != by_.end();
+    if (windows != !window_.empty())
+        throw Error(windows ? "--by window: how long is one? give --window N"
+                            : "--window: windows are not asked for; add --by window");
+    if (windows)
+        window_length_ = parse_window("--window", window_);
     auto source = open_source(file_);
     const Format& format = format_of_input(from_, file_, *source);
     input_ = format.read(std::move(source));
@@ -132,8 +172,41 @@ void AnalysisOptions::prepare() {
                         line_, description_.line_bytes));
 }
 
+void AnalysisOptions::refuse_sample() const {
+    if (description_.sample < 1)
+        throw Error(fmt::format("{}: is a sample of {:g} of all lines, of which this cannot be told; record "
+                                "all lines",
+                                file_, description_.sample));
+}
+
 analysis::Touches AnalysisOptions::touches() const {
-    return {static_cast<unsigned>(std::countr_zero(line_bytes_)), kinds_in_, by_};
+    return touches(line_bytes_);
+}
+
+analysis::Touches AnalysisOptions::touches(std::uint64_t line_bytes) const {
+    return {static_cast<unsigned>(std::countr_zero(line_bytes)), kinds_in_, {by_, window_length_}};
+}
+
+std::string AnalysisOptions::by() const {
+    std::string out;
+    for (const analysis::By by : by_)
+        out += (out.empty() ? "" : " and ") + std::string(analysis::by_names[static_cast<std::size_t>(by)]);
+    return out;
+}
+
+analysis::Table AnalysisOptions::table(std::initializer_list<const char*> columns) const {
+    analysis::Table out;
+    for (const analysis::By by : by_)
+        out.columns.emplace_back(analysis::by_names[static_cast<std::size_t>(by)]);
+    out.columns.insert(out.columns.end(), columns.begin(), columns.end());
+    return out;
+}
+
+void AnalysisOptions::add_row(analysis::Table& table, const analysis::Touches& touches, std::size_t group,
+                              std::vector<analysis::Table::Cell> cells) const {
+    table.rows.push_back(touches.cells(group, description_));
+    table.rows.back().insert(table.rows.back().end(), std::make_move_iterator(cells.begin()),
+                             std::make_move_iterator(cells.end()));
 }
 
 void AnalysisOptions::each_block(const std::function<void(const Block&)>& visit) {

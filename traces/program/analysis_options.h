@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,10 +23,22 @@ std::uint64_t parse_size(std::string_view option, std::string_view text);
 /// "1KiB..1MiB" (doubling), "3KiB,5KiB", or both; ascending and different.
 std::vector<std::uint64_t> parse_sizes(std::string_view option, const std::string& text);
 
+/// A number of units of the trace's time. Throws Error likewise.
+std::uint64_t parse_window(std::string_view option, std::string_view text);
+/// Lines of each size, which is a multiple of a line's. Throws Error likewise.
+std::vector<std::uint64_t> lines_of(std::string_view option, const std::vector<std::uint64_t>& sizes,
+                                    std::uint64_t line_bytes);
+/// Of something that may be none.
+inline double part(std::uint64_t some, std::uint64_t all) {
+    return all == 0 ? 0 : static_cast<double>(some) / static_cast<double>(all);
+}
+
 class AnalysisOptions {
 public:
-    /// `grouped`: with --by.
-    void add_to(CLI::App& app, bool grouped);
+    /// `by`: what references are told apart by without --by; null: there is no such option.
+    void add_to(CLI::App& app, const char* by);
+    /// Other kinds than Touches::demand count without --kinds.
+    void count_without_option(const analysis::Touches::Kinds& kinds) { kinds_in_ = kinds; }
     /// Visits all blocks. Throws Error, Interrupted.
     void each_block(const std::function<void(const Block&)>& visit);
 
@@ -33,17 +46,28 @@ public:
     const Description& description() const { return description_; }
     analysis::Touches touches() const;
     std::uint64_t line_bytes() const { return line_bytes_; }
-    bool grouped() const { return by_ != analysis::By::all; }
-    const char* by() const { return analysis::by_names[static_cast<std::size_t>(by_)]; }
+    /// The same by bursts of another memory than the trace's lines.
+    analysis::Touches touches(std::uint64_t line_bytes) const;
+    bool grouped() const { return !by_.empty(); }
+    /// "structure", or "structure and phase".
+    std::string by() const;
+    /// With a column for each that references are told apart by first.
+    analysis::Table table(std::initializer_list<const char*> columns) const;
+    /// Adds a row of a group.
+    void add_row(analysis::Table& table, const analysis::Touches& touches, std::size_t group,
+                 std::vector<analysis::Table::Cell> cells) const;
     /// Opens the trace and checks all options.
     void prepare();
+    /// After prepare(), where a sample of lines tells nothing. Throws Error.
+    void refuse_sample() const;
     /// Prints the table, or writes it as asked; what the trace lacks is said.
     void give(std::string_view command, const analysis::Table& table, const std::string& heading) const;
 
 private:
-    std::string file_, from_, line_, kinds_, by_name_ = "all", csv_, json_;
+    std::string file_, from_, line_, kinds_, by_names_, window_, csv_, json_;
     analysis::Touches::Kinds kinds_in_ = analysis::Touches::demand;
-    analysis::By by_ = analysis::By::all;
+    std::vector<analysis::By> by_; // without `all`
+    std::uint64_t window_length_ = 1;
     std::uint64_t line_bytes_ = 64;
     std::unique_ptr<Input> input_;
     Description description_;

@@ -19,22 +19,6 @@ using analysis::Touch;
 
 namespace {
 
-double ratio(std::uint64_t misses, std::uint64_t references) {
-    return references == 0 ? 0 : static_cast<double>(misses) / static_cast<double>(references);
-}
-
-/// Lines of each size, which is a multiple of a line's.
-std::vector<std::uint64_t> lines_of(const std::vector<std::uint64_t>& sizes, std::uint64_t line_bytes) {
-    std::vector<std::uint64_t> out;
-    for (const std::uint64_t size : sizes) {
-        if (size % line_bytes != 0)
-            throw Error(
-                fmt::format("--sizes {}: lines have {} bytes; give multiples of that", size, line_bytes));
-        out.push_back(size / line_bytes);
-    }
-    return out;
-}
-
 double parse_rate(const std::string& text) {
     double rate = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
@@ -52,20 +36,30 @@ std::vector<std::uint64_t> parse_ways(const std::string& text) {
     return out;
 }
 
-} // namespace
+class CurveCommand final : public AnalysisCommand {
+public:
+    CurveCommand() : AnalysisCommand("curve", "misses by the size of a cache", "all") {}
+    void run() override;
 
-void CurveCommand::add_to(CLI::App& app) {
-    app_ = app.add_subcommand("curve", "misses by the size of a cache");
-    options_.add_to(*app_, true);
-    app_->add_option("--sizes", sizes_,
-                     "of caches, as 1KiB..64MiB (doubling) or 32KiB,48KiB; without it, from 1KiB until "
-                     "nothing changes")
+private:
+    void add_options(CLI::App& app) override;
+    Table exact();
+    Table sampled(double rate);
+
+    std::string sizes_, ways_, rate_, heading_;
+    bool optimum_ = false;
+};
+
+void CurveCommand::add_options(CLI::App& app) {
+    app.add_option("--sizes", sizes_,
+                   "of caches, as 1KiB..64MiB (doubling) or 32KiB,48KiB; without it, from 1KiB until "
+                   "nothing changes")
         ->type_name("SIZES");
-    app_->add_option("--ways", ways_, "also set-associative caches of so many ways, with commas between")
+    app.add_option("--ways", ways_, "also set-associative caches of so many ways, with commas between")
         ->type_name("WAYS");
-    app_->add_flag("--optimum", optimum_,
-                   "also the least misses that any replacement can have (Belady); takes 8 bytes a reference");
-    app_->add_option("--rate", rate_, "estimate from this fraction of all lines (SHARDS), with its error")
+    app.add_flag("--optimum", optimum_,
+                 "also the least misses that any replacement can have (Belady); takes 8 bytes a reference");
+    app.add_option("--rate", rate_, "estimate from this fraction of all lines (SHARDS), with its error")
         ->type_name("FRACTION");
 }
 
@@ -91,7 +85,7 @@ Table CurveCommand::exact() {
         parse_sizes("--sizes", chosen ? sizes_
                                       : fmt::format("{}..{}", std::max<std::uint64_t>(1024, line_bytes),
                                                     all_ways.empty() ? "1TiB" : "16MiB"));
-    const std::vector<std::uint64_t> lines = lines_of(sizes, line_bytes);
+    const std::vector<std::uint64_t> lines = lines_of("--sizes", sizes, line_bytes);
     // Caches of as many sets are one pass.
     std::map<std::uint64_t, std::vector<std::uint64_t>> ways_by_sets;
     for (const std::uint64_t n : lines)
@@ -116,16 +110,12 @@ Table CurveCommand::exact() {
         });
     });
 
-    Table table;
     const std::size_t groups = touches.groups();
     std::uint64_t references = 0;
     for (std::size_t g = 0; g < groups; ++g)
         references += lru.counts().references(g);
     heading_ = fmt::format("{} touches of {} lines of {} bytes", references, lru.lines(), line_bytes);
-    if (options_.grouped())
-        table.columns.emplace_back(options_.by());
-    for (const char* name : {"bytes", "references", "first", "misses", "ratio"})
-        table.columns.emplace_back(name);
+    Table table = options_.table({"bytes", "references", "first", "misses", "ratio"});
     for (const std::uint64_t ways : all_ways)
         table.columns.push_back(fmt::format("misses of {} ways", ways));
     if (optimum_)
@@ -139,11 +129,9 @@ Table CurveCommand::exact() {
     }
     for (std::size_t g = 0; g < groups; ++g)
         for (std::size_t size = 0; size < shown; ++size) {
-            std::vector<Table::Cell> row;
-            if (options_.grouped())
-                row.emplace_back(touches.name(g, options_.description()));
             const std::uint64_t misses = lru.counts().misses(g, size), all = lru.counts().references(g);
-            row.insert(row.end(), {sizes[size], all, lru.counts().firsts(g), misses, ratio(misses, all)});
+            std::vector<Table::Cell> row = {sizes[size], all, lru.counts().firsts(g), misses,
+                                            part(misses, all)};
             for (const std::uint64_t ways : all_ways) {
                 Table::Cell cell = std::numeric_limits<double>::quiet_NaN(); // there is no such cache
                 if (lines[size] % ways == 0)
@@ -157,7 +145,7 @@ Table CurveCommand::exact() {
             }
             if (optimum_)
                 row.emplace_back(least[size][g]);
-            table.rows.push_back(std::move(row));
+            options_.add_row(table, touches, g, std::move(row));
         }
     return table;
 }
@@ -168,13 +156,12 @@ Table CurveCommand::sampled(double rate) {
     const std::vector<std::uint64_t> sizes = parse_sizes(
         "--sizes", chosen ? sizes_ : fmt::format("{}..1TiB", std::max<std::uint64_t>(1024, line_bytes)));
     const double of = options_.description().sample;
-    analysis::Shards shards(lines_of(sizes, line_bytes), rate * of, of);
+    analysis::Shards shards(lines_of("--sizes", sizes, line_bytes), rate * of, of);
     analysis::Touches touches = options_.touches();
     options_.each_block([&](const Block& block) {
         touches.each(block, [&](const Touch& t) { shards.touch(t.line, t.group); });
     });
 
-    Table table;
     std::uint64_t references = 0;
     for (std::size_t g = 0; g < touches.groups(); ++g)
         references += shards.references(g);
@@ -182,27 +169,27 @@ Table CurveCommand::sampled(double rate) {
         fmt::format("{} touches of lines of {} bytes, estimated from {} touches of a sample of {:g} of all "
                     "lines; errors are those of 19 samples of 20",
                     references, line_bytes, shards.sampled(), rate * of);
-    if (options_.grouped())
-        table.columns.emplace_back(options_.by());
-    for (const char* name : {"bytes", "references", "misses", "ratio", "error"})
-        table.columns.emplace_back(name);
+    Table table = options_.table({"bytes", "references", "misses", "ratio", "error"});
     std::size_t shown = 0;
     for (bool more = true; shown < sizes.size() && more; ++shown)
         more = chosen || static_cast<double>(shards.lines()) / (rate * of) * static_cast<double>(line_bytes) >
                              static_cast<double>(sizes[shown]);
     for (std::size_t g = 0; g < touches.groups(); ++g)
         for (std::size_t size = 0; size < shown; ++size) {
-            std::vector<Table::Cell> row;
-            if (options_.grouped())
-                row.emplace_back(touches.name(g, options_.description()));
             const auto [r, error] = shards.estimate(g, size);
             const std::uint64_t all = shards.references(g);
-            row.insert(row.end(),
-                       {sizes[size], all,
-                        static_cast<std::uint64_t>(std::llround(r * static_cast<double>(all))), r, error});
-            table.rows.push_back(std::move(row));
+            options_.add_row(table, touches, g,
+                             {sizes[size], all,
+                              static_cast<std::uint64_t>(std::llround(r * static_cast<double>(all))), r,
+                              error});
         }
     return table;
+}
+
+} // namespace
+
+std::unique_ptr<AnalysisCommand> curve_command() {
+    return std::make_unique<CurveCommand>();
 }
 
 } // namespace traces

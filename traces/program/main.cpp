@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
-#include <tuple>
 
 namespace {
 
@@ -104,13 +103,9 @@ int main(int argc, char** argv) {
         ->type_name("FORMAT");
     converting.add_option("--to", convert.to, "the format of OUT; without it, as it is named")
         ->type_name("FORMAT");
-    traces::CurveCommand curve;
-    traces::ReuseCommand reuse;
-    traces::WindowsCommand windows;
-    traces::LinesCommand lines;
-    traces::ObjectsCommand objects;
-    const auto all = std::tie(curve, reuse, windows, lines, objects);
-    std::apply([&](auto&... command) { (command.add_to(app), ...); }, all);
+    const std::vector<std::unique_ptr<traces::AnalysisCommand>> analyses = traces::analyses();
+    for (const auto& analysis : analyses)
+        analysis->add_to(app);
     traces::listen_for_interrupts();
     try {
         app.parse(argc, argv);
@@ -118,7 +113,9 @@ int main(int argc, char** argv) {
             return info.run();
         if (converting.parsed())
             return convert.run();
-        std::apply([](auto&... command) { ((command.parsed() ? command.run() : void()), ...); }, all);
+        for (const auto& analysis : analyses)
+            if (analysis->parsed())
+                analysis->run();
         return 0;
     } catch (const traces::Interrupted&) {
         return complain("interrupted; nothing written", interrupted_exit);

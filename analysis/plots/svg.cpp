@@ -1,0 +1,117 @@
+#include "analysis/plots/svg.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace analysis {
+namespace {
+
+/// The shortest text of a number of hundredths.
+std::string number(double x) {
+    std::string out = fmt::format("{:.2f}", std::isfinite(x) ? x : 0);
+    out.erase(out.find_last_not_of('0') + 1);
+    if (out.ends_with('.'))
+        out.pop_back();
+    return out == "-0" ? "0" : out;
+}
+
+std::string list(const std::vector<std::pair<double, double>>& points) {
+    std::string out;
+    for (const auto& [x, y] : points) {
+        if (!out.empty())
+            out += ' ';
+        out += number(x);
+        out += ',';
+        out += number(y);
+    }
+    return out;
+}
+
+} // namespace
+
+std::string escaped(std::string_view text) {
+    std::string out;
+    for (const char c : text)
+        switch (c) {
+        case '&':
+            out += "&amp;";
+            break;
+        case '<':
+            out += "&lt;";
+            break;
+        case '>':
+            out += "&gt;";
+            break;
+        case '"':
+            out += "&quot;";
+            break;
+        default:
+            out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+        }
+    return out;
+}
+
+void Svg::line(double x1, double y1, double x2, double y2, std::string_view colour, double width) {
+    body_ +=
+        fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"{}\"/>\n",
+                    number(x1), number(y1), number(x2), number(y2), colour, number(width));
+}
+
+void Svg::rectangle(double x, double y, double width, double height, std::string_view colour,
+                    std::string_view title) {
+    body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"", number(x),
+                         number(y), number(width), number(height), colour);
+    body_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></rect>\n", escaped(title));
+}
+
+void Svg::polyline(const std::vector<std::pair<double, double>>& points, std::string_view colour,
+                   bool dashed) {
+    body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"{}/>\n",
+                         list(points), colour, dashed ? " stroke-dasharray=\"5 3\"" : "");
+}
+
+void Svg::polygon(const std::vector<std::pair<double, double>>& points, std::string_view colour,
+                  double opacity) {
+    body_ += fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>\n", list(points), colour,
+                         number(opacity));
+}
+
+void Svg::text(double x, double y, std::string_view text, Anchor anchor, double size, double degrees) {
+    const char* where = anchor == Anchor::start    ? ""
+                        : anchor == Anchor::middle ? " text-anchor=\"middle\""
+                                                   : " text-anchor=\"end\"";
+    const std::string turned =
+        degrees == 0 ? ""
+                     : fmt::format(" transform=\"rotate({} {} {})\"", number(degrees), number(x), number(y));
+    body_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{}{}>{}</text>\n", number(x), number(y),
+                         number(size), where, turned, escaped(text));
+}
+
+void Svg::image(double x, double y, double width, double height, std::string_view uri) {
+    body_ += fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
+                         "style=\"image-rendering:pixelated\" xlink:href=\"{}\"/>\n",
+                         number(x), number(y), number(width), number(height), uri);
+}
+
+std::string Svg::str() const {
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
+        "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\">\n"
+        "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n{2}</svg>\n",
+        number(width_), number(height_), body_);
+}
+
+std::string Svg::file() const {
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + str();
+}
+
+std::string_view colour(std::size_t number) {
+    constexpr std::array<std::string_view, 14> all = {"#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7",
+                                                      "#56b4e9", "#8c6d00", "#5b3a99", "#7f7f7f", "#003f5c",
+                                                      "#a05195", "#2f4b7c", "#665191", "#b22222"};
+    return all[number % all.size()];
+}
+
+} // namespace analysis

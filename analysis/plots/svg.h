@@ -1,0 +1,47 @@
+// A drawing as SVG 1.1 text: shapes with numbers rounded to hundredths, texts escaped. Equal drawings are
+// equal bytes, and stand in a page as they are or in a file alone.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace analysis {
+
+/// `& < > "` as entities; bytes that are no text (control characters) as question marks.
+std::string escaped(std::string_view text);
+
+/// x to the right, y down, in pixels.
+class Svg {
+public:
+    Svg(double width, double height) : width_(width), height_(height) {}
+
+    enum class Anchor { start, middle, end };
+    void line(double x1, double y1, double x2, double y2, std::string_view colour, double width = 1);
+    /// With what is shown where a pointer rests.
+    void rectangle(double x, double y, double width, double height, std::string_view colour,
+                   std::string_view title = {});
+    void polyline(const std::vector<std::pair<double, double>>& points, std::string_view colour,
+                  bool dashed = false);
+    void polygon(const std::vector<std::pair<double, double>>& points, std::string_view colour,
+                 double opacity);
+    void text(double x, double y, std::string_view text, Anchor anchor = Anchor::start, double size = 12,
+              double degrees = 0);
+    /// A picture as a data URI, its pixels as they are.
+    void image(double x, double y, double width, double height, std::string_view uri);
+
+    /// The element.
+    std::string str() const;
+    /// With what a file begins with.
+    std::string file() const;
+
+private:
+    double width_, height_;
+    std::string body_;
+};
+
+/// Colours that stay apart for most who see few (Okabe and Ito 2008, and darker ones behind them), in turn.
+std::string_view colour(std::size_t number);
+
+} // namespace analysis
