@@ -11,14 +11,15 @@
 
 namespace analysis {
 
-/// References by the smallest of some caches that hits them, for each of some groups, which may grow.
-class ReuseCounts {
+/// References by the smallest of some caches that hits them, for each of some groups, which may grow. Counts
+/// are whole numbers, or sums of weights.
+template <class Count> class BasicReuseCounts {
 public:
     /// `sizes`: lines, ascending.
-    explicit ReuseCounts(std::vector<std::uint64_t> sizes)
+    explicit BasicReuseCounts(std::vector<std::uint64_t> sizes)
         : sizes_(std::move(sizes)), row_(sizes_.size() + 2) {}
 
-    void add(std::size_t group, std::uint64_t distance) {
+    void add(std::size_t group, std::uint64_t distance, Count weight = 1) {
         const auto column =
             distance == StackDistance::first
                 ? row_ - 1
@@ -27,19 +28,19 @@ public:
         const std::size_t at = group * row_ + column;
         if (at >= counts_.size())
             counts_.resize((group + 1) * row_, 0);
-        ++counts_[at];
+        counts_[at] += weight;
     }
     const std::vector<std::uint64_t>& sizes() const { return sizes_; }
     /// Hit by that size, not by the one before; at sizes().size(): by none of them.
-    std::uint64_t at(std::size_t group, std::size_t size) const {
+    Count at(std::size_t group, std::size_t size) const {
         const std::size_t at = group * row_ + size;
         return at < counts_.size() ? counts_[at] : 0;
     }
     /// To lines that were never touched before.
-    std::uint64_t firsts(std::size_t group) const { return at(group, row_ - 1); }
-    std::uint64_t references(std::size_t group) const { return at(group, 0) + misses(group, 0); }
-    std::uint64_t misses(std::size_t group, std::size_t size) const {
-        std::uint64_t n = 0;
+    Count firsts(std::size_t group) const { return at(group, row_ - 1); }
+    Count references(std::size_t group) const { return at(group, 0) + misses(group, 0); }
+    Count misses(std::size_t group, std::size_t size) const {
+        Count n = 0;
         for (std::size_t column = size + 1; column < row_; ++column)
             n += at(group, column);
         return n;
@@ -48,8 +49,10 @@ public:
 private:
     std::vector<std::uint64_t> sizes_;
     std::size_t row_;
-    std::vector<std::uint64_t> counts_; // by group, then by size, larger ones, first touches
+    std::vector<Count> counts_; // by group, then by size, larger ones, first touches
 };
+
+using ReuseCounts = BasicReuseCounts<std::uint64_t>;
 
 class LruCurve {
 public:

@@ -13,23 +13,64 @@ std::uint64_t scaled(std::uint64_t distance, double rate) {
     return static_cast<std::uint64_t>(std::ceil(static_cast<double>(distance - 1) / rate)) + 1;
 }
 
-} // namespace
-
-Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of)
-    : rate_(rate), of_(of), limit_(static_cast<std::uint64_t>(std::ceil(rate * 0x1p53))), counts_(sizes),
-      part_stacks_(parts), part_counts_(parts, ReuseCounts(sizes)) {}
-
-void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
-    ++sampled_;
-    counts_.add(group, scaled(stack_.touch(line), rate_));
-    const std::size_t part = hash % parts; // the low bits, of which the sample knows nothing
-    part_counts_[part].add(group, scaled(part_stacks_[part].touch(line), rate_ / parts));
+/// Of hashes, which have 53 bits.
+std::uint64_t limit_of(double rate) {
+    return static_cast<std::uint64_t>(std::ceil(rate * 0x1p53));
 }
 
-/// Misses of a sample for each reference that it should have.
-double Shards::ratio(const ReuseCounts& counts, double rate, std::size_t group, std::size_t size) const {
-    return static_cast<double>(counts.misses(group, size)) /
-           (static_cast<double>(references(group)) * rate / of_);
+constexpr std::size_t slots = 4096; // the marks of small samples stay in fast memory
+
+} // namespace
+
+LineSample::LineSample(const std::vector<std::uint64_t>& sizes, double rate, std::size_t parts,
+                       std::uint64_t most)
+    : parts_(static_cast<double>(parts)), most_(most), stack_(slots), counts_(sizes) {
+    limit_ = limit_of(rate);
+    rate_ = rate / parts_;
+}
+
+void LineSample::set_limit(std::uint64_t limit) {
+    limit_ = limit;
+    rate_ = static_cast<double>(limit) * 0x1p-53 / parts_;
+}
+
+void LineSample::touch(std::uint64_t line, std::size_t group, std::uint64_t hash) {
+    const std::uint64_t distance = stack_.touch(line);
+    counts_.add(group, scaled(distance, rate_), 1 / rate_);
+    if (most_ == 0 || distance != StackDistance::first)
+        return;
+    highest_.emplace(hash, line);
+    if (highest_.size() <= most_)
+        return;
+    set_limit(highest_.top().first);
+    while (!highest_.empty() && highest_.top().first >= limit_) {
+        stack_.forget(highest_.top().second);
+        highest_.pop();
+    }
+}
+
+Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of, std::uint64_t most)
+    : of_(of), limit_(limit_of(rate)), sample_(sizes, rate, 1, most),
+      part_samples_(parts, LineSample(sizes, rate, parts, most / parts)) {}
+
+void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
+    if (hash < sample_.limit()) {
+        ++sampled_;
+        sample_.touch(line, group, hash);
+    }
+    LineSample& part = part_samples_[hash % parts]; // the low bits, of which the limit knows nothing
+    if (hash < part.limit())
+        part.touch(line, group, hash);
+    if (sample_.limit() < limit_) { // parts' limits lie about that of all
+        limit_ = sample_.limit();
+        for (const LineSample& p : part_samples_)
+            limit_ = std::max(limit_, p.limit());
+    }
+}
+
+/// Misses of a sample for each reference that there is.
+double Shards::ratio(const LineSample& sample, std::size_t group, std::size_t size) const {
+    return sample.counts().misses(group, size) / (static_cast<double>(references(group)) / of_);
 }
 
 Shards::Estimate Shards::estimate(std::size_t group, std::size_t size) const {
@@ -37,15 +78,15 @@ Shards::Estimate Shards::estimate(std::size_t group, std::size_t size) const {
     if (references(group) == 0)
         return {};
     double sum = 0, squares = 0;
-    for (const ReuseCounts& part : part_counts_) {
-        const double r = ratio(part, rate_ / parts, group, size);
+    for (const LineSample& part : part_samples_) {
+        const double r = ratio(part, group, size);
         sum += r;
         squares += r * r;
     }
     const double n = parts, variance = std::max(0.0, squares - sum * sum / n) / (n - 1);
     // A sample of all lines leaves nothing to chance.
-    return {std::clamp(ratio(counts_, rate_, group, size), 0.0, 1.0),
-            student * std::sqrt((1 - rate_) * variance / n)};
+    return {std::clamp(ratio(sample_, group, size), 0.0, 1.0),
+            student * std::sqrt((1 - rate()) * variance / n)};
 }
 
 } // namespace analysis

@@ -20,7 +20,7 @@ void StackDistance::pack() {
             owners_[live] = line;
             slots_[line] = live++;
         }
-    reserve(std::max(least_slots, 3 * std::size_t{live}));
+    reserve(std::max(least_slots_, 3 * std::size_t{live}));
     for (next_ = 0; next_ < live;)
         mark();
 }

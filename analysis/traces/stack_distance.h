@@ -20,7 +20,11 @@ class StackDistance {
 public:
     static constexpr std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
 
-    StackDistance() { reserve(least_slots); }
+    /// With room for so many touches at first, a multiple of 512: few where few lines are to stay in fast
+    /// memory.
+    explicit StackDistance(std::size_t least_slots = std::size_t{1} << 16) : least_slots_(least_slots) {
+        reserve(least_slots_);
+    }
 
     /// The place of a line in the LRU stack, from 1 on, before it goes to the top: a fully associative LRU
     /// cache of so many lines hits, a smaller one misses. `first`: it was never touched.
@@ -47,7 +51,6 @@ public:
     std::uint64_t lines() const { return slots_.size(); }
 
 private:
-    static constexpr std::size_t least_slots = std::size_t{1} << 16;
     static constexpr std::size_t group_words = 8, group_slots = group_words * 64;
 
     void reserve(std::size_t slots);
@@ -75,6 +78,7 @@ private:
         ++next_;
     }
 
+    std::size_t least_slots_;
     LineMap slots_;                     // of lines
     std::vector<std::uint64_t> owners_; // of slots: lines
     std::vector<std::uint64_t> words_;  // marks

@@ -35,12 +35,16 @@ std::string quoted(const std::string& text) {
 
 } // namespace
 
+std::string text_of(const Table::Cell& cell) {
+    return plain(cell, "{:.4f}");
+}
+
 std::string Table::text() const {
     std::vector<std::vector<std::string>> cells = {columns};
     for (const std::vector<Cell>& row : rows) {
         cells.emplace_back();
         for (const Cell& cell : row)
-            cells.back().push_back(plain(cell, "{:.4f}"));
+            cells.back().push_back(text_of(cell));
     }
     std::vector<std::size_t> width(columns.size(), 0);
     for (const std::vector<std::string>& row : cells)

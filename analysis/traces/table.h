@@ -22,4 +22,7 @@ struct Table {
     std::string json() const;
 };
 
+/// A cell as Table::text() has it.
+std::string text_of(const Table::Cell& cell);
+
 } // namespace analysis

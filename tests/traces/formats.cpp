@@ -113,6 +113,9 @@ TEST(TraceFormats, WhatAFormatHoldsComesBack) {
                           "file " + std::to_string(e.what.site - 1) +
                               ", \"x\":" + std::to_string(e.what.site - 1));
             }
+            if (name == "drmemtrace" && e.what.kind != Kind::fetch) {
+                ASSERT_EQ(b.what.site, e.what.site == 0 ? 0 : 0x400000 + 4 * e.what.site) << i;
+            }
             if (name == "champsim") {
                 ASSERT_EQ(b.what.site, 0x400000 + 4 * e.what.site) << i;
             }
@@ -169,6 +172,34 @@ TEST(TraceFormats, ReadsWhatOtherToolsWrite) {
         {"dramsim3",
          "0x12340 READ 5\n0x40 WRITE 17\n",
          {{5, 0x12340, 0, {}}, {17, 0x40, 0, {.kind = Kind::write}}}},
+        {"drmemtrace",
+         "Output format:\n"
+         "<--record#-> <--instr#->: <---tid---> <record details>\n"
+         "------------------------------------------------------------\n"
+         "           1           0:     2765542 <marker: version 5>\n"
+         "------------------------------------------------------------\n"
+         "       47742       37769:     2765543 ifetch       6 byte(s) @ 0x0000000000404a78 0f 84 5b 01 00 "
+         "00    "
+         "jz     $0x0000000000404bd9 (untaken)\n"
+         "       47744       37770:     2765543 read         8 byte(s) @ 0x00007fdf64e2adc8 by PC "
+         "0x0000000000404a7e\n"
+         "          69          49:     W2.T292 ifetch       9 byte(s) @ 0x0000000000401000 0f 84 5b 01 00 "
+         "00 11 22\n"
+         "                                   d9                jnz    $0x000000000040100b\n"
+         "          70          49:     W2.T292 write       16 byte(s) @ 0x0000000000000020 by PC "
+         "0x0000000000401000\n"
+         "          71          49:     W2.T292 pref-r-L1    0 byte(s) @ 0x0000000000000040 by PC "
+         "0x0000000000401000\n"
+         "          72          49:     W2.T292 dflush      64 byte(s) @ 0x0000000000000080 by PC "
+         "0x0000000000401000\n"
+         "          73          49:     W2.T292 <thread 292 exited>\n"
+         "View tool results:\n"
+         "              49 : total disassembled instructions\n",
+         {{0, 0x404a78, 2765543, {.size = 6, .kind = Kind::fetch}},
+          {1, 0x7fdf64e2adc8, 2765543, {.site = 0x404a7e, .size = 8}},
+          {2, 0x401000, (2U << 24U) + 292, {.size = 9, .kind = Kind::fetch}},
+          {3, 0x20, (2U << 24U) + 292, {.site = 0x401000, .size = 16, .kind = Kind::write}},
+          {4, 0x40, (2U << 24U) + 292, {.site = 0x401000, .kind = Kind::prefetch}}}},
         {"ramulator", "0x12340 R\n0x40 W\n", {{0, 0x12340, 0, {}}, {1, 0x40, 0, {.kind = Kind::write}}}},
     };
     for (const Case& c : cases) {

@@ -39,8 +39,8 @@ std::string own_seed() {
     return out;
 }
 
-const std::array<std::string, 8>& seeds() {
-    static const std::array<std::string, 8> all{
+const std::array<std::string, 9>& seeds() {
+    static const std::array<std::string, 9> all{
         std::string(1, '\0') + own_seed(),
         std::string("\1") + "0 10 4\n1 7fff 8\n2 401000 3\n",
         std::string("\2") +
@@ -50,6 +50,12 @@ const std::array<std::string, 8>& seeds() {
         std::string("\5") + "0x10 R\n0x20 W\n",
         std::string("\6") + std::string(128, '\1'),
         std::string("\7") + std::string(48, '\2'),
+        std::string("\10") +
+            "Output format:\n           1           0:        1234 <marker: version 6>\n"
+            "           2           1:        1234 ifetch       3 byte(s) @ 0x0000000000401000 "
+            "89 c3 90 mov %eax -> %ebx\n"
+            "           3           1:    W0.T1234 write        8 byte(s) @ 0x00007fff00000010 by "
+            "PC 0x0000000000401000\n",
     };
     return all;
 }

@@ -85,5 +85,7 @@ std::unique_ptr<Input> read_champsim(std::unique_ptr<Source> source);
 std::unique_ptr<Output> write_champsim(std::unique_ptr<Sink> sink);
 std::unique_ptr<Input> read_oracle_general(std::unique_ptr<Source> source);
 std::unique_ptr<Output> write_oracle_general(std::unique_ptr<Sink> sink);
+std::unique_ptr<Input> read_drmemtrace(std::unique_ptr<Source> source);
+std::unique_ptr<Output> write_drmemtrace(std::unique_ptr<Sink> sink);
 
 } // namespace traces

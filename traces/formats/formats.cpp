@@ -15,7 +15,9 @@ constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, tru
                                               lackey = {true, true, true, true, false, false, false, false},
                                               plain = {true, true, false, false, false, false, false, false},
                                               requests = {true,  false, false, false,
-                                                          false, false, false, false};
+                                                          false, false, false, false},
+                                              drmemtrace = {true, true,  false, true,
+                                                            true, false, false, false};
 
 // time, streams, size, sites, names, kinds
 constexpr Format table[] = {
@@ -67,6 +69,12 @@ constexpr Format table[] = {
      {true, false, true, false, false, requests},
      read_oracle_general,
      write_oracle_general},
+    {"drmemtrace",
+     "DynamoRIO's drmemtrace as its tool `view` prints it",
+     ".drmemtrace .view",
+     {false, true, true, true, false, drmemtrace},
+     read_drmemtrace,
+     write_drmemtrace},
 };
 
 std::string names() {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <filesystem>
 #include <sstream>
 #include <unistd.h>
 
@@ -118,8 +119,12 @@ void AnalysisOptions::add_to(CLI::App& app, const char* by) {
     app.add_option("--from", from_, "its format; without it, as it begins or is named")->type_name("FORMAT");
     app.add_option("--line", line_, "bytes of a line, a power of two; without it, those of the trace, or 64")
         ->type_name("SIZE");
+    std::string kinds;
+    for (std::size_t k = 0; k < kind_names.size(); ++k)
+        if (kinds_in_[k])
+            kinds += (kinds.empty() ? "" : ",") + std::string(kind_names[k]);
     app.add_option("--kinds", kinds_,
-                   "kinds of references that count, with commas between; without it, read,write,modify,fetch")
+                   "kinds of references that count, with commas between; without it, " + kinds)
         ->type_name("KINDS");
     if (by != nullptr) {
         by_names_ = by;
@@ -155,10 +160,7 @@ void AnalysisOptions::prepare() {
                             : "--window: windows are not asked for; add --by window");
     if (windows)
         window_length_ = parse_window("--window", window_);
-    auto source = open_source(file_);
-    const Format& format = format_of_input(from_, file_, *source);
-    input_ = format.read(std::move(source));
-    description_ = input_->description();
+    open();
     if (!line_.empty())
         line_bytes_ = parse_size("--line", line_);
     else if (description_.line_bytes != 0)
@@ -170,6 +172,20 @@ void AnalysisOptions::prepare() {
             fmt::format("--line {}: the trace is of a sample of lines of {} bytes, others are not whole "
                         "in it; leave --line out",
                         line_, description_.line_bytes));
+}
+
+void AnalysisOptions::open() {
+    auto source = open_source(file_);
+    const Format& format = format_of_input(from_, file_, *source);
+    input_ = format.read(std::move(source));
+    description_ = input_->description();
+}
+
+void AnalysisOptions::reopen() {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file_, none))
+        throw Error(fmt::format("{}: is read twice, and this is a pipe; write it into a file first", file_));
+    open();
 }
 
 void AnalysisOptions::refuse_sample() const {

@@ -58,12 +58,18 @@ public:
                  std::vector<analysis::Table::Cell> cells) const;
     /// Opens the trace and checks all options.
     void prepare();
+    /// Opens the trace again, after each_block() has read it. Throws Error, as of a pipe.
+    void reopen();
+    const std::string& file() const { return file_; }
+    const std::string& note() const { return note_; }
     /// After prepare(), where a sample of lines tells nothing. Throws Error.
     void refuse_sample() const;
     /// Prints the table, or writes it as asked; what the trace lacks is said.
     void give(std::string_view command, const analysis::Table& table, const std::string& heading) const;
 
 private:
+    void open();
+
     std::string file_, from_, line_, kinds_, by_names_, window_, csv_, json_;
     analysis::Touches::Kinds kinds_in_ = analysis::Touches::demand;
     std::vector<analysis::By> by_; // without `all`

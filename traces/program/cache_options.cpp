@@ -24,9 +24,11 @@ std::uint64_t all_or(std::string_view option, const std::string& text, std::uint
 } // namespace
 
 void CacheOptions::add_to(CLI::App& app) {
-    app.add_option("--sizes", sizes_text_, "of caches, as 32KiB, 8KiB..1MiB (doubling) or 32KiB,48KiB")
+    app.add_option("--sizes", sizes_text_,
+                   "of caches, as 32KiB, 8KiB..1MiB (doubling) or 32KiB,48KiB" +
+                       (sizes_text_.empty() ? "" : "; without it, " + sizes_text_))
         ->type_name("SIZES")
-        ->required();
+        ->required(sizes_text_.empty());
     app.add_option("--ways", ways_text_, "of each set, LRU; all: fully associative; without it, 8")
         ->type_name("WAYS");
     app.add_option("--share", share_,

@@ -14,8 +14,8 @@ namespace traces {
 
 class CacheOptions {
 public:
-    /// `share`: how many threads use a cache if nothing else is asked for.
-    explicit CacheOptions(const char* share) : share_(share) {}
+    /// How many threads use a cache, and its size, if nothing else is asked for; empty: a size must be given.
+    explicit CacheOptions(const char* share, const char* sizes = "") : sizes_text_(sizes), share_(share) {}
     void add_to(CLI::App& app);
     /// Checks all options, for lines of so many bytes. Throws Error.
     void prepare(std::uint64_t line_bytes);

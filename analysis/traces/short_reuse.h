@@ -1,0 +1,58 @@
+// What small LRU caches miss, from stretches of a trace: what SHARDS cannot see, whose samples have hardly
+// any line between two touches that are near each other. Sampling in time (Laha, Patel and Iyer, IEEE
+// Transactions on Computers 1988; what is unknown at the beginning of a stretch: Wood, Hill and Kessler,
+// SIGMETRICS 1991).
+#pragma once
+
+#include "analysis/traces/stack_distance.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace analysis {
+
+/// Of each period of touches one stretch is looked at, where a hash of the period's number says. In a stretch
+/// distances are exact from when as many different lines were touched in it as a cache has: from there on,
+/// what was not touched in it is a miss. So nothing is assumed of what caches hold at its beginning.
+class ShortReuse {
+public:
+    /// `sizes`: lines, ascending. `rate`: of all touches that are looked at, in (0, 1]; stretches of so many.
+    ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint64_t stretch);
+
+    void touch(std::uint64_t line, std::size_t group) {
+        if (now_ >= begin_)
+            look(line, group);
+        ++now_;
+    }
+
+    /// Misses a reference of a group, of a cache of sizes[size] lines; half of the interval that has them in
+    /// 19 of 20 cases, by how stretches differ; and of how many references it is. Not-a-number: nothing is
+    /// known.
+    struct Estimate {
+        double ratio, error;
+        std::uint64_t references;
+    };
+    Estimate estimate(std::size_t group, std::size_t size) const;
+    /// Stretches that are whole.
+    std::uint64_t stretches() const { return stretches_; }
+
+private:
+    struct Known { // of a group and size: in the stretch at hand, and sums over stretches
+        std::uint64_t references = 0, misses = 0;
+        double sum_references = 0, sum_misses = 0, references2 = 0, products = 0, misses2 = 0;
+        std::uint64_t stretches = 0; // in which there were references
+    };
+    void look(std::uint64_t line, std::size_t group);
+    void end_stretch();
+    void next_stretch();
+
+    std::vector<std::uint64_t> sizes_;
+    std::uint64_t stretch_, period_;
+    std::uint64_t now_ = 0, number_ = 0, begin_ = 0, end_ = 0; // touches; of the stretch at hand or next
+    std::uint64_t stretches_ = 0;
+    StackDistance stack_;
+    std::vector<Known> known_; // by group, then by size
+};
+
+} // namespace analysis
