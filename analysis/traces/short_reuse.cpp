@@ -33,6 +33,9 @@ void ShortReuse::next_stretch() {
 void ShortReuse::look(std::uint64_t line, std::size_t group) {
     if ((group + 1) * sizes_.size() > known_.size())
         known_.resize((group + 1) * sizes_.size());
+    if (group >= touches_.size())
+        touches_.resize(group + 1, 0);
+    ++touches_[group];
     const std::uint64_t before = stack_.lines(), distance = stack_.touch(line);
     Known* known = &known_[group * sizes_.size()];
     for (std::size_t s = 0; s < sizes_.size() && sizes_[s] <= before; ++s) {
@@ -61,7 +64,9 @@ void ShortReuse::end_stretch() {
 ShortReuse::Estimate ShortReuse::estimate(std::size_t group, std::size_t size) const {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const std::size_t at = group * sizes_.size() + size;
-    if (at >= known_.size() || known_[at].stretches < 2)
+    constexpr std::uint64_t least_stretches = 8;
+    if (at >= known_.size() || known_[at].stretches < least_stretches ||
+        known_[at].sum_references * 8 < static_cast<double>(touches_[group]))
         return {nan, nan, 0};
     const Known& k = known_[at];
     // The ratio estimator of sampled clusters (Cochran, Sampling Techniques, 1977, 6.3); Student's t by the

@@ -52,7 +52,8 @@ private:
     std::uint64_t now_ = 0, number_ = 0, begin_ = 0, end_ = 0; // touches; of the stretch at hand or next
     std::uint64_t stretches_ = 0;
     StackDistance stack_;
-    std::vector<Known> known_; // by group, then by size
+    std::vector<Known> known_;           // by group, then by size
+    std::vector<std::uint64_t> touches_; // by group, in stretches
 };
 
 } // namespace analysis

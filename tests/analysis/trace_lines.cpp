@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -76,6 +77,36 @@ TEST(Touches, TellGroupsApart) {
     EXPECT_EQ(names(By::site), Names({"b.h:2", "unknown", "b.h:2"}));
     d.site_addresses = true;
     EXPECT_EQ(names(By::site), Names({"0x2", "unknown", "0x2"}));
+}
+
+/// By several things at once, threads and windows among them; nothing is lost.
+TEST(Touches, TellCombinationsApart) {
+    traces::Description d;
+    d.structures = {"unknown", "nodes", "packets"};
+    d.streams = {"one", "two"};
+    std::vector<traces::Reference> all;
+    for (std::uint64_t i = 0; i < 600; ++i)
+        all.push_back({i,
+                       i * 64,
+                       static_cast<std::uint32_t>(i / 3 % 2),
+                       {.structure = static_cast<std::uint16_t>(1 + i % 2)}});
+    Touches touches(6, Touches::demand, Grouping({By::thread, By::window, By::structure}, 100));
+    std::map<std::string, std::uint64_t> counts, expected;
+    for (const std::size_t half : {0U, 300U}) // groups go on from block to block
+        for (const Touch& t :
+             touches_of(touches, block_of({all.begin() + static_cast<std::ptrdiff_t>(half),
+                                           all.begin() + static_cast<std::ptrdiff_t>(half) + 300})))
+            ++counts[touches.name(t.group, d)];
+    for (const traces::Reference& r : all)
+        ++expected[d.streams[r.stream] + ", " + std::to_string(r.time / 100 * 100) + ", " +
+                   d.structures[r.what.structure]];
+    EXPECT_EQ(counts, expected);
+    EXPECT_EQ(counts.size(), 24U);
+    EXPECT_EQ(touches.groups(), 24U);
+    const std::vector<Table::Cell> cells = touches.cells(0, d);
+    ASSERT_EQ(cells.size(), 3U);
+    EXPECT_EQ(std::get<std::uint64_t>(cells[1]), 0U);
+    EXPECT_EQ(Touches(6, Touches::demand, By::all).cells(0, d).size(), 0U);
 }
 
 Touch touch(std::uint64_t line, std::uint64_t low, std::uint64_t high, std::uint32_t stream, bool writes) {

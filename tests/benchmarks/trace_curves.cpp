@@ -1,10 +1,10 @@
 // How fast curves of misses are made of a trace, from memory, and how near those of a sample come to the
 // exact one.
-//   trace_curves FILE [--rate R] [--millions N] [--runs N]
+//   trace_curves FILE [--rate R] [--sample-lines N] [--millions N] [--runs N]
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/optimum.h"
+#include "analysis/traces/sampled_curve.h"
 #include "analysis/traces/set_curve.h"
-#include "analysis/traces/shards.h"
 #include "analysis/traces/touches.h"
 #include "traces/error.h"
 #include "traces/formats/format.h"
@@ -43,7 +43,13 @@ template <class Work> double speed(std::size_t touches, int runs, Work work) {
     return all[all.size() / 2];
 }
 
-int run(const std::string& file, double rate, std::size_t most, int runs) {
+struct Sampled {
+    double speed = 0, mean = 0, largest = 0; // million touches a second; errors of ratios
+    std::size_t sizes = 0;
+    std::uint64_t lines = 0; // in the sample
+};
+
+int run(const std::string& file, double rate, std::uint64_t sample_lines, std::size_t most, int runs) {
     const std::vector<std::uint64_t> lines = lines_of(file, most);
     if (lines.empty())
         throw traces::Error(file + ": holds no reads, writes or fetches");
@@ -62,22 +68,25 @@ int run(const std::string& file, double rate, std::size_t most, int runs) {
             truth.push_back(static_cast<double>(curve.counts().misses(0, s)) /
                             static_cast<double>(lines.size()));
     });
-    double mean = 0, largest = 0;
-    std::size_t counted = 0;
-    const double sampled = speed(lines.size(), runs, [&] {
-        analysis::Shards shards(sizes, rate);
-        for (const std::uint64_t line : lines)
-            shards.touch(line, 0);
-        mean = largest = 0;
-        for (counted = 0; counted < sizes.size(); ++counted) {
-            const double error = std::abs(shards.estimate(0, counted).ratio - truth[counted]);
-            mean += error;
-            largest = std::max(largest, error);
-            if (sizes[counted] > different)
-                break;
-        }
-        mean /= static_cast<double>(++counted);
-    });
+    Sampled fixed_rate, fixed_size;
+    const auto sampled = [&](Sampled& out, double part, std::uint64_t most_lines) {
+        out.speed = speed(lines.size(), runs, [&] {
+            analysis::SampledCurve curve(sizes, part, 1, most_lines);
+            for (const std::uint64_t line : lines)
+                curve.touch(line, 0);
+            out = {0, 0, 0, 0, curve.lines().lines()};
+            for (out.sizes = 0; out.sizes < sizes.size();) {
+                const double error = std::abs(curve.estimate(0, out.sizes).ratio - truth[out.sizes]);
+                out.mean += error;
+                out.largest = std::max(out.largest, error);
+                if (sizes[out.sizes++] > different)
+                    break;
+            }
+            out.mean /= static_cast<double>(out.sizes);
+        });
+    };
+    sampled(fixed_rate, rate, 0);
+    sampled(fixed_size, 1, sample_lines);
     const double sets = speed(lines.size(), runs, [&] {
         analysis::SetCurve curve(64, {8});
         for (const std::uint64_t line : lines)
@@ -92,9 +101,12 @@ int run(const std::string& file, double rate, std::size_t most, int runs) {
     fmt::print("{}: {} touches of {} lines of 64 bytes; million touches a second, median of {} runs\n", file,
                lines.size(), different, runs);
     fmt::print("LRU of all sizes, exact                {:10.1f}\n", exact);
-    fmt::print("LRU of all sizes, {:g} of all lines    {:10.1f}, {:.1f} times as fast; {} sizes, error "
-               "{:.4f} in the mean, {:.4f} at most\n",
-               rate, sampled, sampled / exact, counted, mean, largest);
+    for (const auto& [text, s] : {std::pair{fmt::format("{:g} of all lines", rate), &fixed_rate},
+                                  {fmt::format("at most {} lines", sample_lines), &fixed_size}})
+        fmt::print(
+            "LRU of all sizes, {:<21}{:10.1f}, {:.1f} times as fast; {} lines, {} sizes, error {:.4f} in the "
+            "mean, {:.4f} at most\n",
+            text, s->speed, s->speed / exact, s->lines, s->sizes, s->mean, s->largest);
     fmt::print("64 sets of 8 ways                      {:10.1f}\n", sets);
     fmt::print("Belady's optimum of 512 lines          {:10.1f}\n", optimum);
     return 0;
@@ -106,15 +118,18 @@ int main(int argc, char** argv) {
     CLI::App app("Measures how fast curves of misses are made of a trace.", "trace_curves");
     std::string file;
     double rate = 0.01;
+    std::uint64_t sample_lines = 8192;
     std::size_t millions = 100;
     int runs = 3;
     app.add_option("file", file, "a trace of any format")->required();
     app.add_option("--rate", rate, "of a sample of lines")->check(CLI::Range(1e-6, 1.0));
+    app.add_option("--sample-lines", sample_lines, "at most, of a sample of a fixed size")
+        ->check(CLI::Range(256, 1 << 24));
     app.add_option("--millions", millions, "the first references, at most")->check(CLI::Range(1, 4000));
     app.add_option("--runs", runs, "so often; medians are printed")->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
     try {
-        return run(file, rate, millions * 1000000, runs);
+        return run(file, rate, sample_lines, millions * 1000000, runs);
     } catch (const traces::Error& e) {
         fmt::print(stderr, "trace_curves: {}\n", e.what());
         return 2;

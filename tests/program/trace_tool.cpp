@@ -157,6 +157,78 @@ TEST_F(TraceTool, AnswersQuestionsAboutCaches) {
     EXPECT_NE(tool("curve a.din").out.find("15 touches of 1 lines of 64 bytes"), std::string::npos);
 }
 
+/// Two threads of two structures: what one writes, the other reads.
+TEST_F(TraceTool, SaysWhyCachesMissAndWhatLinesAreUsedFor) {
+    std::string csv = "cycles,stream,kind,address,size,structure\n";
+    for (int i = 0; i < 10; ++i)
+        csv += std::to_string(10 * i) + ",0,write,0x100,8,queue\n" + std::to_string(10 * i + 5) +
+               ",1,read,0x" + (i % 2 == 0 ? "100" : "120") + ",8,queue\n" + std::to_string(10 * i + 6) +
+               ",1,read," + std::to_string(1000 + 100 * i) + ",16,nodes\n"; // hexadecimal: 256 apart
+    folder_.file("a.csv", csv);
+    const auto rows = [&](const std::string& arguments) {
+        const Outcome result = tool(arguments + " --json -");
+        EXPECT_EQ(result.code, 0) << result.err;
+        return nlohmann::json::parse(result.out).at("rows");
+    };
+    const nlohmann::json causes = rows("causes a.csv --sizes 1KiB --share 1 --by structure,thread");
+    ASSERT_EQ(causes.size(), 3U);
+    for (const nlohmann::json& row : causes) {
+        EXPECT_EQ(row.at("compulsory").get<int>() + row.at("capacity").get<int>() +
+                      row.at("conflict").get<int>() + row.at("true sharing").get<int>() +
+                      row.at("false sharing").get<int>(),
+                  row.at("misses").get<int>());
+        if (row.at("structure") == "queue" && row.at("thread") == "thread 1") {
+            EXPECT_EQ(row.at("misses"), 10);
+            EXPECT_EQ(row.at("true sharing"), 4); // at 0x100, the first time it is compulsory
+            EXPECT_EQ(row.at("false sharing"), 5);
+        }
+    }
+    EXPECT_EQ(rows("causes a.csv --sizes 1KiB").at(0).at("true sharing"), 0); // one cache for all
+    const nlohmann::json windows = rows("causes a.csv --sizes 1KiB --by window --window 50");
+    ASSERT_EQ(windows.size(), 2U);
+    EXPECT_EQ(windows.at(1).at("window"), 50);
+    EXPECT_EQ(windows.at(0).at("references").get<int>() + windows.at(1).at("references").get<int>(), 30);
+    const nlohmann::json use = rows("use a.csv --sizes 1KiB --share 1");
+    EXPECT_EQ(use.at(0).at("structure"), "queue");
+    EXPECT_EQ(use.at(0).at("dropped"), 9); // by each write but the first
+    const nlohmann::json replicas = rows("replicas a.csv --sizes 1KiB,4KiB");
+    ASSERT_EQ(replicas.size(), 4U);
+    EXPECT_GT(replicas.at(0).at("copies a line").get<double>(), 1);
+    EXPECT_EQ(replicas.at(3).at("duplicates"), 0); // the nodes are one thread's
+    EXPECT_EQ(rows("footprint a.csv").at(0).at("touched by"), 2);
+    EXPECT_EQ(rows("footprint a.csv --threads").at(0).at("lines alone"), 0);
+    const nlohmann::json strides = rows("strides a.csv");
+    EXPECT_EQ(strides.at(0).at("same"), 9);    // of the writer
+    EXPECT_EQ(strides.at(1).at("strided"), 8); // after the first step
+    EXPECT_EQ(strides.at(1).at("most frequent"), 256);
+    EXPECT_EQ(rows("strides a.csv --top 1").at(1).at("stride"), 256);
+    EXPECT_EQ(rows("strides a.csv --histogram").back().at("forwards"), 9);
+
+    EXPECT_EQ(tool("picture a.csv -o a.svg").code, 0);
+    EXPECT_NE(text("a.svg").find("queue"), std::string::npos);
+    EXPECT_EQ(tool("picture a.csv -o a.png").code, 0);
+    EXPECT_EQ(text("a.png").substr(1, 3), "PNG");
+    const Outcome report = tool("report a.csv -o a.html");
+    EXPECT_EQ(report.code, 0) << report.err;
+    const std::string html = text("a.html");
+    for (const char* heading : {"Why caches miss", "Strides", "Addresses over time", "Working set over time",
+                                "Lines and who shares them", "Misses by the size of a cache"})
+        EXPECT_NE(html.find(heading), std::string::npos) << heading;
+    EXPECT_EQ(html.find("nan"), std::string::npos);
+    tool("report a.csv -o b.html");
+    EXPECT_EQ(text("b.html"), html);
+}
+
+/// Whatever ends the program: where the file system can have files without names, nothing is left.
+TEST_F(TraceTool, LeavesNothingBehindWhereItIsKilled) {
+    folder_.file("a.din", "0 10 4\n");
+    const std::size_t before = folder_.count();
+    run("((while echo 0 10 4; do :; done) 2>/dev/null | timeout -s KILL 0.5 " + program +
+            " convert - b.rzt --from din)",
+        folder_.path());
+    EXPECT_EQ(folder_.count(), before);
+}
+
 TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
     folder_.file("a.din", "0 10 4\n");
     const std::size_t before = folder_.count();
@@ -176,8 +248,23 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"curve a.din --json no/a.json", "no/a.json: cannot be written"},
              {"windows a.din", "--window"},
              {"windows a.din --window 5 --sizes 100", "give multiples"},
-             {"windows a.din --window 0", "no size"},
+             {"windows a.din --window 0", "no length"},
              {"lines a.din --hottest 0", "--hottest"},
+             {"curve a.din --sample-lines 10", "give at least 256"},
+             {"curve a.din --sample-lines 1KiB --ways 2", "leave out"},
+             {"causes a.din", "--sizes"},
+             {"causes a.din --sizes 64KiB --ways 3", "no sets of 3 ways"},
+             {"causes a.din --sizes 64KiB --share none", "or all"},
+             {"use a.din --sizes 100", "give multiples"},
+             {"strides a.din --by window", "give --window N"},
+             {"strides a.din --window 5", "add --by window"},
+             {"strides a.din --by structure,structure", "twice"},
+             {"strides a.din --top 0", "--top"},
+             {"picture a.din", "--output"},
+             {"picture a.din -o a.jpg", "name a .png file"},
+             {"picture a.din -o no/a.png", "no/a.png: cannot be written"},
+             {"report - --from din -o a.html < a.din", "write it into a file first"},
+             {"report a.din -o a.html --sizes 1KiB,2KiB", "give one"},
              {"objects a.din", "--sizes"}}) {
         const Outcome result = tool(arguments);
         EXPECT_EQ(result.code, 2) << arguments;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <unistd.h>
 
@@ -25,11 +26,15 @@ public:
             if (fs::is_directory(status))
                 throw Error(fmt::format("{}: is a folder; name a file", path));
             temporary_ = path_; // a pipe or device is written as it is
+            file_ = std::fopen(temporary_.c_str(), "wb");
         } else {
             temporary_ = path_;
             temporary_ += fmt::format(".part{}", getpid());
+            file_ = nameless(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
+            nameless_ = file_ != nullptr;
+            if (!nameless_) // file systems of all kinds
+                file_ = std::fopen(temporary_.c_str(), "wb");
         }
-        file_ = std::fopen(temporary_.c_str(), "wb");
         if (file_ == nullptr)
             throw Error(
                 fmt::format("{}: cannot be written ({}); check the folder", path, std::strerror(errno)));
@@ -38,7 +43,7 @@ public:
         if (file_ != nullptr)
             std::fclose(file_);
         std::error_code ignored;
-        if (!committed_ && temporary_ != path_)
+        if (!committed_ && temporary_ != path_ && !nameless_)
             fs::remove(temporary_, ignored);
     }
     void write(std::string_view bytes) override {
@@ -46,6 +51,12 @@ public:
             fail();
     }
     void commit() override {
+        if (std::fflush(file_) != 0)
+            fail();
+        if (nameless_ && linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", fileno(file_)).c_str(), AT_FDCWD,
+                                temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+            fail();
+        nameless_ = false;
         const int closed = std::fclose(file_);
         file_ = nullptr;
         if (closed != 0)
@@ -60,6 +71,12 @@ public:
     }
 
 private:
+    /// A file in a folder that has no name yet, so that nothing is left of it whatever ends the program;
+    /// null: the file system has none of these.
+    static std::FILE* nameless(const fs::path& folder) {
+        const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666); // NOLINT: as of POSIX
+        return file < 0 ? nullptr : fdopen(file, "wb");
+    }
     [[noreturn]] void fail() const {
         throw Error(
             fmt::format("{}: cannot be written ({}); check the disk", path_.string(), std::strerror(errno)));
@@ -67,7 +84,7 @@ private:
 
     fs::path path_, temporary_;
     std::FILE* file_ = nullptr;
-    bool committed_ = false;
+    bool committed_ = false, nameless_ = false;
 };
 
 class StandardOutput final : public Sink {

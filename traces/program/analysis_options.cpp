@@ -181,11 +181,10 @@ void AnalysisOptions::open() {
     description_ = input_->description();
 }
 
-void AnalysisOptions::reopen() {
+void AnalysisOptions::refuse_pipe() const {
     std::error_code none;
     if (!std::filesystem::is_regular_file(file_, none))
         throw Error(fmt::format("{}: is read twice, and this is a pipe; write it into a file first", file_));
-    open();
 }
 
 void AnalysisOptions::refuse_sample() const {

@@ -58,8 +58,10 @@ public:
                  std::vector<analysis::Table::Cell> cells) const;
     /// Opens the trace and checks all options.
     void prepare();
-    /// Opens the trace again, after each_block() has read it. Throws Error, as of a pipe.
-    void reopen();
+    /// After prepare(), where the trace is read twice. Throws Error.
+    void refuse_pipe() const;
+    /// Opens the trace again, after each_block() has read it. Throws Error.
+    void reopen() { open(); }
     const std::string& file() const { return file_; }
     const std::string& note() const { return note_; }
     /// After prepare(), where a sample of lines tells nothing. Throws Error.

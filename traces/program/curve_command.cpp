@@ -1,7 +1,7 @@
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/optimum.h"
+#include "analysis/traces/sampled_curve.h"
 #include "analysis/traces/set_curve.h"
-#include "analysis/traces/shards.h"
 #include "traces/error.h"
 #include "traces/program/analyses.h"
 
@@ -36,6 +36,8 @@ std::vector<std::uint64_t> parse_ways(const std::string& text) {
     return out;
 }
 
+constexpr std::uint64_t least_sample = 256; // lines
+
 class CurveCommand final : public AnalysisCommand {
 public:
     CurveCommand() : AnalysisCommand("curve", "misses by the size of a cache", "all") {}
@@ -44,9 +46,9 @@ public:
 private:
     void add_options(CLI::App& app) override;
     Table exact();
-    Table sampled(double rate);
+    Table sampled(double rate, std::uint64_t most);
 
-    std::string sizes_, ways_, rate_, heading_;
+    std::string sizes_, ways_, rate_, most_, heading_;
     bool optimum_ = false;
 };
 
@@ -61,11 +63,21 @@ void CurveCommand::add_options(CLI::App& app) {
                  "also the least misses that any replacement can have (Belady); takes 8 bytes a reference");
     app.add_option("--rate", rate_, "estimate from this fraction of all lines (SHARDS), with its error")
         ->type_name("FRACTION");
+    app.add_option("--sample-lines", most_,
+                   "estimate from at most so many lines, at least 256: the fraction falls as more are met "
+                   "(SHARDS of a fixed size)")
+        ->type_name("N");
 }
 
 void CurveCommand::run() {
-    if (!rate_.empty() && (!ways_.empty() || optimum_))
-        throw Error("--rate: of fully associative LRU caches alone; leave out --ways and --optimum");
+    const bool samples = !rate_.empty() || !most_.empty();
+    if (samples && (!ways_.empty() || optimum_))
+        throw Error("--rate, --sample-lines: of fully associative LRU caches alone; leave out --ways and "
+                    "--optimum");
+    const std::uint64_t most = most_.empty() ? 0 : parse_size("--sample-lines", most_);
+    if (most != 0 && most < least_sample)
+        throw Error(
+            fmt::format("--sample-lines {}: too few to say anything; give at least {}", most, least_sample));
     const double rate = rate_.empty() ? 1 : parse_rate(rate_);
     options_.prepare();
     const double sample = options_.description().sample;
@@ -73,7 +85,7 @@ void CurveCommand::run() {
         throw Error(
             "--ways, --optimum: the trace is of a sample of lines, which tells of fully associative LRU "
             "caches alone; leave them out");
-    const Table table = rate < 1 || sample < 1 ? sampled(rate) : exact();
+    const Table table = samples || sample < 1 ? sampled(rate, most) : exact();
     options_.give("curve", table, heading_);
 }
 
@@ -150,38 +162,42 @@ Table CurveCommand::exact() {
     return table;
 }
 
-Table CurveCommand::sampled(double rate) {
+Table CurveCommand::sampled(double rate, std::uint64_t most) {
     const std::uint64_t line_bytes = options_.line_bytes();
     const bool chosen = !sizes_.empty();
     const std::vector<std::uint64_t> sizes = parse_sizes(
         "--sizes", chosen ? sizes_ : fmt::format("{}..1TiB", std::max<std::uint64_t>(1024, line_bytes)));
     const double of = options_.description().sample;
-    analysis::Shards shards(lines_of("--sizes", sizes, line_bytes), rate * of, of);
+    analysis::SampledCurve curve(lines_of("--sizes", sizes, line_bytes), rate * of, of, most);
+    const analysis::Shards& shards = curve.lines();
     analysis::Touches touches = options_.touches();
     options_.each_block([&](const Block& block) {
-        touches.each(block, [&](const Touch& t) { shards.touch(t.line, t.group); });
+        touches.each(block, [&](const Touch& t) { curve.touch(t.line, t.group); });
     });
 
     std::uint64_t references = 0;
     for (std::size_t g = 0; g < touches.groups(); ++g)
         references += shards.references(g);
-    heading_ =
-        fmt::format("{} touches of lines of {} bytes, estimated from {} touches of a sample of {:g} of all "
-                    "lines; errors are those of 19 samples of 20",
-                    references, line_bytes, shards.sampled(), rate * of);
-    Table table = options_.table({"bytes", "references", "misses", "ratio", "error"});
+    heading_ = fmt::format(
+        "{} touches of lines of {} bytes, estimated from {} touches of a sample of {:g} of all "
+        "lines ({} of them), and of caches of fewer than {:.0f} lines from stretches of the trace, as far "
+        "as there are enough; errors are those of 19 samples of 20, where they can be told",
+        references, line_bytes, shards.sampled(), shards.rate(), shards.lines(),
+        std::ceil(analysis::SampledCurve::fewest / shards.rate()));
+    Table table = options_.table({"bytes", "references", "misses", "ratio", "error", "sample of"});
     std::size_t shown = 0;
     for (bool more = true; shown < sizes.size() && more; ++shown)
-        more = chosen || static_cast<double>(shards.lines()) / (rate * of) * static_cast<double>(line_bytes) >
-                             static_cast<double>(sizes[shown]);
+        more =
+            chosen || static_cast<double>(shards.lines()) / shards.rate() * static_cast<double>(line_bytes) >
+                          static_cast<double>(sizes[shown]);
     for (std::size_t g = 0; g < touches.groups(); ++g)
         for (std::size_t size = 0; size < shown; ++size) {
-            const auto [r, error] = shards.estimate(g, size);
+            const auto [r, error, of_lines] = curve.estimate(g, size);
             const std::uint64_t all = shards.references(g);
             options_.add_row(table, touches, g,
                              {sizes[size], all,
                               static_cast<std::uint64_t>(std::llround(r * static_cast<double>(all))), r,
-                              error});
+                              error, std::string(of_lines ? "lines" : "stretches")});
         }
     return table;
 }

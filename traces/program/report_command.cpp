@@ -23,6 +23,7 @@ public:
     void run() override {
         options_.prepare();
         options_.refuse_sample();
+        options_.refuse_pipe();
         caches_.prepare(options_.line_bytes());
         if (caches_.sizes().size() != 1)
             throw Error("--sizes: a report is of one size; give one");

@@ -1,0 +1,200 @@
+// Addresses over time against plain counts, pictures against those, and drawings that stand alone.
+#include "analysis/images/image_file.h"
+#include "analysis/plots/chart.h"
+#include "analysis/plots/page.h"
+#include "analysis/plots/png.h"
+#include "analysis/traces/address_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <tuple>
+#include <unistd.h>
+
+namespace analysis {
+namespace {
+
+struct Referenced {
+    std::vector<Access> all;
+    std::uint64_t first = 0;
+};
+Referenced random_references(std::size_t count, std::uint64_t span, std::uint32_t seed) {
+    std::mt19937_64 random(seed);
+    Referenced out;
+    std::uint64_t time = out.first = 1000000;
+    for (std::size_t i = 0; i < count; ++i) {
+        Access a{};
+        a.time = time;
+        time += random() % span;
+        a.group = static_cast<std::uint32_t>(random() % 3);
+        a.address =
+            (std::uint64_t{a.group} << 40U) + (random() % 50) * (random() % 50) * 4096 + random() % 64;
+        out.all.push_back(a);
+    }
+    return out;
+}
+
+/// However pages and columns were merged, counts are those of the pages and columns that there are at the
+/// end.
+TEST(AddressTime, HasTheCountsOfAPlainTable) {
+    for (const auto& [span, columns, rows] :
+         {std::tuple<std::uint64_t, std::size_t, std::size_t>{2, 64, 4096},
+          {1000, 16, 20},
+          {100000, 128, 300},
+          {1, 2048, 7}}) {
+        const Referenced references = random_references(20000, span, static_cast<std::uint32_t>(span));
+        AddressTime counts(columns, rows);
+        for (const Access& a : references.all)
+            counts.add(a);
+        EXPECT_LE(counts.columns(), columns);
+        EXPECT_LE(counts.rows().size(), rows);
+        EXPECT_GT(counts.columns(), span == 1 ? 0U : columns / 4);
+        EXPECT_EQ(counts.begin(), references.first);
+        std::map<std::tuple<std::uint32_t, std::uint64_t, std::size_t>, std::uint64_t> expected, got;
+        for (const Access& a : references.all)
+            ++expected[{a.group, a.address / counts.page_bytes() * counts.page_bytes(),
+                        (a.time - references.first) / counts.column_length()}];
+        std::uint64_t sum = 0;
+        for (const AddressTime::Row& row : counts.rows())
+            for (std::size_t c = 0; c < row.counts->size(); ++c)
+                if ((*row.counts)[c] != 0) {
+                    got[{row.group, row.address, c}] = (*row.counts)[c];
+                    sum += (*row.counts)[c];
+                }
+        EXPECT_EQ(got, expected);
+        EXPECT_EQ(sum, references.all.size());
+    }
+}
+
+/// A pixel is white exactly where nothing is referenced, and the darker the more is.
+TEST(AddressPicture, IsDarkWhereReferencesAre) {
+    AddressTime counts(64, 64);
+    // Eight pages of group 0, touched one after the other, ever more often; one page of group 1, now and
+    // then.
+    for (std::uint64_t page = 0; page < 8; ++page)
+        for (std::uint64_t i = 0; i < std::uint64_t{1} << (2 * page); ++i)
+            counts.add({page * 4096, 0, 0, 0, page, false});
+    counts.add({1 << 30, 0, 1, 0, 7, false});
+    const AddressPicture picture = draw(counts, 64, 64);
+    ASSERT_EQ(picture.bands.size(), 2U);
+    EXPECT_EQ(picture.bands[0].group, 0U); // that with most references first
+    EXPECT_EQ(picture.bands[0].pages, 8U);
+    EXPECT_EQ(picture.bands[0].high, 7U * 4096);
+    EXPECT_EQ(picture.most, 1U << 14U);
+    ASSERT_EQ(picture.pixels.width, 8U);
+    double before = 256 * 3;
+    for (std::size_t page = 0; page < 8; ++page) {
+        const std::size_t y = picture.bands[0].top + picture.bands[0].height - 1 - page; // upwards
+        for (std::size_t x = 0; x < 8; ++x) {
+            const std::uint8_t* rgb = &picture.pixels.rgb[3 * (y * 8 + x)];
+            const double light = rgb[0] + rgb[1] + rgb[2];
+            EXPECT_EQ(light == 255 * 3, x != page) << x << ' ' << page;
+            if (x == page) {
+                EXPECT_LT(light, before);
+                before = light;
+            }
+        }
+    }
+    const std::string svg = with_legend(picture, counts, {"kd nodes", "<&\">"}, "cycles");
+    EXPECT_NE(svg.find("kd nodes"), std::string::npos);
+    EXPECT_NE(svg.find("&lt;&amp;&quot;&gt;"), std::string::npos);
+    EXPECT_NE(svg.find("data:image/png;base64,iVBOR"), std::string::npos);
+}
+
+TEST(AddressPicture, HoldsFewBandsAndMany) {
+    for (const std::uint32_t groups : {1U, 7U, 200U}) {
+        AddressTime counts;
+        for (std::uint32_t g = 0; g < groups; ++g)
+            for (std::uint64_t i = 0; i < 30; ++i)
+                counts.add({g * 100000 + i * 999, 0, g, 0, i * 100, false});
+        const AddressPicture picture = draw(counts, 256, 128);
+        EXPECT_EQ(picture.bands.size(), groups);
+        EXPECT_EQ(picture.pixels.rgb.size(), 3 * picture.pixels.width * picture.pixels.height);
+        EXPECT_LE(picture.pixels.width, 256U);
+        for (const AddressPicture::Band& band : picture.bands)
+            EXPECT_LE(band.top + band.height, picture.pixels.height);
+        if (groups < 20) {
+            EXPECT_LE(picture.pixels.height, 128U + groups * 5);
+        }
+    }
+}
+
+TEST(Png, ComesBackAsItWas) {
+    Pixels pixels{3, 2, {255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 128, 128, 128, 255, 255, 255}};
+    const std::string bytes = png_bytes(pixels);
+    EXPECT_EQ(bytes, png_bytes(pixels));
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("razor_png_" + std::to_string(getpid()) + ".png");
+    {
+        std::ofstream out(file, std::ios::binary);
+        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
+    const auto image = read_image(file);
+    std::filesystem::remove(file);
+    ASSERT_EQ(image.width, 3);
+    ASSERT_EQ(image.height, 2);
+    constexpr const char* channels[] = {"R", "G", "B"};
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(image.find(channels[c])->bits[i], pixels.rgb[3 * i + c]) << i << ' ' << channels[c];
+    EXPECT_THROW(png_bytes({}), std::runtime_error);
+    EXPECT_EQ(data_uri("M"), "data:image/png;base64,TQ==");
+    EXPECT_EQ(data_uri("Ma"), "data:image/png;base64,TWE=");
+    EXPECT_EQ(data_uri("Man"), "data:image/png;base64,TWFu");
+}
+
+TEST(Chart, PutsValuesWhereTheirAxesSay) {
+    LineChart chart;
+    chart.x = {"size", Unit::bytes, true};
+    chart.y = {"part", Unit::percent, false};
+    chart.series.push_back({"a & b", {{64, 0.8}, {128, 0.4}, {256, 0}}, {}, false});
+    const std::string svg = chart.svg();
+    EXPECT_EQ(svg, chart.svg());
+    EXPECT_NE(svg.find("a &amp; b"), std::string::npos);
+    EXPECT_NE(svg.find(">128 B<"), std::string::npos);
+    // From 70 to 670 to the right; 294 is the axis, 14 the top, which stands for 0.8 * 1.05.
+    EXPECT_NE(svg.find("70,27.33 370,160.67 670,294"), std::string::npos) << svg;
+}
+
+TEST(Chart, HasTicksInItsRange) {
+    for (const auto& [low, high] : {std::pair{0.0, 1.0}, {0.0, 3e9}, {1e6, 1.3e6}, {0.0, 0.0007}, {5.0, 5.0}})
+        for (const Unit unit : {Unit::plain, Unit::bytes, Unit::percent}) {
+            const std::vector<double> at = ticks(low, high, false, unit, 8);
+            EXPECT_GE(at.size(), high > low ? 2U : 1U);
+            EXPECT_LE(at.size(), 10U);
+            for (const double t : at)
+                EXPECT_TRUE(t >= low - 1e-9 && t <= high * (1 + 1e-9)) << t;
+        }
+    EXPECT_EQ(ticks(64, 1024, true, Unit::bytes, 9), (std::vector<double>{64, 128, 256, 512, 1024}));
+    EXPECT_EQ(short_text(65536, Unit::bytes), "64 KiB");
+    EXPECT_EQ(short_text(1.5e6, Unit::plain), "1.5 M");
+    EXPECT_EQ(short_text(0.25, Unit::percent), "25 %");
+}
+
+TEST(Page, StandsAlone) {
+    Page page("<trace>");
+    page.heading("a & b");
+    page.paragraph("words");
+    Table table{{"name", "count"}, {}};
+    table.rows.push_back({std::string("x<y"), std::uint64_t{7}});
+    page.table("all", table);
+    BarChart bars;
+    bars.x.label = "misses";
+    bars.parts = {"one", "two"};
+    bars.bars.push_back({"first", {1, 2}});
+    page.drawing(bars.svg());
+    const std::string html = page.html();
+    EXPECT_NE(html.find("<title>&lt;trace&gt;</title>"), std::string::npos);
+    EXPECT_NE(html.find("<td>x&lt;y</td><td class=\"number\">7</td>"), std::string::npos);
+    EXPECT_NE(html.find("<svg"), std::string::npos);
+    // Nothing is fetched: addresses are names of namespaces alone.
+    for (std::size_t at = html.find("http"); at != std::string::npos; at = html.find("http", at + 1))
+        EXPECT_EQ(html.substr(at, 18), "http://www.w3.org/");
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+}
+
+} // namespace
+} // namespace analysis
