@@ -1,12 +1,14 @@
 // Addresses over time against plain counts, pictures against those, and drawings that stand alone.
 #include "analysis/images/image_file.h"
 #include "analysis/plots/chart.h"
+#include "analysis/plots/overlay.h"
 #include "analysis/plots/page.h"
 #include "analysis/plots/png.h"
 #include "analysis/traces/address_picture.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -144,6 +146,33 @@ TEST(Png, ComesBackAsItWas) {
     EXPECT_EQ(data_uri("M"), "data:image/png;base64,TQ==");
     EXPECT_EQ(data_uri("Ma"), "data:image/png;base64,TWE=");
     EXPECT_EQ(data_uri("Man"), "data:image/png;base64,TWFu");
+}
+
+/// The hotter a value, the redder and the less blue its pixel; grey where there is none.
+TEST(Overlay, TintsByValues) {
+    LinearImage picture(5, 1);
+    for (auto& plane : picture.planes)
+        plane = {0.5F, 0.5F, 0.5F, 0.5F, std::nanf("")};
+    const std::vector<double> values = {0, 1, 1000, 1e6, 1e6};
+    const OverlayScale logarithmic = scale_of(values, true);
+    EXPECT_EQ(logarithmic.low, 1);
+    EXPECT_EQ(logarithmic.high, 1e6);
+    const Pixels pixels = overlaid(picture, values, logarithmic);
+    ASSERT_EQ(pixels.rgb.size(), 15U);
+    const auto at = [&](std::size_t i, std::size_t c) { return int{pixels.rgb[3 * i + c]}; };
+    EXPECT_EQ(at(0, 0), 188); // 0.5 in sRGB
+    EXPECT_TRUE(at(0, 0) == at(0, 1) && at(0, 1) == at(0, 2));
+    EXPECT_TRUE(at(1, 2) > at(1, 0) && at(1, 2) > at(1, 1)); // blue
+    EXPECT_TRUE(at(2, 1) > at(2, 0) && at(2, 1) > at(2, 2)); // green: in the middle of the logarithms
+    EXPECT_TRUE(at(3, 0) > at(3, 1) && at(3, 0) > at(3, 2)); // red
+    EXPECT_LT(at(4, 0), at(3, 0));                           // the picture below is seen
+    const OverlayScale linear = scale_of(values, false);
+    EXPECT_EQ(linear.low, 0);
+    const Pixels by_value = overlaid(picture, values, linear);
+    EXPECT_GT(by_value.rgb[3 * 2 + 2], by_value.rgb[3 * 2]); // a thousandth of the most is cold
+    EXPECT_NE(overlay_svg(pixels, logarithmic, "bytes.touched").find("bytes.touched, logarithmic"),
+              std::string::npos);
+    EXPECT_EQ(scale_of({}, true).low, 1);
 }
 
 TEST(Chart, PutsValuesWhereTheirAxesSay) {

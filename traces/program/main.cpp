@@ -3,6 +3,7 @@
 #include "traces/error.h"
 #include "traces/program/analyses.h"
 #include "traces/program/interrupt.h"
+#include "traces/program/overlay_command.h"
 #include "traces/summary.h"
 
 #include <CLI/CLI.hpp>
@@ -106,6 +107,8 @@ int main(int argc, char** argv) {
     const std::vector<std::unique_ptr<traces::AnalysisCommand>> analyses = traces::analyses();
     for (const auto& analysis : analyses)
         analysis->add_to(app);
+    traces::OverlayCommand overlay;
+    overlay.add_to(app);
     traces::listen_for_interrupts();
     try {
         app.parse(argc, argv);
@@ -116,6 +119,8 @@ int main(int argc, char** argv) {
         for (const auto& analysis : analyses)
             if (analysis->parsed())
                 analysis->run();
+        if (overlay.parsed())
+            overlay.run();
         return 0;
     } catch (const traces::Interrupted&) {
         return complain("interrupted; nothing written", interrupted_exit);
