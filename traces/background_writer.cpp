@@ -27,6 +27,16 @@ void BackgroundWriter::hand_over() {
     changed_.notify_all();
 }
 
+void BackgroundWriter::build() {
+    auto mark = leaving_.marks.begin();
+    for (std::size_t i = 0; i <= leaving_.references.size(); ++i) {
+        for (; mark != leaving_.marks.end() && mark->before == i; ++mark)
+            builder_.mark(mark->turn);
+        if (i != leaving_.references.size())
+            builder_.add(leaving_.references[i]);
+    }
+}
+
 void BackgroundWriter::write_all() {
     Block block;
     for (;;) {
@@ -38,8 +48,7 @@ void BackgroundWriter::write_all() {
         try {
             if (!error_) {
                 writer_.add_sites(leaving_.sites);
-                for (const Reference& r : leaving_.references)
-                    builder_.add(r);
+                build();
                 builder_.take(block);
                 writer_.write(block);
             }
@@ -48,6 +57,7 @@ void BackgroundWriter::write_all() {
         }
         leaving_.sites.clear();
         leaving_.references.clear();
+        leaving_.marks.clear();
         lock.lock();
         full_ = false;
         lock.unlock();

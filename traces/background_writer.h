@@ -28,9 +28,15 @@ public:
     /// Throws nothing, as those who are traced may be in the middle of anything: what cannot be written is
     /// dropped, and finish() says why.
     void add(const Reference& r) {
-        coming_.references.push_back(r);
-        if (coming_.references.size() >= block_)
+        if (coming_.references.size() >= block_ && !continues(r.what))
             hand_over();
+        coming_.references.push_back(r);
+    }
+    /// A window, before the references that follow; or the end.
+    void mark(const Turn& turn) {
+        if (turn.what != Turn::What::end && coming_.references.size() >= block_)
+            hand_over();
+        coming_.marks.push_back({coming_.references.size(), turn});
     }
     /// Waits for all, then ends the file with its index. Throws Error.
     void finish();
@@ -41,10 +47,20 @@ public:
 
 private:
     struct Batch {
+        struct Mark {
+            std::size_t before; // so many of the references
+            Turn turn;
+        };
         std::vector<std::string> sites;
         std::vector<Reference> references;
+        std::vector<Mark> marks;
     };
+    /// What stays with the reference before it.
+    static bool continues(const Class& c) {
+        return c.part == Part::piece || (c.kind == Kind::flush && c.part == Part::access);
+    }
     void hand_over();
+    void build();
     void write_all();
     void end();
 

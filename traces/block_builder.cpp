@@ -36,6 +36,22 @@ std::uint32_t BlockBuilder::find(const Class& c) {
     return found->second;
 }
 
+/// Turns say segments, by the streams of what they hold.
+void BlockBuilder::name_segments(Block& block) {
+    std::size_t at = 0;
+    for (Turn& turn : turns_) {
+        if (turn.what != Turn::What::references)
+            continue;
+        const auto found =
+            std::lower_bound(block.segments.begin(), block.segments.end(), streams_[at],
+                             [](const Segment& s, std::uint32_t stream) { return s.stream < stream; });
+        turn.segment = static_cast<std::uint32_t>(found - block.segments.begin());
+        at += turn.count;
+    }
+    block.order.swap(turns_);
+    turns_.clear();
+}
+
 void BlockBuilder::take(Block& block) {
     block.clear();
     const std::size_t n = size();
@@ -47,6 +63,7 @@ void BlockBuilder::take(Block& block) {
             block.segments.push_back({stream, i, i});
         block.segments.back().end = i + 1;
     }
+    name_segments(block);
     if (sorted) {
         block.times.swap(times_);
         block.addresses.swap(addresses_);

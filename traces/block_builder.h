@@ -11,11 +11,16 @@ class BlockBuilder {
 public:
     BlockBuilder();
     void add(const Reference& r) {
+        if (turns_.empty() || turns_.back().what != Turn::What::references || r.stream != streams_.back())
+            turns_.push_back({});
+        ++turns_.back().count;
         streams_.push_back(r.stream);
         times_.push_back(r.time);
         addresses_.push_back(r.address);
         classes_.push_back(number(r.what));
     }
+    /// A window, or the end, before the references that follow.
+    void mark(const Turn& turn) { turns_.push_back(turn); }
     std::size_t size() const { return times_.size(); }
     bool full() const { return size() >= most_references; }
     /// Replaces `block` by what was collected, and begins anew.
@@ -28,7 +33,7 @@ private:
     static std::uint64_t hash(const Class& c) {
         const std::uint64_t rest = std::uint64_t{c.size} << 32U | std::uint64_t{c.structure} << 16U |
                                    std::uint64_t{c.phase} << 8U | std::uint64_t{c.work} << 4U |
-                                   static_cast<std::uint64_t>(c.kind);
+                                   static_cast<std::uint64_t>(c.kind) | static_cast<std::uint64_t>(c.part) << 62U;
         std::uint64_t h = (c.site + rest * 0x9E3779B97F4A7C15U) * 0xD6E8FEB86659FD93U;
         return h ^ h >> 32U;
     }
@@ -39,6 +44,7 @@ private:
         return recent.number;
     }
     std::uint32_t find(const Class& c);
+    void name_segments(Block& block);
 
     static constexpr std::uint32_t none = ~std::uint32_t{0};
     struct Recent {
@@ -50,6 +56,7 @@ private:
     std::vector<Class> table_;
     std::vector<std::uint32_t> streams_, classes_;
     std::vector<std::uint64_t> times_, addresses_;
+    std::vector<Turn> turns_;
 };
 
 } // namespace traces

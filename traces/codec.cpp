@@ -9,12 +9,26 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <tuple>
 
 namespace traces {
 namespace {
 
-constexpr std::size_t columns = 4; // table, classes, addresses, times
-constexpr std::size_t header_bytes = 16 + 8 + columns * 8;
+constexpr std::size_t columns = 5; // table, classes, addresses, times, order
+constexpr unsigned part_shift = 4; // above the kind
+
+/// Of windows there are hardly more than references.
+std::size_t most_turns(std::size_t references) {
+    return 2 * references + 16;
+}
+
+/// Version 1 has no order.
+std::size_t columns_of(std::uint32_t version) {
+    return version == 1 ? columns - 1 : columns;
+}
+std::size_t header_bytes(std::size_t columns) {
+    return 16 + 8 + columns * 8;
+}
 
 /// From the most frequent to the least.
 std::vector<std::uint32_t> by_frequency(const Block& block) {
@@ -50,13 +64,48 @@ void put_table(const Block& block, const std::vector<std::uint32_t>& order, std:
     }
     for (const std::uint32_t number : order) {
         const Class& c = block.table[number];
-        append_varint(out, static_cast<std::uint64_t>(c.kind));
+        append_varint(out, static_cast<std::uint64_t>(c.kind) | static_cast<std::uint64_t>(c.part)
+                                                                    << part_shift);
         append_varint(out, c.size);
         append_varint(out, c.structure);
         append_varint(out, c.phase);
         append_varint(out, c.work);
         append_varint(out, zigzag(c.site - site));
         site = c.site;
+    }
+}
+
+/// Of each class, the first that differs in its part alone: their addresses follow each other.
+template <class ClassOf> std::vector<std::uint32_t> without_parts(std::size_t classes, ClassOf class_of) {
+    const auto key = [&](std::uint32_t number) {
+        const Class& c = class_of(number);
+        return std::tuple(c.site, c.size, c.structure, c.phase, c.work, c.kind);
+    };
+    std::vector<std::uint32_t> sorted(classes), first(classes);
+    std::iota(sorted.begin(), sorted.end(), 0U);
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tuple_cat(key(a), std::tuple(a)) < std::tuple_cat(key(b), std::tuple(b));
+    });
+    for (std::size_t i = 0; i < classes; ++i)
+        first[sorted[i]] =
+            i != 0 && key(sorted[i]) == key(sorted[i - 1]) ? first[sorted[i - 1]] : sorted[i];
+    return first;
+}
+
+// The order: a varint a turn, 0 a window, 1 the end, 2 + the segment's number; and what it has.
+void put_order(const Block& block, std::string& out) {
+    std::uint64_t before = block.times.front();
+    for (const Turn& t : block.order) {
+        if (t.what == Turn::What::references) {
+            append_varint(out, std::uint64_t{t.segment} + 2);
+            append_varint(out, t.count);
+            continue;
+        }
+        append_varint(out, t.what == Turn::What::window ? 0 : 1);
+        append_varint(out, zigzag(t.until - before));
+        append_varint(out, zigzag(t.until - t.begin));
+        append_varint(out, zigzag(t.next - t.begin));
+        before = t.until;
     }
 }
 
@@ -99,12 +148,14 @@ void Encoder::encode(const Block& block, std::string& out) {
     for (std::uint32_t plane = 0; plane < id_bytes; ++plane)
         for (std::size_t i = 0; i < n; ++i)
             classes_[plane * n + i] = static_cast<char>(rank[block.classes[i]] >> (8 * plane));
+    const std::vector<std::uint32_t> place = without_parts(
+        order.size(), [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; });
     std::vector<std::uint64_t> last(order.size(), 0);
     addresses_.resize(n * longest_varint);
     char* to = addresses_.data();
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint64_t a = block.addresses[i] >> shift;
-        std::uint64_t& before = last[block.classes[i]];
+        std::uint64_t& before = last[place[rank[block.classes[i]]]];
         to = put_varint(to, zigzag(a - before));
         before = a;
     }
@@ -119,6 +170,8 @@ void Encoder::encode(const Block& block, std::string& out) {
         }
     }
     times_.resize(static_cast<std::size_t>(to - times_.data()));
+    order_.clear();
+    put_order(block, order_);
 
     const std::size_t begin = out.size();
     append_fixed(out, static_cast<std::uint32_t>(n));
@@ -126,9 +179,9 @@ void Encoder::encode(const Block& block, std::string& out) {
     append_fixed(out, static_cast<std::uint32_t>(order.size()));
     append_fixed(out, static_cast<std::uint32_t>(shift));
     append_fixed(out, first_time);
-    out.resize(begin + header_bytes);
+    out.resize(begin + header_bytes(columns));
     std::string sizes;
-    for (const std::string* column : {&table_, &classes_, &addresses_, &times_}) {
+    for (const std::string* column : {&table_, &classes_, &addresses_, &times_, &order_}) {
         const std::size_t before = out.size();
         compress(*column, out);
         append_fixed(sizes, static_cast<std::uint32_t>(column->size()));
@@ -144,8 +197,10 @@ void Decoder::Free::operator()(ZSTD_DCtx_s* c) const {
 Decoder::Decoder() : context_(ZSTD_createDCtx()) {}
 Decoder::~Decoder() = default;
 
-void Decoder::decode(const std::string& bytes, const Limits& limits, const std::string& place, Block& block) {
-    if (bytes.size() < header_bytes)
+void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32_t version,
+                     const std::string& place, Block& block) {
+    const std::size_t header = header_bytes(columns_of(version));
+    if (bytes.size() < header)
         refuse(place, "a block is shorter than its own header");
     const std::size_t n = fixed_at<std::uint32_t>(bytes.data());
     const std::size_t segments = fixed_at<std::uint32_t>(bytes.data() + 4);
@@ -157,9 +212,13 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, const std::
         refuse(place, "a block claims impossible counts");
     const std::uint32_t id_bytes = bytes_for(classes);
     const std::array<std::size_t, columns> most = {(segments * 2 + classes * 6) * longest_varint,
-                                                   n * id_bytes, n * longest_varint, n * longest_varint};
-    std::size_t at = header_bytes, column = 0;
-    for (std::string* raw : {&table_, &classes_, &addresses_, &times_}) {
+                                                   n * id_bytes, n * longest_varint, n * longest_varint,
+                                                   most_turns(n) * 4 * longest_varint};
+    std::size_t at = header, column = 0;
+    order_.clear();
+    for (std::string* raw : {&table_, &classes_, &addresses_, &times_, &order_}) {
+        if (column == columns_of(version))
+            break;
         const std::size_t raw_bytes = fixed_at<std::uint32_t>(bytes.data() + 24 + column * 8);
         const std::size_t stored = fixed_at<std::uint32_t>(bytes.data() + 28 + column * 8);
         if (raw_bytes > most[column++] || stored > bytes.size() - at)
@@ -187,15 +246,16 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, const std::
         end += length;
     }
     for (std::size_t i = 0; i < classes; ++i) {
-        const std::uint64_t kind = table.next(), size = table.next(), structure = table.next(),
+        const std::uint64_t first = table.next(), size = table.next(), structure = table.next(),
                             phase = table.next(), work = table.next();
         site += unzigzag(table.next());
-        if (kind >= kind_names.size() || size > ~std::uint32_t{0} || structure >= limits.structures ||
+        const std::uint64_t kind = first & ((1U << part_shift) - 1), part = first >> part_shift;
+        if (kind >= kind_names.size() || part >= parts || size > ~std::uint32_t{0} || structure >= limits.structures ||
             phase >= limits.phases || work >= limits.work || site > limits.sites)
             refuse(place, "a block names what the description does not");
         block.table.push_back({site, static_cast<std::uint32_t>(size), static_cast<std::uint16_t>(structure),
                                static_cast<std::uint16_t>(phase), static_cast<std::uint16_t>(work),
-                               static_cast<Kind>(kind)});
+                               static_cast<Kind>(kind), static_cast<Part>(part)});
     }
     if (table.bad() || !table.ended() || end != n)
         refuse(place, "a block's table does not fit its counts");
@@ -211,10 +271,12 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, const std::
         refuse(place, "a reference is of a class that its block does not have");
 
     block.addresses.resize(n);
+    const std::vector<std::uint32_t> place_of =
+        without_parts(classes, [&](std::uint32_t c) -> const Class& { return block.table[c]; });
     last_.assign(classes, 0);
     VarintReader addresses(addresses_.data(), addresses_.data() + addresses_.size());
     for (std::size_t i = 0; i < n; ++i)
-        block.addresses[i] = (last_[block.classes[i]] += unzigzag(addresses.next())) << shift;
+        block.addresses[i] = (last_[place_of[block.classes[i]]] += unzigzag(addresses.next())) << shift;
     block.times.resize(n);
     VarintReader times(times_.data(), times_.data() + times_.size());
     for (const Segment& s : block.segments) {
@@ -224,6 +286,38 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, const std::
     }
     if (addresses.bad() || !addresses.ended() || times.bad() || !times.ended())
         refuse(place, "a block's addresses or times do not fit its count");
+    get_order(place, block);
+}
+
+/// Turns that take all of every segment, once; or none.
+void Decoder::get_order(const std::string& place, Block& block) {
+    VarintReader order(order_.data(), order_.data() + order_.size());
+    std::vector<std::size_t> left;
+    for (const Segment& s : block.segments)
+        left.push_back(s.end - s.begin);
+    std::uint64_t before = block.times.front();
+    std::size_t taken = 0;
+    while (!order.ended() && !order.bad()) {
+        Turn t;
+        const std::uint64_t what = order.next();
+        if (what >= 2) {
+            const std::uint64_t segment = what - 2, count = order.next();
+            if (segment >= left.size() || count == 0 || count > left[segment])
+                refuse(place, "a block's order is of references that it does not have");
+            left[segment] -= count;
+            taken += count;
+            t.segment = static_cast<std::uint32_t>(segment);
+            t.count = static_cast<std::uint32_t>(count);
+        } else {
+            t.what = what == 0 ? Turn::What::window : Turn::What::end;
+            before = t.until = before + unzigzag(order.next());
+            t.begin = t.until - unzigzag(order.next());
+            t.next = t.begin + unzigzag(order.next());
+        }
+        block.order.push_back(t);
+    }
+    if (order.bad() || (taken != block.size() && !order_.empty()))
+        refuse(place, "a block's order does not fit its count");
 }
 
 } // namespace traces

@@ -26,7 +26,7 @@ private:
 
     std::unique_ptr<ZSTD_CCtx_s, Free> context_;
     int level_;
-    std::string table_, classes_, addresses_, times_; // columns
+    std::string table_, classes_, addresses_, times_, order_; // columns
 };
 
 class Decoder {
@@ -38,17 +38,20 @@ public:
         std::size_t structures, phases, work;
         std::uint64_t sites; // the last number; unbounded where they are addresses
     };
-    /// Replaces `block`, which keeps these limits. Throws Error where the bytes are no block, whatever they
-    /// are: "`place`: ...".
-    void decode(const std::string& bytes, const Limits& limits, const std::string& place, Block& block);
+    /// Replaces `block`, which keeps these limits. Throws Error where the bytes are no block of this version
+    /// of the format, whatever they are: "`place`: ...".
+    void decode(const std::string& bytes, const Limits& limits, std::uint32_t version,
+                const std::string& place, Block& block);
 
 private:
     struct Free {
         void operator()(ZSTD_DCtx_s* c) const;
     };
+    void get_order(const std::string& place, Block& block);
+
     std::unique_ptr<ZSTD_DCtx_s, Free> context_;
-    std::string table_, classes_, addresses_, times_; // columns
-    std::vector<std::uint64_t> last_;                 // address, by class
+    std::string table_, classes_, addresses_, times_, order_; // columns
+    std::vector<std::uint64_t> last_;                         // address, by class
 };
 
 } // namespace traces

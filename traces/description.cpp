@@ -51,17 +51,22 @@ void add_names(Description& d, const std::string& text, const std::string& place
 }
 
 std::string to_json(const Description& d) {
+    json regions = json::array();
+    for (const Description::Region& r : d.regions)
+        regions.push_back(json::array({r.begin, r.end, r.structure, r.lasts}));
     const json out = {{"program", d.program},
                       {"level", d.level},
                       {"time", d.time},
                       {"line_bytes", d.line_bytes},
                       {"sites", d.site_addresses ? "addresses" : "names"},
                       {"sample", d.sample},
+                      {"window", d.window},
                       {"filters", d.filters},
                       {"structures", d.structures},
                       {"phases", d.phases},
                       {"work", d.work},
                       {"streams", d.streams},
+                      {"regions", std::move(regions)},
                       {"configuration", d.configuration}};
     return out.dump(1, ' ', false, json::error_handler_t::replace);
 }
@@ -82,9 +87,21 @@ Description description_from_json(const std::string& text, const std::string& pl
         in.at("work").get_to(d.work);
         in.at("streams").get_to(d.streams);
         in.at("configuration").get_to(d.configuration);
+        d.window = in.value("window", std::uint64_t{0}); // since version 2
+        if (in.contains("regions"))                      // likewise
+            for (const json& r : in.at("regions"))
+                d.regions.push_back({r.at(0), r.at(1), r.at(2), r.at(3)});
     } catch (const json::exception& e) {
         throw Error(fmt::format("{}: the description is not of this format ({}); record the trace again",
                                 place, e.what()));
+    }
+    std::uint64_t end = 0;
+    for (const Description::Region& r : d.regions) {
+        if (r.begin < end || r.end <= r.begin || r.structure >= d.structures.size())
+            throw Error(fmt::format("{}: the description's regions are not in order, or of no structure; record "
+                                    "the trace again",
+                                    place));
+        end = r.end;
     }
     if ((d.line_bytes != 0 && !std::has_single_bit(d.line_bytes)) || !(d.sample > 0 && d.sample <= 1) ||
         bad_table(d.structures) || bad_table(d.phases) || bad_table(d.work))

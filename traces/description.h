@@ -17,8 +17,18 @@ struct Description {
     bool site_addresses = false;
     /// Of all lines this fraction was recorded: those with hash_of_line() below it (sample.h).
     double sample = 1;
+    std::uint64_t window = 0;  // of time, in which streams went on by themselves; 0: none is known
     std::string filters;       // what else was left out, in words; empty: nothing
     std::string configuration; // of what was traced, whole
+    /// What lies where, by ascending addresses: whose structure a line is that leaves a cache. None: lines are
+    /// of the structure that references to them say.
+    struct Region {
+        std::uint64_t begin = 0, end = 0;
+        std::uint16_t structure = 0;
+        bool lasts = false; // it is of use when what was traced is over
+        friend bool operator==(const Region&, const Region&) = default;
+    };
+    std::vector<Region> regions;
     /// Of some files they grow while these are read.
     std::vector<std::string> structures = {"unknown"}, phases = {"unknown"}, work = {"unknown"};
     std::vector<std::string> streams; // names, as far as there are any

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <zstd.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace traces {
@@ -43,7 +44,9 @@ Index index_from_bytes(const std::string& bytes, const std::string& place) {
         const json in = json::parse(text);
         for (const json& b : in.at("blocks"))
             index.blocks.push_back({b.at(0), b.at(1), b.at(2), b.at(3)});
-        in.at("by_kind").get_to(index.by_kind);
+        const json& kinds = in.at("by_kind"); // earlier versions had less
+        for (std::size_t k = 0; k < std::min(kinds.size(), index.by_kind.size()); ++k)
+            index.by_kind[k] = kinds.at(k);
         in.at("sites").get_to(index.sites);
     } catch (const json::exception& e) {
         refuse(e.what());

@@ -18,12 +18,12 @@ Reader::Reader(std::unique_ptr<Source> source) : source_(std::move(source)) {
         throw Error(fmt::format("{}: is empty; record the trace again", source_->name()));
     if (!prologue.starts_with(magic) || prologue.size() < prologue_bytes)
         throw Error(fmt::format("{}: is no trace of razor-trace; say what it is (--from)", source_->name()));
-    const auto version = fixed_at<std::uint32_t>(prologue.data() + magic.size());
-    if (version != format_version)
+    version_ = fixed_at<std::uint32_t>(prologue.data() + magic.size());
+    if (version_ < oldest_version || version_ > format_version)
         throw Error(
-            fmt::format("{}: has version {} of the format, and this program reads version {}; use the "
+            fmt::format("{}: has version {} of the format, and this program reads versions {} to {}; use the "
                         "program that wrote it",
-                        source_->name(), version, format_version));
+                        source_->name(), version_, oldest_version, format_version));
     at_ = prologue_bytes;
     if (!read_chunk())
         throw Error(fmt::format("{}: ends within its description; record the trace again", source_->name()));
@@ -87,7 +87,7 @@ bool Reader::next(Block& block) {
                             {description_.structures.size(), description_.phases.size(),
                              description_.work.size(),
                              description_.site_addresses ? ~std::uint64_t{0} : description_.sites.size()},
-                            fmt::format("{}: byte {}", source_->name(), begin), block);
+                            version_, fmt::format("{}: byte {}", source_->name(), begin), block);
             const auto [first, last] = std::minmax_element(block.times.begin(), block.times.end());
             seen_.blocks.push_back({begin, block.size(), *first, *last});
             return true;

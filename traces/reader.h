@@ -35,6 +35,7 @@ private:
     Decoder decoder_;
     std::string name_, bytes_; // of the chunk at hand
     std::uint64_t at_ = 0;
+    std::uint32_t version_ = 0;
     Index seen_; // what was read
     bool ended_ = false, complete_ = false;
     std::string note_;

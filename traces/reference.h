@@ -9,10 +9,30 @@
 namespace traces {
 
 /// What a reference is. `modify` reads and writes; `write_back` is a dirty line that leaves a cache,
-/// `write_through` a write that a cache passes on, `flush` says that a line's contents need not be kept.
-enum class Kind : std::uint8_t { read, write, modify, fetch, prefetch, write_back, write_through, flush };
-inline constexpr std::array<const char*, 8> kind_names = {"read",     "write",      "modify",        "fetch",
-                                                          "prefetch", "write_back", "write_through", "flush"};
+/// `write_through` a write that a cache passes on, `flush` says that a line's contents need not be kept,
+/// `invalidate` that copies of a line in caches of who is near go, as a word in it is written; with
+/// `invalidate_all` those everywhere go.
+enum class Kind : std::uint8_t {
+    read,
+    write,
+    modify,
+    fetch,
+    prefetch,
+    write_back,
+    write_through,
+    flush,
+    invalidate,
+    invalidate_all
+};
+inline constexpr std::array<const char*, 10> kind_names = {
+    "read",       "write",         "modify", "fetch",      "prefetch",
+    "write_back", "write_through", "flush",  "invalidate", "invalidate_all"};
+
+/// How a reference belongs to the one before it in its stream: it begins an operation of the program; or is a
+/// further access of the same operation; or a further piece of the same access, of one line at one time. What
+/// stands aside belongs to no operation with a site: words that threads share, tables of pages, spills.
+enum class Part : std::uint8_t { operation, access, piece, aside };
+inline constexpr std::size_t parts = 4;
 
 /// All of a reference that few others differ in: what a block keeps in a table.
 struct Class {
@@ -20,6 +40,7 @@ struct Class {
     std::uint32_t size = 0; // bytes; 0: unknown
     std::uint16_t structure = 0, phase = 0, work = 0; // numbers in the tables of the description
     Kind kind = Kind::read;
+    Part part = Part::operation;
     friend bool operator==(const Class&, const Class&) = default;
 };
 
@@ -35,6 +56,18 @@ struct Segment {
     std::size_t begin = 0, end = 0;
 };
 
+/// What came next in the order in which all streams' references were made.
+struct Turn {
+    enum class What : std::uint8_t { references, window, end };
+    What what = What::references;
+    std::uint32_t segment = 0, count = 0; // the next so many of this segment
+    /// A window of time begins, up to whose end streams go on by themselves, each in its turns: what was asked
+    /// for before is served as far as cycle `begin`, and nobody asks for anything before `next`. Or all has
+    /// ended at cycle `until`, served likewise.
+    std::uint64_t until = 0, begin = 0, next = 0;
+    friend bool operator==(const Turn&, const Turn&) = default;
+};
+
 /// Some references of all streams, those of one stream side by side. Those of later blocks come later in
 /// their streams.
 struct Block {
@@ -42,6 +75,7 @@ struct Block {
     std::vector<std::uint64_t> times, addresses;
     std::vector<std::uint32_t> classes; // numbers in `table`
     std::vector<Class> table;
+    std::vector<Turn> order; // empty: only what times and streams say is known
 
     std::size_t size() const { return addresses.size(); }
     const Class& what(std::size_t i) const { return table[classes[i]]; }
@@ -51,6 +85,7 @@ struct Block {
         addresses.clear();
         classes.clear();
         table.clear();
+        order.clear();
     }
 };
 

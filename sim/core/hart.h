@@ -53,7 +53,8 @@ struct alignas(64) Hart {
     std::uint32_t overhead = 0; // 1/1024 instructions not yet charged
     std::uint32_t history = 0;  // of branches
     std::uint32_t last_address = 0;
-    SiteAtHand site;              // of the operation at hand, for prefetchers by stride
+    SiteAtHand site;              // of the operation at hand, for prefetchers by stride ...
+    isa::timing::site place{};    // ... and where it stands
     std::uint32_t trace_site = 0; // likewise, for a trace
     RegisterFile registers;
     CoreCounters counters; // but for what the columns and `vector_instructions` sum to

@@ -19,6 +19,15 @@ public:
         return k.file != nullptr ? k.number : note(where);
     }
 
+    /// The number that it has, or would have if it were met next.
+    std::uint32_t number_if_met(isa::timing::site where) const {
+        const Known& k = known_[slot_of(where)];
+        if (k.file != nullptr)
+            return k.number;
+        const auto found = all_.find({where.file, where.line});
+        return found != all_.end() ? found->second : static_cast<std::uint32_t>(all_.size());
+    }
+
     /// File and line, to number.
     const std::map<std::pair<std::string, std::uint32_t>, std::uint32_t>& all() const { return all_; }
 

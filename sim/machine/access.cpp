@@ -1,4 +1,5 @@
 // Loads, stores and hints, and the timing port's functions for them (isa/simulated/port.h).
+#include "sim/machine/asides.h"
 #include "sim/machine/issue.h"
 
 #include <bit>
@@ -83,15 +84,16 @@ constexpr std::array<std::int32_t, width> in_order = [] {
 
 /// For a trace: accesses of one line share its bytes evenly.
 void Engine::note_touch(const Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
-                        std::uint32_t accesses, cycle at) const {
+                        std::uint32_t accesses, cycle at, traces::Part part) const {
     if (!h.tile->tap->is_at(TraceLevel::core))
         return;
     const std::uint32_t step = accesses == 1 ? 0 : bytes / accesses / 4 * 4;
     for (std::uint32_t i = 0; i < accesses; ++i) {
+        const traces::Part which = i == 0 ? part : traces::Part::piece;
         const std::uint32_t rest = bytes - i * step;
         h.tile->attribution.note_always(write ? traces::Kind::write : traces::Kind::read, address + i * step,
                                         step == 0 || i + 1 == accesses ? rest : step, at, h.column, h.number,
-                                        h.trace_site);
+                                        h.trace_site, which);
     }
 }
 
@@ -410,32 +412,13 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
     if (may_prefetch(h, address(p))) {
         cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
         ++h.core->l1.counters().busy_cycles;
-        note_core(h, traces::Kind::prefetch, address(p), line_bytes_, t);
+        note_core(h, traces::Kind::prefetch, address(p), line_bytes_, t, traces::Part::operation);
         if (recorder_ != nullptr)
             h.tile->tap->site = h.trace_site;
         h.core->l1.prefetch(address(p), t, h.column);
     }
     finish_issue(h, at, 0);
     count(h, 1, false);
-}
-
-/// The line of each level below the L1 around this address is dead if it lies in [begin, end).
-void Engine::discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end,
-                           cycle issued) {
-    cycle at = issued;
-    for (unsigned level = 1; level < cache_levels_; ++level) {
-        const std::uint64_t bytes = wide(config_.cache(level).line_bytes), first = address / bytes * bytes;
-        if (first < begin || first + bytes > end)
-            return;
-        at += wide(config_.cache(level - 1).latency);
-        if (level < tile_levels_ && h.tile->events)
-            h.tile->arrivals[level][core_in_tile(h) / h.tile->sharing[level]]->discard(
-                first, at, level == 1 ? h.core->l1.number() : cache_of(h, level - 1).number());
-        else if (level < tile_levels_)
-            cache_of(h, level).discard(first);
-        else if (first == address)
-            exit_of(h).tell(Request::discard, first, issued, h.column);
-    }
 }
 
 /// Whole lines only; an instruction each.
@@ -448,9 +431,10 @@ void Engine::discard(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
     std::uint32_t lines = last > first ? static_cast<std::uint32_t>(last - first) : 0;
     Issued at = issue(h, store_kind, std::max(1U, lines), ready);
     for (std::uint64_t line = first; line < last; ++line) {
-        note_core(h, traces::Kind::flush, line << line_shift_, line_bytes_, at.first);
+        note_core(h, traces::Kind::flush, line << line_shift_, line_bytes_, at.first,
+                  line == first ? traces::Part::operation : traces::Part::access);
         h.core->l1.discard(line << line_shift_);
-        discard_below(h, line << line_shift_, begin, end, at.first);
+        discard_below(config_, asker(h), line << line_shift_, begin, end, at.first);
     }
     finish_issue(h, at, 0);
     count(h, 1, false);

@@ -71,6 +71,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       vector_moves_(in_1024ths(config.core.vector_moves)),
       memory_operands_(narrow(config.core.memory_operands)), registers_(config.core.vector_registers > 0),
       by_register_(registers_ && config.core.broadcasts == "register"), strides_(uses_strides(config)),
+      notes_sites_(strides_ || options.recorder != nullptr),
       lane_gather_(config.core.gather == "lane"), lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
       lane_shuffle_(config.lanes.shuffle == "on"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
@@ -111,12 +112,7 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
     for (integer t = 0; t < config.chip.tiles; ++t) {
         Tile& tile = tiles_.emplace_back(config, narrow(t), window_cycles_, lines_, labels_.columns());
         for (integer c = 0; c < config.chip.cores; ++c) {
-            const std::size_t group = wide(c) / tile.sharing[1];
-            Below& l2 = tile.way_to(1, wide(c));
-            Below& below = config.sim.jitter != 0 ? static_cast<Below&>(tile.jitters[group]) : l2;
-            Core& core = tile.cores.emplace_back(config, tile.earliest, pairing_.ports(), tile.site, l2,
-                                                 below, tile.tickets, tile.attribution);
-            tile.caches[1][group].add_above(core.l1);
+            Core& core = tile.add_core(config, pairing_.ports());
             if (tlb_) {
                 if (c % config.cores_sharing_tlb() == 0)
                     tile.second_tlbs.emplace_back(wide(config.tlb.second_entries),
@@ -149,11 +145,29 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
         harts_[wide(placement.number(placement.of(w)))].worker = w;
 }
 
+/// What lies where, for who has no frame memory.
+std::vector<traces::Description::Region> Engine::regions() const {
+    const std::vector<std::string>& names = lines_.structures();
+    std::vector<traces::Description::Region> out;
+    const auto add = [&](const std::string& name, std::uint64_t begin, std::uint64_t end, bool lasts) {
+        const auto number = std::find(names.begin(), names.end(), name) - names.begin();
+        out.push_back({begin, end, static_cast<std::uint16_t>(number), lasts});
+    };
+    for (const isa::region& r : space_.regions())
+        if (r.end > r.begin)
+            add(r.structure, r.begin, r.end, !r.transient);
+    if (tables_)
+        add(LineMap::page_tables, LineMap::end_of(space_), lines_.spill_begin(), false);
+    add(names.back(), lines_.spill_begin(),
+        lines_.spill_begin() + wide(config_.all_threads()) * spill_bytes_of(config_), false);
+    return out;
+}
+
 /// Tiles, caches and the way to memory note for the recorder what they do.
 void Engine::trace() {
     if (recorder_ == nullptr)
         return;
-    recorder_->begin(labels_, lines_.structures());
+    recorder_->begin(labels_, lines_.structures(), regions());
     for (Tile& tile : tiles_) {
         tile.tap = &recorder_->tap(tile.number);
         tile.attribution.trace(*tile.tap);
@@ -283,6 +297,8 @@ void Engine::perform_deeds() {
         } else {
             running_hart = d.hart;
             scheduler.step(d.hart->number);
+            if (recorder_ != nullptr)
+                recorder_->collect(d.hart->tile->number);
             if (scheduler.failure()) {
                 fail(scheduler.failure());
                 return;
@@ -365,7 +381,10 @@ bool Engine::run_window() {
     cycle next = next_event();
     if (next == ~cycle{0})
         return false;
+    const cycle served = window_end_;
     window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
+    if (recorder_ != nullptr)
+        recorder_->window(window_end_, served, next);
     set_floors(next);
     cycle begin = window_end_ - window_cycles_;
     if (intervals_.due(begin))
@@ -375,6 +394,8 @@ bool Engine::run_window() {
     run_tiles();
     if (options_.host_order != 0)
         shuffle();
+    if (recorder_ != nullptr)
+        recorder_->collect();
     if (!failure_)
         perform_deeds();
     serve_window();

@@ -6,6 +6,7 @@
 
 #include "isa/services.h"
 #include "sim/core/pairing.h"
+#include "sim/machine/asides.h"
 #include "sim/machine/beyond.h"
 #include "sim/machine/homes.h"
 #include "sim/machine/host_threads.h"
@@ -14,6 +15,7 @@
 #include "sim/machine/windows.h"
 #include "sim/machine/word_moves.h"
 #include "sim/memory/page_tables.h"
+#include "traces/description.h"
 
 #include <deque>
 #include <memory>
@@ -59,7 +61,6 @@ public:
     void scatter(Hart& h, const void* p, const std::int32_t* index, std::uint64_t lanes, Due ready);
     void prefetch(Hart& h, const void* p, Due ready);
     void discard(Hart& h, const void* p, std::uint32_t bytes, Due ready);
-    void discard_below(Hart& h, std::uint64_t address, std::uint64_t begin, std::uint64_t end, cycle issued);
     void before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due ready, bool waits = false);
     stamp after_atomic(Hart& h, isa::timing::atomic kind, const void* p, bool wrote);
     stamp wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due ready);
@@ -74,8 +75,10 @@ public:
 
     /// The operation at hand stands there in the program.
     void note_site(Hart& h, site where) const {
-        if (strides_) [[unlikely]]
-            h.site = {h.tile->load_sites.number(where), true};
+        if (notes_sites_) [[unlikely]] {
+            h.site = {SiteAtHand::unnumbered, true};
+            h.place = where;
+        }
         note_trace_site(h, where);
     }
     void note_trace_site(Hart& h, site where) const {
@@ -209,10 +212,14 @@ private:
     void touch_line(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, std::uint32_t accesses,
                     std::uint32_t slots, cycle& from, Data& data);
     void note_touch(const Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
-                    std::uint32_t accesses, cycle at) const;
-    void note_core(Hart& h, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, cycle at) const {
+                    std::uint32_t accesses, cycle at, traces::Part part) const;
+    traces::Part meet_site(Hart& h) const;
+    void pass_site(Hart& h) const;
+    void note_core(Hart& h, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, cycle at,
+                   traces::Part part) const {
         if (recorder_ != nullptr && h.tile->tap->is_at(TraceLevel::core)) [[unlikely]]
-            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site);
+            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site,
+                                            part);
     }
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
@@ -292,12 +299,7 @@ private:
     std::size_t core_in_tile(const Hart& h) const {
         return h.number / wide(config_.chip.threads) % wide(config_.chip.cores);
     }
-    Cache& cache_of(Hart& h, unsigned level) const { return h.tile->cache_of(level, core_in_tile(h)); }
-    TileExit& exit_of(Hart& h) const {
-        return h.tile->exits[core_in_tile(h) / h.tile->sharing[tile_levels_ - 1]];
-    }
-    void invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip);
-    void claim(Hart& h, std::uint64_t address, cycle t);
+    Asker asker(const Hart& h) const { return {*h.tile, core_in_tile(h), h.column}; }
     cycle move_line(const Hart& h, std::uint64_t address, cycle t, cycle service);
     void publish(Hart& h, std::uint64_t address, cycle written, cycle done, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);
@@ -314,6 +316,7 @@ private:
     static void check_label(const char* what, std::size_t number, std::size_t count);
 
     void describe_kinds();
+    std::vector<traces::Description::Region> regions() const;
     void trace();
     // --- windows
     bool run_window();
@@ -365,7 +368,7 @@ private:
     Pairing pairing_;
     std::uint32_t overhead_, scalar_moves_, vector_moves_; // 1/1024 instructions
     std::uint32_t memory_operands_;
-    bool registers_, by_register_, strides_, lane_gather_, lane_scatter_, lane_shuffle_, skip_idle_, folding_,
+    bool registers_, by_register_, strides_, notes_sites_, lane_gather_, lane_scatter_, lane_shuffle_, skip_idle_, folding_,
         buffered_;
     bool masked_by_lane_, idle_lanes_;
     struct LanePath { // config's, narrowed

@@ -1,5 +1,6 @@
 // A run's frames, one after the other, and the part of it that counts.
 #include "sim/machine/engine.h"
+#include "sim/machine/frame_end.h"
 #include "sim/machine/warm_up.h"
 #include "sim/trace/recorder.h"
 
@@ -47,7 +48,10 @@ Report Engine::run() {
         if (last)
             begin_counting();
         run_workers();
+        const cycle served = window_end_;
         finish_part();
+        if (recorder_ != nullptr && last)
+            recorder_->end(cycles_, served);
         if (part + 1 >= options_.frames && !last)
             judge_prefetches();
         else
@@ -132,22 +136,12 @@ void Engine::judge_prefetches() {
 /// says.
 void Engine::finish_frame() {
     const bool all = config_.sim.frame_end == "write";
-    auto lasting = [this, all](std::uint64_t address) {
+    const auto lasting = [this, all](std::uint64_t address) {
         const isa::region* r = space_.find(address);
         return all || (r != nullptr && !r->transient);
     };
     std::size_t frame_end = labels_.phases.size() - 1; // of the first kind
-    for (Tile& tile : tiles_)
-        for (Core& core : tile.cores)
-            core.l1.finish(cycles_, frame_end, lasting);
-    serve_all();
-    for (unsigned level = 1; level < tile_levels_; ++level) {
-        for (Tile& tile : tiles_)
-            for (Cache& cache : tile.caches[level])
-                cache.finish(cycles_, frame_end, lasting);
-        serve_all();
-    }
-    beyond_->write_back(cycles_, frame_end, lasting);
+    write_back_all(tiles_, *beyond_, cycles_, frame_end, lasting, [this] { serve_all(); });
 }
 
 } // namespace sim

@@ -137,6 +137,25 @@ inline void Engine::charge_overhead(Hart& h, std::uint32_t overhead, Due ready) 
         issue(h, integer_kind, whole, ready);
 }
 
+/// A line is to be accessed by the operation at hand: of which the first one, or a further one.
+inline traces::Part Engine::meet_site(Hart& h) const {
+    h.tile->site = h.site;
+    if (h.site.number == SiteAtHand::none)
+        return traces::Part::aside;
+    if (!h.site.first)
+        return traces::Part::access;
+    if (strides_)
+        h.tile->site.number = h.tile->load_sites.number_if_met(h.place);
+    return traces::Part::operation;
+}
+
+/// It was accessed: a site has its number by the first access that took place, as in a trace.
+inline void Engine::pass_site(Hart& h) const {
+    if (strides_ && h.site.first && h.site.number != SiteAtHand::none)
+        h.site.number = h.tile->load_sites.number(h.place);
+    h.site.first = false;
+}
+
 /// `accesses` of a line, of so many bytes in all from the address on.
 inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
                                std::uint32_t accesses, std::uint32_t slots, cycle& from, Data& data) {
@@ -147,10 +166,9 @@ inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t byt
     cycle at = s.first >> port_shift_;
     if (at > from + port_backlog) [[unlikely]]
         data.granted = std::max(data.granted, at - port_backlog);
-    if (strides_) [[unlikely]] {
-        h.tile->site = h.site;
-        h.site.first = false;
-    }
+    traces::Part part = traces::Part::aside;
+    if (notes_sites_) [[unlikely]]
+        part = meet_site(h);
     if (recorder_ != nullptr) [[unlikely]]
         h.tile->tap->site = h.trace_site;
     Answer a = core.l1.access(line, write, accesses, at, h.column);
@@ -158,12 +176,16 @@ inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t byt
         [[unlikely]] {
             from = at = await_room(h, at, a.ready);
             data.granted = std::max(data.granted, at);
+            if (notes_sites_) // others have had theirs meanwhile
+                meet_site(h);
             if (recorder_ != nullptr)
                 h.tile->tap->site = h.trace_site;
             a = core.l1.access(line, write, accesses, at, h.column);
         }
+    if (notes_sites_) [[unlikely]]
+        pass_site(h);
     if (recorder_ != nullptr) [[unlikely]]
-        note_touch(h, address, bytes, write, accesses, at);
+        note_touch(h, address, bytes, write, accesses, at, part);
     cycle last = (s.last >> port_shift_) + l1_latency_; // through the ports
     if (is_ticket(a.ready)) {
         data.tickets[data.open++] = a.ready;

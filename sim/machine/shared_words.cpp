@@ -56,7 +56,6 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
     }
     if (writes && kind != isa::timing::atomic::store_release) {
         ++h.counters.modifications;
-        note_core(h, traces::Kind::modify, a, 4, begins);
         h.tile->site = {};
         Access change{a, line_bytes_, begins + l1_latency_, h.column}; // a read that leaves the line dirty
         change.modify = change.owned = true;                           // its line is claimed by itself
@@ -67,6 +66,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
                 change.at = await_room(h, change.at, line.ready);
                 line = h.core->words.read(change);
             }
+        note_core(h, traces::Kind::modify, a, 4, change.at - l1_latency_, traces::Part::aside);
         if (h.tile->events && is_ticket(line.ready)) { // its place in the queue is that of the L2's answer
             const Answered there = await(h, line.ready);
             line.ready = there.last;
@@ -110,34 +110,6 @@ void Engine::check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready) 
 /// The line of a word that several tiles write comes to the thread's, which has it for `service` cycles.
 cycle Engine::move_line(const Hart& h, std::uint64_t address, cycle t, cycle service) {
     return moves_.write({address, h.tile->number, h.asked, t, service}, h.tile->earliest);
-}
-
-/// Copies of the word's line go, but for those in the caches below the L1 that the writer's core uses.
-void Engine::invalidate_elsewhere(Hart& h, std::uint64_t address, cycle t, bool chip) {
-    auto in_tile = [&](Tile& tile) {
-        for (Core& core : tile.cores)
-            core.l1.invalidate(address, t, h.column);
-        for (unsigned level = 1; level < tile_levels_; ++level)
-            for (Cache& cache : tile.caches[level])
-                if (&cache != &cache_of(h, level))
-                    cache.invalidate(address, t, h.column);
-    };
-    if (!chip)
-        return in_tile(*h.tile);
-    for (Tile& tile : tiles_)
-        in_tile(tile);
-    if (beyond_->caches().size() > 1)
-        exit_of(h).tell(Request::invalidate, address, t, h.column);
-}
-
-/// On a coherent machine others that have the word's line lose it by the directory's hand too. That takes no
-/// time of the writer's: coherence.remote_cycles does.
-void Engine::claim(Hart& h, std::uint64_t address, cycle t) {
-    if (!config_.coherence.kept())
-        return;
-    const Cache& last = cache_of(h, tile_levels_ - 1);
-    if (last.holds(address) && !last.owns(address))
-        exit_of(h).tell(Request::claim, address, t, h.column);
 }
 
 /// The word has been written at `written`, which is done at `done`: those that wait for it wake.
@@ -186,10 +158,13 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
             r = loaded_ticket(h, data);
         }
     } else {
-        invalidate_elsewhere(h, a, t, chip);
-        if (kind == isa::timing::atomic::store_release) {
+        const bool release = kind == isa::timing::atomic::store_release;
+        drop_copies(config_, tiles_, asker(h), a, t, chip);
+        note_core(h, chip ? traces::Kind::invalidate_all : traces::Kind::invalidate, a, 4, t,
+                  release ? traces::Part::operation : traces::Part::access);
+        if (release) {
             ++h.counters.releases;
-            note_core(h, traces::Kind::write_through, a, 4, t);
+            note_core(h, traces::Kind::write_through, a, 4, t, traces::Part::aside);
             Access release{a, line_bytes_, t + l1_latency_, h.column};
             release.forced = release.owned = true;
             release.asker = h.core->l1.number();
@@ -207,7 +182,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
                 ready = seen;
             ready = Due(ready.at() + service, ready.why());
         }
-        claim(h, a, t);
+        claim_line(config_, asker(h), a, t);
         if (wrote)
             publish(h, a, t, ready.at(), chip);
     }

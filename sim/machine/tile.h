@@ -71,6 +71,8 @@ struct Tile {
     std::vector<Deed> deeds;
     TileIntervals intervals;
 
+    /// The next core, with its L1.
+    Core& add_core(const Config& config, std::size_t pairing_ports);
     /// The cache of a level that this core of the tile uses.
     Cache& cache_of(unsigned level, std::size_t core) { return caches[level][core / sharing[level]]; }
     /// The way there.

@@ -348,13 +348,13 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
     Answer answer{done, cause_};
     Answer right = answer;
     if (hit) {
-        array_.touch(entry);
         if (writes) [[unlikely]] {
             if (array_.shared(entry) && (a.exclusive || !through_))
                 if (right = ask_right(a, entry, line, done); right.refused)
                     return right;
             drop_others(a, entry);
         }
+        array_.touch(entry);
         if (changes && !through_)
             array_.set_dirty(entry, true);
         if (array_.in_flight(entry)) [[unlikely]]

@@ -34,6 +34,23 @@ LineMap::LineMap(const isa::address_space& space, unsigned line_shift, std::uint
         structures_.emplace_back(page_tables);
     }
     structures_.emplace_back("spill");
+    check_structures();
+}
+
+LineMap::LineMap(const std::vector<Extent>& extents, std::vector<std::string> structures, std::uint64_t end,
+                 unsigned line_shift)
+    : line_shift_(line_shift), structures_(std::move(structures)),
+      granule_count_((end + isa::address_space::granule - 1) / isa::address_space::granule),
+      granules_(std::make_unique<Granule[]>(granule_count_)) {
+    constexpr std::uint64_t granule = isa::address_space::granule;
+    std::size_t next = 0;
+    for (const Extent& e : extents)
+        for (; next < std::min((e.end + granule - 1) / granule, granule_count_); ++next)
+            granules_[next].structure = e.structure;
+    check_structures();
+}
+
+void LineMap::check_structures() const {
     if (structures_.size() >= std::size_t{1} << (Line::before_shift - level_bits))
         throw std::invalid_argument("too many structures");
 }

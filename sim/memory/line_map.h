@@ -24,6 +24,13 @@ class LineMap {
 public:
     /// Lines are the L1s', of 2^line_shift bytes. Behind the regions lie so many bytes of page tables.
     LineMap(const isa::address_space& space, unsigned line_shift, std::uint64_t page_table_bytes = 0);
+    /// What lies where, by name, without a frame memory. What is beyond `end` is of the last structure.
+    struct Extent {
+        std::uint64_t end; // of what begins where the one before it ends
+        std::uint16_t structure;
+    };
+    LineMap(const std::vector<Extent>& extents, std::vector<std::string> structures, std::uint64_t end,
+            unsigned line_shift);
     /// Where the last region ends.
     static std::uint64_t end_of(const isa::address_space& space);
 
@@ -35,6 +42,12 @@ public:
             const std::uint64_t noted_by = w >> noted_shift;
             return static_cast<LineKind>((noted_by == 0 || noted_by == tile + 1 ? w : w >> before_shift) &
                                          kind_mask);
+        }
+        /// From now on it is of this structure.
+        void place(std::size_t structure) {
+            const LineKind kind = kind_of(structure, 0);
+            if (kind_.load(std::memory_order_relaxed) != kind)
+                kind_.store(kind, std::memory_order_relaxed);
         }
         void touch(std::size_t column) {
             const std::uint64_t bit = std::uint64_t{1} << column;
@@ -92,6 +105,7 @@ private:
         return made != nullptr ? made : make_lines(granule);
     }
     Line* make_lines(std::size_t granule);
+    void check_structures() const;
     std::size_t line_in_granule(std::uint64_t address) const {
         return address % isa::address_space::granule >> line_shift_;
     }

@@ -13,7 +13,7 @@ namespace sim {
 
 /// Where in the program the access at hand stands.
 struct SiteAtHand {
-    static constexpr std::uint32_t none = ~std::uint32_t{0};
+    static constexpr std::uint32_t none = ~std::uint32_t{0}, unnumbered = none - 1;
     std::uint32_t number = none;
     bool first = false; // no line of the operation has been accessed yet
 };

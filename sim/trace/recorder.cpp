@@ -1,6 +1,7 @@
 #include "sim/trace/recorder.h"
 
 #include "sim/config/error.h"
+#include "sim/machine/windows.h"
 #include "traces/site_name.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -101,7 +103,8 @@ std::string Recorder::filters_text() const {
     return fmt::format("{}", fmt::join(out, "; "));
 }
 
-void Recorder::begin(const Labels& labels, const std::vector<std::string>& structures) {
+void Recorder::begin(const Labels& labels, const std::vector<std::string>& structures,
+                     std::vector<traces::Description::Region> regions) {
     traces::Description d;
     d.program = settings_.program;
     d.level = settings_.level;
@@ -117,6 +120,8 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
     d.phases = labels.phases;
     d.work = labels.kinds;
     d.streams = stream_names();
+    d.regions = std::move(regions);
+    d.window = window_cycles(config_);
 
     phases_ = labels.phases.size();
     filter_.begin = settings_.begin;
@@ -140,6 +145,7 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
 }
 
 void Recorder::start(std::uint64_t cycle) {
+    origin_ = cycle;
     for (std::size_t tile = 0; tile < taps_.size(); ++tile)
         if (tile >= settings_.tiles.first && tile <= settings_.tiles.last)
             taps_[tile].start(cycle);
@@ -167,21 +173,38 @@ void Recorder::learn_sites(std::size_t tile) {
     writer_->add_sites(std::move(fresh));
 }
 
+void Recorder::window(std::uint64_t until, std::uint64_t begin, std::uint64_t next) {
+    if (begin >= origin_)
+        window_ = {traces::Turn::What::window, 0, 0, until - origin_, begin - origin_,
+                   std::max(next, origin_) - origin_};
+}
+
 void Recorder::collect() {
-    for (std::size_t tile = 0; tile < taps_.size(); ++tile) {
-        std::vector<TraceTap::Noted>& noted = taps_[tile].noted();
-        if (noted.empty())
-            continue;
-        learn_sites(tile);
-        const std::vector<std::uint32_t>& site = names_[tile].number;
-        for (const TraceTap::Noted& n : noted)
-            writer_->add({n.time,
-                          n.address,
-                          n.stream,
-                          {site[n.site], n.size, n.structure, static_cast<std::uint16_t>(n.column % phases_),
-                           static_cast<std::uint16_t>(n.column / phases_), n.kind}});
-        noted.clear();
-    }
+    for (std::size_t tile = 0; tile < taps_.size(); ++tile)
+        collect(tile);
+}
+
+void Recorder::collect(std::size_t tile) {
+    std::vector<TraceTap::Noted>& noted = taps_[tile].noted();
+    if (noted.empty())
+        return;
+    if (window_)
+        writer_->mark(*std::exchange(window_, std::nullopt));
+    learn_sites(tile);
+    const std::vector<std::uint32_t>& site = names_[tile].number;
+    for (const TraceTap::Noted& n : noted)
+        writer_->add({n.time,
+                      n.address,
+                      n.stream,
+                      {site[n.site], n.size, n.structure, static_cast<std::uint16_t>(n.column % phases_),
+                       static_cast<std::uint16_t>(n.column / phases_), n.kind, n.part}});
+    noted.clear();
+}
+
+void Recorder::end(std::uint64_t until, std::uint64_t begin) {
+    collect();
+    writer_->mark({traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_,
+                   std::max(begin, origin_) - origin_});
 }
 
 void Recorder::finish() {

@@ -36,12 +36,18 @@ public:
     Recorder(TraceSettings settings, const Config& config, std::unique_ptr<traces::Sink> sink);
 
     /// A run begins; once. Throws ConfigError where there is no such structure or phase.
-    void begin(const Labels& labels, const std::vector<std::string>& structures);
+    void begin(const Labels& labels, const std::vector<std::string>& structures,
+               std::vector<traces::Description::Region> regions);
     TraceTap& tap(std::size_t tile) { return taps_[tile]; }
     /// From this cycle on the run counts, and so does the trace.
     void start(std::uint64_t cycle);
-    /// Between windows: takes what the tiles have noted.
+    /// A window of time begins, from `begin` to `until`; nobody asks for anything before `next`.
+    void window(std::uint64_t until, std::uint64_t begin, std::uint64_t next);
+    /// Takes what the tiles, or one of them, have noted by now: in the order in which that happened.
     void collect();
+    void collect(std::size_t tile);
+    /// The workers have returned by cycle `until`, memory is served as far as `begin`.
+    void end(std::uint64_t until, std::uint64_t begin);
     /// The run has ended well: ends the file, which gets its name. Throws traces::Error.
     void finish();
 
@@ -63,6 +69,8 @@ private:
     std::size_t phases_ = 1;
     std::deque<TraceTap> taps_; // by tile
     std::vector<Names> names_;  // likewise
+    std::optional<traces::Turn> window_; // at hand, of which nothing is noted yet
+    std::uint64_t origin_ = 0;           // the cycle from which on the run counts
     std::map<std::string, std::uint32_t> sites_;
     std::optional<traces::BackgroundWriter> writer_;
 };

@@ -33,6 +33,7 @@ public:
         std::uint32_t stream, size, site;
         std::uint16_t structure, column;
         traces::Kind kind;
+        traces::Part part;
     };
 
     explicit TraceTap(const Filter& filter) : filter_(&filter) {}

@@ -1,6 +1,7 @@
 // How fast traces are written and read, and what a reference takes: of a file (razor-sim run --trace FILE).
 //   trace_speed FILE [--runs N]
 #include "traces/block_builder.h"
+#include "traces/chunk.h"
 #include "traces/error.h"
 #include "traces/reader.h"
 #include "traces/writer.h"
@@ -56,7 +57,7 @@ int run(const std::string& file, int runs) {
             const traces::Description& d = reader.description();
             decode += seconds([&] {
                 decoder.decode(text, {d.structures.size(), d.phases.size(), d.work.size(), ~std::uint64_t{0}},
-                               file, again);
+                               traces::format_version, file, again);
             });
             sum += again.addresses.back();
         }

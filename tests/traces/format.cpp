@@ -3,7 +3,7 @@
 #include "traces/background_writer.h"
 #include "traces/chunk.h"
 #include "traces/error.h"
-#include "traces/in_time.h"
+#include "traces/in_order.h"
 #include "traces/index.h"
 #include "traces/reader.h"
 #include "traces/sample.h"
@@ -93,6 +93,84 @@ TEST(TraceFormat, WhatIsWrittenIsRead) {
     EXPECT_EQ(reader.bytes(), sample.bytes.size());
 }
 
+/// Bytes of base64.
+std::string decoded(std::string_view text) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        if (c == '=')
+            break;
+        bits = bits << 6U | static_cast<std::uint32_t>(digits.find(c));
+        count += 6;
+        if (count >= 8)
+            out.push_back(static_cast<char>(bits >> (count -= 8)));
+    }
+    return out;
+}
+
+/// What version 1 of the program wrote of four references of two streams.
+constexpr std::string_view of_version_1 =
+    "iVJaVA0KGgoBAAAASEVBRPvgMSAbAQAAAAAAAHsKICJwcm9ncmFtIjogInVua25vd24iLAogImxldmVsIjogIiIsCiAidGlt"
+    "ZSI6ICJjeWNsZXMiLAogImxpbmVfYnl0ZXMiOiAwLAogInNpdGVzIjogIm5hbWVzIiwKICJzYW1wbGUiOiAxLjAsCiAiZmls"
+    "dGVycyI6ICIiLAogInN0cnVjdHVyZXMiOiBbCiAgIm5vZGVzIiwKICAibGlzdHMiCiBdLAogInBoYXNlcyI6IFsKICAiZ28i"
+    "LAogICJzdG9wIgogXSwKICJ3b3JrIjogWwogICJ1bmtub3duIgogXSwKICJzdHJlYW1zIjogWwogICJ0aHJlYWQgMCIKIF0s"
+    "CiAiY29uZmlndXJhdGlvbiI6ICIiCn1OQU1FXAjA2A0AAAAAAAAAWyJhOjEiLCJiOjIiXUJMQ0uWOKP6iAAAAAAAAAAEAAAA"
+    "AgAAAAQAAAACAAAAAQAAAAAAAAAcAAAAJQAAAAQAAAANAAAACAAAABEAAAAEAAAADQAAACi1L/0gHOEAAAACAQIABAAAAAIB"
+    "CAAAAAICBAABAAEHQAEBAAEotS/9IAQhAAAAAgEDKLUv/SAIQQAACAqg/wGg/wEotS/9IAQhAAAABAICSU5EWHudv+9WAAAA"
+    "AAAAACi1L/0gWW0CAKJEEBeQtTpo3Rqg6TcmT+ZL/+eYSx60N3ZNCQF1kMk35uBF1vNVzfHn5RiE0o+pw0i+YjmiNNEWE5Lk"
+    "n/Rb1dZtsc6AAwDnDA7yluWcVEFJTGrWJ4UIAAAAAAAAAOwBAAAAAAAA";
+
+TEST(TraceFormat, FilesOfVersionOneAreRead) {
+    Reader reader(memory_source(decoded(of_version_1), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    const std::vector<Reference> all = references_of(block);
+    ASSERT_EQ(all.size(), 4U);
+    EXPECT_TRUE(equal(all[0], {1, 0x10, 0, {1, 4, 0, 0, 0, Kind::read}}));
+    EXPECT_TRUE(equal(all[1], {3, 0x14, 0, {1, 4, 0, 1, 0, Kind::modify}}));
+    EXPECT_TRUE(equal(all[2], {2, 0xff40, 1, {2, 8, 0, 0, 0, Kind::write}}));
+    EXPECT_TRUE(equal(all[3], {3, 0xff40, 1, {0, 64, 1, 1, 0, Kind::flush}}));
+    EXPECT_TRUE(block.order.empty()); // it did not say
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+    EXPECT_EQ(reader.description().structures, (std::vector<std::string>{"nodes", "lists"}));
+    EXPECT_TRUE(reader.description().regions.empty());
+    EXPECT_EQ(reader.description().window, 0U);
+}
+
+TEST(TraceFormat, TheOrderOfAllStreamsIsKept) {
+    const std::vector<Reference> all = mixed_references(3000, 5);
+    BlockBuilder builder;
+    std::vector<Turn> marks;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i % 700 == 0)
+            builder.mark(marks.emplace_back(Turn{Turn::What::window, 0, 0, 1000 + i, 900 + i, 950 + i}));
+        builder.add(all[i]);
+    }
+    builder.mark(marks.emplace_back(Turn{Turn::What::end, 0, 0, 77, 5000, 5000}));
+    Block block, back;
+    builder.take(block);
+    std::string bytes;
+    Encoder().encode(block, bytes);
+    Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "here", back);
+    EXPECT_EQ(back.order, block.order);
+    std::size_t at = 0;
+    std::vector<Turn> got;
+    each_in_order(
+        back,
+        [&](const Segment& s, std::size_t i) {
+            EXPECT_TRUE(equal({back.times[i], back.addresses[i], s.stream, back.what(i)}, all[at++]));
+        },
+        [&](const Turn& turn) {
+            EXPECT_EQ(at, std::min<std::size_t>(got.size() * 700, all.size()));
+            got.push_back(turn);
+        });
+    EXPECT_EQ(at, all.size());
+    EXPECT_EQ(got, marks);
+}
+
 TEST(TraceFormat, BlocksHoldEveryStreamInItsOrder) {
     BlockBuilder builder;
     const std::vector<Reference> all = mixed_references(5000, 3);
@@ -135,7 +213,7 @@ TEST(TraceFormat, ABlockHoldsAsManyReferencesAsItMay) {
     builder.take(block);
     std::string bytes;
     Encoder().encode(block, bytes);
-    Decoder().decode(bytes, {1, 1, 1, ~std::uint64_t{0}}, "here", back);
+    Decoder().decode(bytes, {1, 1, 1, ~std::uint64_t{0}}, format_version, "here", back);
     EXPECT_EQ(back.size(), most_references);
     EXPECT_EQ(back.addresses, block.addresses);
     EXPECT_EQ(back.times, block.times);
@@ -192,7 +270,7 @@ TEST(TraceFormat, HostileBlocksAreRefused) {
     const Decoder::Limits limits{3, 2, 3, 9};
     Block back;
     Decoder decoder;
-    decoder.decode(good, limits, "here", back);
+    decoder.decode(good, limits, format_version, "here", back);
     EXPECT_EQ(back.addresses, block.addresses);
     std::size_t refused = 0;
     for (std::size_t at = 0; at < good.size(); ++at)
@@ -200,7 +278,7 @@ TEST(TraceFormat, HostileBlocksAreRefused) {
             std::string bad = good;
             bad[at] = static_cast<char>(value);
             try {
-                decoder.decode(bad, limits, "here", back);
+                decoder.decode(bad, limits, format_version, "here", back);
                 ASSERT_LE(back.size(), most_references);
                 for (std::size_t i = 0; i < back.size(); ++i) {
                     ASSERT_LT(back.classes[i], back.table.size());
@@ -216,17 +294,17 @@ TEST(TraceFormat, HostileBlocksAreRefused) {
     EXPECT_GT(refused, good.size());
     for (const Decoder::Limits& narrow : {Decoder::Limits{2, 2, 3, 9}, Decoder::Limits{3, 1, 3, 9},
                                           Decoder::Limits{3, 2, 2, 9}, Decoder::Limits{3, 2, 3, 8}})
-        EXPECT_THROW(decoder.decode(good, narrow, "here", back), Error);
+        EXPECT_THROW(decoder.decode(good, narrow, format_version, "here", back), Error);
     for (std::size_t length = 0; length < good.size(); ++length)
-        EXPECT_THROW(decoder.decode(good.substr(0, length), limits, "here", back), Error);
+        EXPECT_THROW(decoder.decode(good.substr(0, length), limits, format_version, "here", back), Error);
 }
 
 TEST(TraceFormat, WhatIsNoTraceIsSaidToBe) {
     EXPECT_NE(read_all("").error.find("is empty"), std::string::npos);
     EXPECT_NE(read_all("0 1234\n").error.find("--from"), std::string::npos);
     std::string later = write_sample(1, 1).bytes;
-    later[8] = 2;
-    EXPECT_NE(read_all(later).error.find("version 2"), std::string::npos);
+    later[8] = 3;
+    EXPECT_NE(read_all(later).error.find("version 3"), std::string::npos);
     std::string endless(magic); // a description of 2^60 bytes
     append_fixed(endless, format_version);
     endless += "HEAD";

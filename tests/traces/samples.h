@@ -19,6 +19,8 @@ inline Description small_description() {
     d.phases = {"unknown", "traverse"};
     d.work = {"unknown", "camera", "light"};
     d.streams = {"thread 0", "thread 1"};
+    d.window = 200;
+    d.regions = {{0, 65536, 1, false}, {65536, 131072, 2, true}};
     d.configuration = "chip.tiles = 1\n# \"quoted\"\n";
     return d;
 }
@@ -38,6 +40,7 @@ inline std::vector<Reference> mixed_references(std::size_t count, std::uint32_t 
             r.address = ~std::uint64_t{0};
         r.stream = static_cast<std::uint32_t>(random() % 7 == 0 ? ~std::uint32_t{0} : random() % 3);
         r.what.kind = static_cast<Kind>(random() % kind_names.size());
+        r.what.part = static_cast<Part>(random() % parts);
         r.what.size = random() % 31 == 0 ? ~std::uint32_t{0} : static_cast<std::uint32_t>(random() % 64);
         r.what.structure = static_cast<std::uint16_t>(random() % 3);
         r.what.phase = static_cast<std::uint16_t>(random() % 2);

@@ -10,14 +10,12 @@ namespace traces {
 namespace {
 
 // Kinds:                                               read  write modif fetch prefe w.bac w.thr flush
-constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, true, true, true, true},
-                                              din = {true, true, false, true, false, false, false, false},
-                                              lackey = {true, true, true, true, false, false, false, false},
-                                              plain = {true, true, false, false, false, false, false, false},
-                                              requests = {true,  false, false, false,
-                                                          false, false, false, false},
-                                              drmemtrace = {true, true,  false, true,
-                                                            true, false, false, false};
+constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, true,
+                                                     true, true, true, true, true},
+                                              din = {true, true, false, true},
+                                              lackey = {true, true, true, true}, plain = {true, true},
+                                              requests = {true},
+                                              drmemtrace = {true, true, false, true, true};
 
 // time, streams, size, sites, names, kinds
 constexpr Format table[] = {

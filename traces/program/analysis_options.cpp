@@ -2,6 +2,7 @@
 
 #include "traces/error.h"
 #include "traces/program/interrupt.h"
+#include "traces/program/progress.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,30 +13,9 @@
 #include <charconv>
 #include <filesystem>
 #include <sstream>
-#include <unistd.h>
 
 namespace traces {
 namespace {
-
-/// Of a long run, on a terminal.
-class Progress {
-public:
-    void add(std::size_t references) {
-        references_ += references;
-        if (on_ && references_ - shown_ >= 4000000) {
-            shown_ = references_;
-            fmt::print(stderr, "\r{} million references ", references_ / 1000000);
-        }
-    }
-    ~Progress() {
-        if (on_ && shown_ != 0)
-            fmt::print(stderr, "\r\x1b[K");
-    }
-
-private:
-    bool on_ = isatty(STDERR_FILENO) != 0;
-    std::uint64_t references_ = 0, shown_ = 0;
-};
 
 /// The number of `text` among `names`.
 template <class Names>

@@ -4,6 +4,9 @@
 #include "traces/program/analyses.h"
 #include "traces/program/interrupt.h"
 #include "traces/program/overlay_command.h"
+#ifdef RAZOR_HAS_SIMULATED
+#include "traces/program/replay_command.h"
+#endif
 #include "traces/summary.h"
 
 #include <CLI/CLI.hpp>
@@ -109,6 +112,10 @@ int main(int argc, char** argv) {
         analysis->add_to(app);
     traces::OverlayCommand overlay;
     overlay.add_to(app);
+#ifdef RAZOR_HAS_SIMULATED // the machine is part of this build
+    traces::ReplayCommand replay;
+    replay.add_to(app);
+#endif
     traces::listen_for_interrupts();
     try {
         app.parse(argc, argv);
@@ -121,6 +128,10 @@ int main(int argc, char** argv) {
                 analysis->run();
         if (overlay.parsed())
             overlay.run();
+#ifdef RAZOR_HAS_SIMULATED
+        if (replay.parsed())
+            replay.run();
+#endif
         return 0;
     } catch (const traces::Interrupted&) {
         return complain("interrupted; nothing written", interrupted_exit);

@@ -1,0 +1,185 @@
+#include "sim/replay/replay.h"
+
+#include "traces/error.h"
+#include "traces/in_order.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+/// Of a machine's windows, in which references may lie this far ahead.
+constexpr cycle far_ahead = cycle{1} << 24U;
+/// No time of a trace is later: clocks of memories are counted in picoseconds.
+constexpr cycle latest_cycle = cycle{1} << 48U;
+
+} // namespace
+
+Replay::Replay(const Config& config, const traces::Description& about, const ReplayOptions& options)
+    : vocabulary_(about, options), machine_(config, about, vocabulary_.labels()),
+      clocked_(about.time == "cycles" || about.time == "instructions"),
+      following_(about.window == machine_.window_cycles()) {
+    if (!about.level.empty() && about.level != "core")
+        throw traces::Error(fmt::format("the trace is of what passes level {}; only what cores ask for can be "
+                                        "replayed: record it at level core",
+                                        about.level));
+}
+
+void Replay::check(const traces::Block& block) const {
+    const std::uint32_t last = block.segments.back().stream;
+    if (last >= machine_.threads())
+        throw traces::Error(fmt::format("the trace has a stream {}, but the machine {} threads, numbered from 0; "
+                                        "give a machine with more (-g chip.threads=..., chip.cores or "
+                                        "chip.tiles)",
+                                        last, machine_.threads()));
+}
+
+void Replay::add(const traces::Block& block) {
+    check(block);
+    vocabulary_.learn(block.table, actions_);
+    following_ = following_ && !block.order.empty();
+    if (!begun_) {
+        begun_ = true;
+        origin_ = following_ ? 0 : *std::min_element(block.times.begin(), block.times.end());
+    }
+    if (block.order.empty())
+        return traces::each_in_time(block, [&](const traces::Segment& s, std::size_t i) {
+            run(block, s.stream, i, i + 1);
+        });
+    std::vector<std::size_t> next;
+    for (const traces::Segment& s : block.segments)
+        next.push_back(s.begin);
+    for (const traces::Turn& turn : block.order)
+        if (turn.what == traces::Turn::What::references) {
+            std::size_t& at = next[turn.segment];
+            run(block, block.segments[turn.segment].stream, at, at + turn.count);
+            at += turn.count;
+        } else {
+            mark(turn);
+        }
+}
+
+/// A window or the end, as the trace has it.
+void Replay::mark(const traces::Turn& turn) {
+    if (turn.what == traces::Turn::What::end) {
+        machine_.settle(following_ ? turn.begin : machine_.window_end());
+        machine_.end_frame(std::max(turn.until, origin_) - origin_ + offset_);
+        result_.ended = true;
+        return;
+    }
+    const bool fits = turn.until > machine_.window_end() - machine_.window_cycles() && turn.begin < turn.until &&
+                      turn.until < latest_cycle;
+    following_ = following_ && fits;
+    if (following_)
+        machine_.open_window(turn.until, turn.begin, turn.next);
+}
+
+/// The cycle of the next reference, whose window is open.
+cycle Replay::arrive(std::uint64_t time) {
+    cycle t = (clocked_ ? time - std::min(time, origin_) : result_.references) + offset_;
+    if (t >= machine_.window_end()) [[unlikely]] {
+        if (t >= latest_cycle)
+            throw traces::Error(fmt::format("a reference has the time {}, beyond all that is simulated; the "
+                                            "trace's times begin at {}",
+                                            time, origin_));
+        following_ = following_ && t < machine_.window_end() + far_ahead;
+        if (!following_)
+            machine_.come_to(t);
+    }
+    return std::max(t, machine_.earliest());
+}
+
+/// References of a stream, one after the other.
+void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end) {
+    using What = ReplayAction::What;
+    const bool compacts = machine_.by_reference();
+    for (std::size_t i = begin; i < end;) {
+        const ReplayAction& a = actions_[block.classes[i]];
+        const auto goes_on = [&](const ReplayAction& next) {
+            return a.what == What::discard
+                       ? next.what == What::discard && next.part == traces::Part::access
+                       : next.part == traces::Part::piece && next.what == a.what;
+        };
+        const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];
+        const cycle t = arrive(block.times[i]);
+        std::size_t n = 1;
+        while (i + n < end && goes_on(actions_[block.classes[i + n]]))
+            ++n;
+        std::uint64_t high = low + std::max(a.size, 1U) - 1;
+        if (n != 1)
+            high = low + (block.addresses[i + n - 1] - block.addresses[i]) +
+                   std::max(actions_[block.classes[i + n - 1]].size, 1U) - 1;
+        i += n;
+        if (a.what == What::nothing) [[unlikely]] {
+            result_.left_out[static_cast<std::size_t>(a.kind)] += n;
+            continue;
+        }
+        result_.references += n;
+        touch(a, stream, low, high, static_cast<std::uint32_t>(n), t);
+    }
+}
+
+void Replay::touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
+                   std::uint32_t accesses, cycle t) {
+    const unsigned shift = machine_.line_shift();
+    if (a.modifies) [[unlikely]] {
+        touch_lines(a, stream, low, high, t);
+        ReplayAction writes = a;
+        writes.what = ReplayAction::What::write;
+        writes.part = traces::Part::access;
+        return touch_lines(writes, stream, low, high, std::max(t, machine_.earliest()));
+    }
+    if (a.what <= ReplayAction::What::write && low >> shift != high >> shift) [[unlikely]]
+        return touch_lines(a, stream, low, high, t);
+    const auto bytes = static_cast<std::uint32_t>(high - low + 1);
+    const Answer answer = machine_.perform(a, stream, low, bytes, accesses, t);
+    if (answer.refused) [[unlikely]]
+        insist(a, stream, low, bytes, accesses, t, answer);
+}
+
+/// An access of each line.
+void Replay::touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
+                         cycle t) {
+    const std::uint64_t line_bytes = std::uint64_t{1} << machine_.line_shift();
+    ReplayAction each = a;
+    for (std::uint64_t at = low; at <= high; at = (at | (line_bytes - 1)) + 1) {
+        const auto bytes = static_cast<std::uint32_t>(std::min(high, at | (line_bytes - 1)) - at + 1);
+        t = std::max(t, machine_.earliest());
+        const Answer answer = machine_.perform(each, stream, at, bytes, 1, t);
+        if (answer.refused)
+            insist(each, stream, at, bytes, 1, t, answer);
+        if (each.part == traces::Part::operation)
+            each.part = traces::Part::access;
+    }
+}
+
+/// Until there is room for it, time passes for all.
+void Replay::insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
+                    std::uint32_t accesses, cycle t, const Answer& refused) {
+    ++result_.waits;
+    following_ = false;
+    Answer answer = refused;
+    while (answer.refused) {
+        const cycle next =
+            std::max(answer.ready == Answer::unknown ? machine_.window_end() : answer.ready, t + 1);
+        offset_ += next - t;
+        result_.delay += next - t;
+        t = next;
+        if (t >= machine_.window_end())
+            machine_.come_to(t);
+        answer = machine_.perform(a, stream, address, bytes, accesses, t);
+    }
+}
+
+ReplayResult Replay::finish(const traces::Description& about) {
+    if (!result_.ended)
+        machine_.settle(machine_.window_end());
+    result_.windows = following_ && begun_;
+    result_.report = machine_.finish();
+    vocabulary_.name(about, result_.report);
+    return std::move(result_);
+}
+
+} // namespace sim

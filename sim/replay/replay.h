@@ -1,0 +1,81 @@
+// A trace on a machine, reference by reference in the order in which they were made: that which a trace says
+// (traces::Turn), else that of its times. Each comes at the cycle at which it was recorded, whatever earlier ones
+// have brought; where the machine has no room for one (an MSHR), it and all that follow come so much later. On
+// the machine that a trace of its cores was recorded on, in its fast mode and from cold caches, nothing has to
+// wait, and all that the memory system counts is what the run counted.
+//
+// Times that are no cycles or instructions do not count: references come one a cycle.
+#pragma once
+
+#include "sim/replay/addresses.h"
+#include "sim/replay/replay_machine.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace sim {
+
+struct ReplayOptions {
+    bool fetches = false; // fetches of instructions are reads, of a unified cache; else they are left out
+};
+
+struct ReplayResult {
+    /// What the memory system counted; of cores, threads and instructions it says nothing.
+    Report report;
+    std::uint64_t references = 0;                                  // replayed
+    std::array<std::uint64_t, traces::kind_names.size()> left_out{}; // by kind: what the machine does not have
+    std::uint64_t waits = 0, delay = 0; // references that found no room, and cycles that all was delayed by
+    bool windows = false;               // the run's own windows of time were followed to the end
+    bool ended = false;                 // the trace says when it was over, and what lasts was written back then
+};
+
+/// What a trace is to a machine: which columns its phases and work count under, what its classes do.
+class ReplayVocabulary {
+public:
+    ReplayVocabulary(const traces::Description& about, const ReplayOptions& options);
+    const Labels& labels() const { return labels_; }
+    /// Of a block's classes. Throws traces::Error where a table has grown too long.
+    void learn(const std::vector<traces::Class>& table, std::vector<ReplayAction>& actions) const;
+    /// Names that tables have got since.
+    void name(const traces::Description& about, Report& report) const;
+
+private:
+    ReplayOptions options_;
+    bool by_work_; // else by phases alone
+    std::size_t phases_;
+    Labels labels_;
+};
+
+class Replay {
+public:
+    /// Throws ConfigError where the machine cannot be replayed on, traces::Error where the trace cannot.
+    Replay(const Config& config, const traces::Description& about, const ReplayOptions& options);
+    /// The next of the trace. Throws traces::Error.
+    void add(const traces::Block& block);
+    /// No more comes. `about`: with all names.
+    ReplayResult finish(const traces::Description& about);
+
+private:
+    void check(const traces::Block& block) const;
+    void run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end);
+    void touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
+               std::uint32_t accesses, cycle t);
+    void touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
+                     cycle t);
+    void insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
+                std::uint32_t accesses, cycle t, const Answer& refused);
+    cycle arrive(std::uint64_t time);
+    void mark(const traces::Turn& turn);
+
+    ReplayVocabulary vocabulary_;
+    ReplayMachine machine_;
+    CompactAddresses compact_;
+    std::vector<ReplayAction> actions_; // of the block at hand
+    bool clocked_, following_;          // times are cycles; the run's windows are followed
+    bool begun_ = false;
+    std::uint64_t origin_ = 0, offset_ = 0;
+    ReplayResult result_;
+};
+
+} // namespace sim

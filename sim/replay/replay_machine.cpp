@@ -1,0 +1,231 @@
+#include "sim/replay/replay_machine.h"
+
+#include "sim/config/error.h"
+#include "sim/machine/frame_end.h"
+#include "sim/machine/windows.h"
+#include "sim/replay/addresses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace sim {
+namespace {
+
+std::uint64_t wide(integer x) {
+    return static_cast<std::uint64_t>(x);
+}
+
+bool uses_strides(const Config& config) {
+    for (unsigned level = 0; level < config.cache_levels(); ++level)
+        if (config.cache(level).prefetcher == "stride")
+            return true;
+    return false;
+}
+
+/// The most memory that regions may take, which tables are made for.
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40U;
+
+} // namespace
+
+ReplayMachine::ReplayMachine(const Config& config, const traces::Description& about, Labels labels)
+    : config_(config), labels_(std::move(labels)), regions_(about.regions), by_reference_(regions_.empty()),
+      strides_(uses_strides(config)),
+      line_shift_(static_cast<unsigned>(std::countr_zero(wide(config.l1.line_bytes)))),
+      tile_levels_(config.tile_levels()), window_cycles_(sim::window_cycles(config)),
+      reach_(reach_cycles(config)), shortest_answer_(shortest_answer(config)),
+      shortest_line_(shortest_line(config)), l1_latency_(wide(config.l1.latency)) {
+    if (config.sim.mode != "fast")
+        throw ConfigError(fmt::format("sim.mode = {}: traces are replayed in the fast mode, as what caches within "
+                                      "tiles ask each other is in no trace; give -g sim.mode=fast",
+                                      config.sim.mode));
+    std::vector<std::string> names = about.structures;
+    std::vector<LineMap::Extent> extents;
+    std::uint64_t end = CompactAddresses::end;
+    if (by_reference_) {
+        names.resize(std::max(names.size(), most_replayed_structures));
+    } else {
+        // The last structure's is not of the frame's memory.
+        const bool spill = regions_.back().structure + 1U == names.size();
+        end = spill ? regions_.back().begin : regions_.back().end;
+        if (end > most_bytes)
+            throw ConfigError("the trace's regions take more than a TiB; record the trace again");
+        for (const traces::Description::Region& r : regions_)
+            if (r.begin < end)
+                extents.push_back({r.end, r.structure});
+    }
+    lines_.emplace(extents, std::move(names), end, line_shift_);
+    beyond_ = Beyond::make(config, [this](std::uint32_t tile, cycle ticket, const Answer& answer) {
+        tiles_[tile].tickets.answer(ticket, answer.ready, answer.from);
+    });
+    for (integer t = 0; t < config.chip.tiles; ++t) {
+        Tile& tile = tiles_.emplace_back(config, static_cast<std::uint32_t>(t), window_cycles_, *lines_,
+                                         labels_.columns());
+        for (integer c = 0; c < config.chip.cores; ++c) {
+            Core& core = tile.add_core(config, 0);
+            for (integer i = 0; i < config.chip.threads; ++i)
+                seats_.push_back({&tile, &core, static_cast<std::size_t>(c)});
+        }
+    }
+    sites_.resize(tiles_.size());
+    beyond_->connect(tiles_);
+    open_window(window_cycles_, 0, 0);
+}
+
+void ReplayMachine::open_window(cycle until, cycle served, cycle next) {
+    if (served != 0)
+        serve(served);
+    window_end_ = until;
+    const cycle begin = until - std::min(until, window_cycles_);
+    earliest_ = begin > reach_ ? begin - reach_ : 0;
+    const Floors floors{next + shortest_answer_, next + shortest_line_};
+    for (Tile& tile : tiles_) {
+        tile.tickets.set_floors(floors);
+        tile.earliest = earliest_;
+        if (tile.tickets.size() >= 4096)
+            tile.tickets.forget(earliest_);
+    }
+}
+
+void ReplayMachine::come_to(cycle t) {
+    const cycle until = (t / window_cycles_ + 1) * window_cycles_, begin = until - window_cycles_;
+    open_window(until, begin, begin);
+}
+
+/// What left the tiles is answered, as far as it can be by then.
+void ReplayMachine::serve(cycle end) {
+    for (Tile& tile : tiles_)
+        if (!tile.leaving.requests.empty())
+            beyond_->accept(tile.leaving.requests);
+    beyond_->serve(end);
+}
+
+void ReplayMachine::serve_all() {
+    serve(Beyond::everything);
+}
+
+/// The site of the access at hand, for prefetchers; numbered by its first one in the tile.
+void ReplayMachine::note_site(Tile& tile, const ReplayAction& a) {
+    tile.site = {};
+    if (a.part == traces::Part::aside || a.site == 0)
+        return;
+    SiteNumbers& numbers = sites_[tile.number];
+    tile.site.number = numbers.try_emplace(a.site, static_cast<std::uint32_t>(numbers.size())).first->second;
+    tile.site.first = a.part == traces::Part::operation;
+}
+
+Answer ReplayMachine::perform_other(const ReplayAction& a, const Seat& s, std::uint64_t address,
+                                    std::uint32_t bytes, cycle t) {
+    using What = ReplayAction::What;
+    const Asker who{*s.tile, s.number, a.column};
+    const auto line_bytes = static_cast<std::uint32_t>(config_.l1.line_bytes);
+    switch (a.what) {
+    case What::change: {
+        s.tile->site = {};
+        Access change{address, line_bytes, t + l1_latency_, a.column};
+        change.modify = change.owned = true;
+        change.asker = s.core->l1.number();
+        return s.core->words.read(change);
+    }
+    case What::release: {
+        Access release{address, line_bytes, t + l1_latency_, a.column};
+        release.forced = release.owned = true;
+        release.asker = s.core->l1.number();
+        s.core->words.write(release);
+        claim_line(config_, who, address, t);
+        break;
+    }
+    case What::prefetch:
+        ++s.core->l1.counters().busy_cycles;
+        s.core->l1.prefetch(address, t, a.column);
+        break;
+    case What::discard:
+        discard(a, s, address, bytes, t);
+        break;
+    case What::invalidate:
+    case What::invalidate_all:
+        drop_copies(config_, tiles_, who, address, t, a.what == What::invalidate_all);
+        if (a.part == traces::Part::access) // of a change; a release follows otherwise
+            claim_line(config_, who, address, t);
+        break;
+    default:
+        break;
+    }
+    return {t, Cause::l1};
+}
+
+/// Whole lines of these bytes.
+void ReplayMachine::discard(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
+                            cycle t) {
+    const std::uint64_t end = address + bytes, first = (address + (1U << line_shift_) - 1) >> line_shift_;
+    for (std::uint64_t line = first; line < end >> line_shift_; ++line) {
+        s.core->l1.discard(line << line_shift_);
+        discard_below(config_, {*s.tile, s.number, a.column}, line << line_shift_, address, end, t);
+    }
+}
+
+void ReplayMachine::settle(cycle served) {
+    serve(served);
+    serve_all();
+    end_ = std::max(end_, served);
+    for (unsigned level = 1; level < tile_levels_; ++level)
+        for (const Tile& tile : tiles_)
+            for (const Cache& cache : tile.caches[level])
+                misplaced_ += cache.misplaced();
+    misplaced_ += beyond_->misplaced();
+    if (const Coherence* coherence = beyond_->coherence())
+        incoherent_ += coherence->incoherent();
+}
+
+bool ReplayMachine::lasts(std::uint64_t address) const {
+    const auto after = std::upper_bound(
+        regions_.begin(), regions_.end(), address,
+        [](std::uint64_t at, const traces::Description::Region& r) { return at < r.begin; });
+    return after != regions_.begin() && address < (after - 1)->end && (after - 1)->lasts;
+}
+
+void ReplayMachine::end_frame(cycle t) {
+    end_ = t;
+    const bool all = config_.sim.frame_end == "write";
+    write_back_all(
+        tiles_, *beyond_, t, labels_.phases.size() - 1,
+        [this, all](std::uint64_t address) { return all || lasts(address); }, [this] { serve_all(); });
+}
+
+Report ReplayMachine::finish() {
+    beyond_->finish();
+    Report r;
+    r.config = config_;
+    r.labels = labels_;
+    r.structures = lines_->structures();
+    r.cycles = end_;
+    r.window = window_cycles_;
+    std::vector<const Attribution*> attributions;
+    for (const Tile& tile : tiles_)
+        attributions.push_back(&tile.attribution);
+    r.traffic = Attribution::traffic(attributions);
+    r.network = beyond_->network().report();
+    r.memory = beyond_->counters();
+    r.memory_by_rank = beyond_->rank_counters();
+    for (const Tile& tile : tiles_) {
+        for (const Core& core : tile.cores)
+            r.l1.push_back(core.l1.counters());
+        for (unsigned level = 1; level < tile_levels_; ++level)
+            for (const Cache& cache : tile.caches[level])
+                r.caches(level).push_back(cache.counters());
+        for (const Jitter& jitter : tile.jitters) {
+            r.jitter.lines += jitter.lines();
+            r.jitter.cycles += jitter.cycles();
+        }
+    }
+    for (const SharedCache& shared : beyond_->caches())
+        r.caches(tile_levels_).push_back(shared.cache.counters());
+    if (const Coherence* coherence = beyond_->coherence())
+        r.coherence = coherence->counters();
+    r.misplaced_lines = misplaced_;
+    r.incoherent_lines = incoherent_;
+    return r;
+}
+
+} // namespace sim

@@ -1,0 +1,128 @@
+// The memory system of a machine without the cores that run programs: its caches, network and memory, driven by
+// references that come from elsewhere. All of it is the machine's own code (sim/memory, sim/machine,
+// sim/network), in its fast mode. Not modelled: translation of addresses (a trace has the walks that were made)
+// and the L1s' ports (a trace has the cycles at which they were granted).
+#pragma once
+
+#include "sim/machine/asides.h"
+#include "sim/machine/beyond.h"
+#include "sim/machine/report.h"
+#include "traces/description.h"
+#include "traces/reference.h"
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace sim {
+
+/// What references of a class (traces::Class) do to a machine.
+struct ReplayAction {
+    /// Words go to the L2: changed there, or released (written). Spoken of at Part::aside.
+    enum class What : std::uint8_t {
+        read,
+        write,
+        change,
+        release,
+        prefetch,
+        discard,
+        invalidate,
+        invalidate_all,
+        nothing // the machine has no such thing
+    };
+    What what = What::nothing;
+    traces::Kind kind = traces::Kind::read;
+    traces::Part part = traces::Part::operation;
+    bool modifies = false; // what is read is written, in the L1
+    std::uint16_t structure = 0;
+    std::uint32_t size = 0;
+    std::size_t column = 0;
+    std::uint64_t site = 0;
+};
+
+/// Of traces that do not say what lies where: names may still come.
+inline constexpr std::size_t most_replayed_structures = 4096;
+
+class ReplayMachine {
+public:
+    /// `labels`: of columns. Throws ConfigError where the machine cannot be replayed on.
+    ReplayMachine(const Config& config, const traces::Description& about, Labels labels);
+
+    std::size_t threads() const { return seats_.size(); }
+    std::uint64_t window_cycles() const { return window_cycles_; }
+    cycle window_end() const { return window_end_; }
+    /// No reference comes before this cycle any more.
+    cycle earliest() const { return earliest_; }
+    /// Whether structures are those that references name, not those of places in memory.
+    bool by_reference() const { return by_reference_; }
+    unsigned line_shift() const { return line_shift_; }
+
+    /// The window until here, in which nothing is asked for before `next`; what was asked for in the one before
+    /// is served as far as `served`.
+    void open_window(cycle until, cycle served, cycle next);
+    /// ... the window that cycle `t` lies in, after all earlier ones.
+    void come_to(cycle t);
+    /// `accesses` of a line, or what else the action says, by a thread at `t`. Refused: ask again (Answer).
+    /// `address` and `bytes`: of a discard all of it, which is more than a line.
+    Answer perform(const ReplayAction& a, std::uint32_t thread, std::uint64_t address, std::uint32_t bytes,
+                   std::uint32_t accesses, cycle t) {
+        const Seat& s = seats_[thread];
+        if (by_reference_)
+            place(a, address);
+        if (a.what <= ReplayAction::What::write) [[likely]] {
+            if (strides_) [[unlikely]]
+                note_site(*s.tile, a);
+            return s.core->l1.access(address >> line_shift_, a.what == ReplayAction::What::write, accesses, t,
+                                     a.column);
+        }
+        return perform_other(a, s, address, bytes, t);
+    }
+    /// When a ticket that perform() gave is answered; false: not yet.
+    bool find(std::uint32_t thread, cycle ticket, Answered& out) {
+        return seats_[thread].tile->tickets.find(ticket, out);
+    }
+    /// All is served; caches stay as they are.
+    void settle(cycle served);
+    /// After settle(): what lasts is written back from caches, at cycle `t`.
+    void end_frame(cycle t);
+    /// Nothing follows.
+    Report finish();
+
+private:
+    struct Seat {
+        Tile* tile;
+        Core* core;
+        std::size_t number; // of the core in its tile
+    };
+    using SiteNumbers = std::unordered_map<std::uint64_t, std::uint32_t>; // by the trace's
+
+    void place(const ReplayAction& a, std::uint64_t address) {
+        if (LineMap::Line* line = lines_->line(address))
+            line->place(a.structure);
+    }
+    void note_site(Tile& tile, const ReplayAction& a);
+    Answer perform_other(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
+                         cycle t);
+    void discard(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
+    void serve(cycle end);
+    void serve_all();
+    bool lasts(std::uint64_t address) const;
+
+    Config config_;
+    Labels labels_;
+    std::vector<traces::Description::Region> regions_;
+    bool by_reference_, strides_;
+    unsigned line_shift_, tile_levels_;
+    std::uint64_t window_cycles_, reach_, shortest_answer_, shortest_line_, l1_latency_;
+    std::optional<LineMap> lines_;
+    std::unique_ptr<Beyond> beyond_;
+    std::deque<Tile> tiles_;
+    std::vector<Seat> seats_; // by thread
+    std::vector<SiteNumbers> sites_; // by tile
+    cycle window_end_ = 0, earliest_ = 0, end_ = 0;
+    std::uint64_t misplaced_ = 0, incoherent_ = 0;
+};
+
+} // namespace sim

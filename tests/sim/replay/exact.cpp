@@ -1,0 +1,100 @@
+// A trace of what cores asked for, replayed on the machine that it is of, gives all that the run's caches, network,
+// directory and memory counted, to the last one.
+#include "sim/replay/replay_report.h"
+#include "tests/sim/replay/workload.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace sim {
+namespace {
+
+ReplayResult replay(const std::string& trace, const Config& config) {
+    traces::Reader reader(traces::memory_source(trace, "trace"));
+    Replay replay(config, reader.description(), {});
+    traces::Block block;
+    while (reader.next(block))
+        replay.add(block);
+    EXPECT_TRUE(reader.complete());
+    return replay.finish(reader.description());
+}
+
+/// The first counts that differ, in words.
+std::string differences(const std::vector<Comparison>& all) {
+    std::string out;
+    for (const Comparison& c : all)
+        if (c.replayed != c.run && out.size() < 1500)
+            out += c.part + " " + c.counter + ": " + std::to_string(c.replayed) + ", the run had " +
+                   std::to_string(c.run) + "\n";
+    return out;
+}
+
+std::string machine(const std::string& name) {
+    return std::string(RAZOR_SOURCE_DIR "/configs/machines/") + name + ".toml";
+}
+
+struct Case {
+    const char* name;
+    std::string file;
+    std::vector<std::string> settings;
+};
+
+class ExactReplay : public ::testing::TestWithParam<Case> {};
+
+const std::vector<std::string> two_by_two = {"chip.tiles=2", "chip.cores=2", "chip.threads=2"};
+
+std::vector<std::string> with(std::vector<std::string> base, const std::vector<std::string>& more) {
+    base.insert(base.end(), more.begin(), more.end());
+    return base;
+}
+
+TEST_P(ExactReplay, CountsWhatTheRunCounted) {
+    const Case& c = GetParam();
+    const Config config = read_machine(machine(c.file), c.settings);
+    const test::Recorded run = test::record(config, config.all_threads() > 64 ? 150 : 1500);
+    const ReplayResult result = replay(run.trace, config);
+    EXPECT_TRUE(result.windows);
+    EXPECT_TRUE(result.ended);
+    EXPECT_EQ(result.waits, 0U);
+    const std::vector<Comparison> all = compare_with_run(result, print_json(run.report), "run");
+    EXPECT_EQ(differences(all), "");
+    // It was a run in which much happened.
+    EXPECT_GT(run.report.l1_total().misses, 1000U);
+    EXPECT_GT(run.report.l1_total().hits, 1000U);
+    EXPECT_GT(run.report.memory.reads, 500U);
+    EXPECT_GT(run.report.core.modifications, 50U);
+    EXPECT_GT(all.size(), 100U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Machines, ExactReplay,
+    ::testing::Values(
+        Case{"Tiny", "tiny", {}}, Case{"WholeWindows", "tiny", {"sim.quantum=1000"}},
+        Case{"Quanta", "tiny", {"sim.quantum=50"}},
+        Case{"NextLine", "tiny", {"l1.prefetcher=next", "l2.prefetcher=next", "l2.prefetch_degree=2"}},
+        Case{"Stride", "tiny", {"l1.prefetcher=stride", "l1.prefetch_sites=4", "sim.quantum=1000"}},
+        Case{"FewMshrs", "tiny", {"l1.mshrs=1", "l1.prefetcher=stride", "l1.write_back_buffer=1"}},
+        Case{"Through", "tiny", {"l1.write_policy=through", "l1.write_miss=around", "l2.replacement=plru"}},
+        Case{"Exclusive", "tiny", {"l2.inclusion=exclusive", "l2.size_bytes=32768"}},
+        Case{"Inclusive", "tiny", {"l2.inclusion=inclusive", "l2.size_bytes=16384", "l1.replacement=srrip"}},
+        Case{"StoreBuffer", "tiny", {"core.store_buffer=4", "tlb.entries=8", "core.gather=lane"}},
+        Case{"Jitter", "tiny", {"sim.jitter=7", "l2.line_bytes=128"}},
+        Case{"Queued", "tiny", {"memory.controller=queued"}},
+        Case{"Written", "tiny", {"sim.frame_end=write", "sim.miss_causes=on"}},
+        Case{"SharedL3", "tiny",
+             with(two_by_two, {"l3.size_bytes=262144", "l3.share=chip", "l3.prefetcher=next", "sim.quantum=1000"})},
+        Case{"Directory", "tiny",
+             with(two_by_two, {"coherence.plain=directory", "l2.inclusion=inclusive", "network.topology=mesh"})},
+        Case{"SmallDirectory", "tiny",
+             with(two_by_two, {"coherence.plain=directory", "l2.inclusion=inclusive",
+                               "coherence.directory_entries=256", "sim.quantum=1000",
+                               "memory.controller=queued"})},
+        Case{"Copernicus", "copernicus", {"chip.tiles=3"}}, Case{"Niagara", "niagara-like", {}},
+        Case{"Larrabee", "larrabee-like", {"chip.tiles=4"}}, Case{"Xeon", "xeon-x5355-2s", {}},
+        Case{"Zen4", "zen4-2c", {}}, Case{"GoldenCove", "golden-cove-2c", {}}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace
+} // namespace sim

@@ -1,0 +1,290 @@
+#include "traces/program/replay_command.h"
+
+#include "sim/config/error.h"
+#include "traces/error.h"
+#include "traces/program/interrupt.h"
+#include "traces/program/progress.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <thread>
+
+namespace traces {
+
+using analysis::Table;
+using json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::array<const char*, 4> by_names = {"all", "structure", "phase", "kind"};
+constexpr double none = std::numeric_limits<double>::quiet_NaN(); // a dash
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> out;
+    std::istringstream in(text);
+    for (std::string part; std::getline(in, part, ',');)
+        out.push_back(part);
+    return out;
+}
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? none : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// Rows of a group: each level of caches, and memory.
+void add_rows(const sim::ReplayResult& result, const std::vector<Table::Cell>& head, const sim::Traffic& t,
+              bool all, Table& table) {
+    const sim::Report& r = result.report;
+    const auto row = [&](std::vector<Table::Cell> cells) {
+        cells.insert(cells.begin(), head.begin(), head.end());
+        table.rows.push_back(std::move(cells));
+    };
+    for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
+        const sim::TrafficOfLevel& of = sim::traffic_of_level[level];
+        const std::uint64_t reads = t.*of.reads, writes = t.*of.writes, misses = t.*of.misses;
+        const sim::CacheCounters c = r.cache_total(level);
+        const auto whole = [&](std::uint64_t n) { return all ? Table::Cell(n) : Table::Cell(none); };
+        row({fmt::format("L{}", level + 1), reads, writes, reads + writes - misses, misses,
+             ratio(misses, reads + writes), t.*of.write_backs, whole(c.fills),
+             whole(c.prefetches + c.hardware_prefetches), none});
+    }
+    const sim::MemoryCounters& m = r.memory;
+    const std::uint64_t bursts = m.row_hits + m.row_empties + m.row_conflicts;
+    row({std::string("memory"), t.memory_reads, t.memory_writes, none, none, none, none, none, none,
+         all ? ratio(m.row_hits, bursts) : none});
+}
+
+} // namespace
+
+void ReplayCommand::add_to(CLI::App& app) {
+    app_ = app.add_subcommand("replay", "what the memory systems of machines make of a trace");
+    app_->add_option("TRACE", file_, "a trace of any format, of what cores ask for, or -")->required();
+    app_->add_option("--from", from_, "its format; without it, as it begins or is named")->type_name("FORMAT");
+    app_->add_option("--machine", machines_,
+                     "a machine, such as configs/machines/tiny.toml; behind it overrides of its own: "
+                     "tiny.toml,l2.size_bytes=65536; may be given more than once, for one pass over the trace")
+        ->type_name("FILE[,KEY=VALUE...]")
+        ->required()
+        ->expected(1)
+        ->take_all();
+    app_->add_option("-g", settings_, "overrides a setting of all machines; may be given more than once")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all();
+    app_->add_option("--by", by_, "tell counts apart by: all, structure, phase, kind (of work)")
+        ->type_name("WHAT");
+    app_->add_flag("--fetches", fetches_,
+                   "fetches of instructions are reads, of unified caches; without it they are left out");
+    app_->add_option("--against", against_,
+                     "the report of a run (razor-sim run --json) of the same machine: how far the replay's "
+                     "counts are from it")
+        ->type_name("FILE.json");
+    app_->add_option("--threads", threads_,
+                     "of this host, that machines are spread on; without it, as many as there are")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    app_->add_option("--csv", csv_, "write the table for programs, whole or not at all; - is standard output")
+        ->type_name("FILE");
+    app_->add_option("--json", json_, "likewise all counters of all machines")->type_name("FILE");
+}
+
+std::vector<ReplayCommand::Machine> ReplayCommand::machines() const {
+    std::vector<Machine> out;
+    for (const std::string& text : machines_) {
+        const std::vector<std::string> parts = split(text);
+        std::vector<std::string> settings = settings_;
+        if (parts.empty())
+            throw Error("--machine: names no file; give one, such as configs/machines/tiny.toml");
+        settings.insert(settings.end(), parts.begin() + 1, parts.end());
+        Machine m{"", sim::describe_machine(parts.front(), settings)};
+        m.label = m.description.name;
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            m.label += " " + parts[i];
+        out.push_back(std::move(m));
+    }
+    return out;
+}
+
+/// While machines work on a block, the next one is read.
+std::vector<sim::ReplayResult> ReplayCommand::replay(Input& input, const std::vector<Machine>& all) const {
+    std::vector<std::unique_ptr<sim::Replay>> replays;
+    const sim::ReplayOptions options{fetches_};
+    for (const Machine& m : all)
+        replays.push_back(
+            std::make_unique<sim::Replay>(m.description.config, input.description(), options));
+    const std::size_t most =
+        std::min(threads_ != 0 ? static_cast<std::size_t>(threads_)
+                               : std::max<std::size_t>(1, std::thread::hardware_concurrency()),
+                 replays.size());
+    Progress progress;
+    Block block, ahead;
+    for (bool more = input.next(block); more; std::swap(block, ahead)) {
+        if (interrupted())
+            throw Interrupted();
+        std::atomic<std::size_t> next{0};
+        std::vector<std::exception_ptr> failed(most);
+        {
+            std::vector<std::jthread> workers;
+            for (std::size_t w = 0; w < most; ++w)
+                workers.emplace_back([&, w] {
+                    try {
+                        for (std::size_t i = next++; i < replays.size(); i = next++)
+                            replays[i]->add(block);
+                    } catch (...) {
+                        failed[w] = std::current_exception();
+                    }
+                });
+            more = input.next(ahead);
+        }
+        for (const std::exception_ptr& f : failed)
+            if (f)
+                std::rethrow_exception(f);
+        progress.add(block.size());
+    }
+    std::vector<sim::ReplayResult> out;
+    for (const auto& r : replays)
+        out.push_back(r->finish(input.description()));
+    return out;
+}
+
+Table ReplayCommand::table(const std::vector<Machine>& machines,
+                           const std::vector<sim::ReplayResult>& results, By by) const {
+    Table out;
+    if (machines.size() > 1)
+        out.columns.emplace_back("machine");
+    if (by != By::all)
+        out.columns.emplace_back(by_names[static_cast<std::size_t>(by)]);
+    for (const char* name : {"level", "reads", "writes", "hits", "misses", "miss ratio", "write backs", "fills",
+                             "prefetches", "row hits"})
+        out.columns.emplace_back(name);
+    for (std::size_t m = 0; m < machines.size(); ++m) {
+        const sim::Report& r = results[m].report;
+        std::map<std::size_t, sim::Traffic> groups;
+        if (by == By::all)
+            groups[0]; // also of nothing
+        for (const sim::TrafficRow& t : r.traffic) {
+            const std::size_t group = by == By::structure ? t.structure
+                                      : by == By::phase   ? r.labels.phase(t.column)
+                                      : by == By::kind    ? r.labels.kind(t.column)
+                                                          : 0;
+            for (const sim::TrafficColumn& c : sim::traffic_columns)
+                groups[group].*c.count += t.traffic.*c.count;
+        }
+        for (const auto& [group, traffic] : groups) {
+            std::vector<Table::Cell> head;
+            if (machines.size() > 1)
+                head.emplace_back(machines[m].label);
+            if (by != By::all)
+                head.emplace_back(by == By::structure ? r.structures[group]
+                                  : by == By::phase   ? r.labels.phases[group]
+                                                      : r.labels.kinds[group]);
+            add_rows(results[m], head, traffic, by == By::all, out);
+        }
+    }
+    return out;
+}
+
+/// What differs, the largest errors of totals first said in a line.
+void ReplayCommand::compare(const std::vector<sim::Comparison>& all) const {
+    Table out;
+    out.columns = {"of", "counter", "replay", "run", "error"};
+    std::size_t equal = 0;
+    for (const sim::Comparison& c : all) {
+        equal += c.replayed == c.run ? 1 : 0;
+        const bool total = c.part.find('[') == std::string::npos && !c.part.starts_with("traffic");
+        if (total && (c.replayed != 0 || c.run != 0))
+            out.rows.push_back({c.part, c.counter, c.replayed, c.run, c.error()});
+    }
+    fmt::print("\n{} of {} counts are equal to those of {}{}\n\n{}", equal, all.size(), against_,
+               equal == all.size() ? "" : "; errors are parts of the run's", out.text());
+}
+
+void ReplayCommand::give(const Input& input, const std::vector<Machine>& machines,
+                         const std::vector<sim::ReplayResult>& results) const {
+    const auto write = [](const std::string& file, const std::string& text) {
+        const std::unique_ptr<Sink> sink = open_sink(file);
+        sink->write(text);
+        sink->commit();
+    };
+    const auto by = static_cast<By>(std::find(by_names.begin(), by_names.end(), by_) - by_names.begin());
+    const Table rows = table(machines, results, by);
+    const Description& d = input.description();
+    const std::string note = input.note();
+    std::vector<std::vector<sim::Comparison>> compared;
+    if (!against_.empty()) {
+        std::string text(std::size_t{1} << 20U, '\0'), report;
+        const std::unique_ptr<Source> source = open_source(against_);
+        while (const std::size_t n = source->read(text.data(), text.size()))
+            report.append(text, 0, n);
+        compared.push_back(sim::compare_with_run(results.front(), report, against_));
+    }
+    if (!csv_.empty())
+        write(csv_, rows.csv());
+    if (!json_.empty()) {
+        json out{{"analysis", "replay"}, {"trace", file_},          {"program", d.program},
+                 {"level", d.level},     {"complete", note.empty()}, {"note", note}};
+        for (std::size_t m = 0; m < machines.size(); ++m) {
+            json one{{"label", machines[m].label}};
+            one.update(json::parse(sim::print_replay(results[m])));
+            out["machines"].push_back(std::move(one));
+        }
+        if (!compared.empty()) {
+            json rows_of = json::array();
+            for (const sim::Comparison& c : compared.front())
+                if (c.replayed != 0 || c.run != 0)
+                    rows_of.push_back({{"of", c.part},
+                                       {"counter", c.counter},
+                                       {"replay", c.replayed},
+                                       {"run", c.run},
+                                       {"error", c.run == 0 && c.replayed != 0 ? json() : json(c.error())}});
+            out["against"] = {{"report", against_}, {"counts", std::move(rows_of)}};
+        }
+        write(json_, out.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+    }
+    if (csv_ != "-" && json_ != "-") {
+        for (std::size_t m = 0; m < machines.size(); ++m) {
+            const sim::ReplayResult& r = results[m];
+            std::string left_out;
+            for (std::size_t k = 0; k < r.left_out.size(); ++k)
+                if (r.left_out[k] != 0)
+                    left_out += fmt::format("; {} {} references are left out", r.left_out[k], kind_names[k]);
+            fmt::print("{}: {} references{}{}{}\n", machines[m].label, r.references,
+                       r.windows ? ", each at its cycle and in the run's windows"
+                       : r.waits == 0
+                           ? ", each at its time"
+                           : fmt::format(", {} of which found no room: all came {} cycles later in the end",
+                                         r.waits, r.delay),
+                       r.ended ? "" : "; what caches have changed stays there", left_out);
+        }
+        fmt::print("\n{}", rows.text());
+        if (!compared.empty())
+            compare(compared.front());
+    }
+    if (!note.empty())
+        fmt::print(stderr, "razor-trace: {}\n", note);
+}
+
+void ReplayCommand::run() {
+    if (std::find(by_names.begin(), by_names.end(), by_) == by_names.end())
+        throw Error(fmt::format("--by {}: there is no such thing; give all, structure, phase, kind", by_));
+    if (!against_.empty() && machines_.size() > 1)
+        throw Error("--against: is of one machine; give one --machine");
+    try {
+        const std::vector<Machine> all = machines();
+        auto source = open_source(file_);
+        const Format& format = format_of_input(from_, file_, *source);
+        const std::unique_ptr<Input> input = format.read(std::move(source));
+        const std::vector<sim::ReplayResult> results = replay(*input, all);
+        give(*input, all, results);
+    } catch (const sim::ConfigError& e) {
+        throw Error(e.what());
+    }
+}
+
+} // namespace traces
