@@ -15,9 +15,11 @@ public:
             turns_.push_back({});
         ++turns_.back().count;
         streams_.push_back(r.stream);
+        // A piece is of what comes directly before it, at the same time.
+        const bool piece = turns_.back().count > 1 && times_.back() == r.time;
         times_.push_back(r.time);
         addresses_.push_back(r.address);
-        classes_.push_back(number(r.what));
+        classes_.push_back(r.what.part == Part::piece && !piece ? number(as_access(r.what)) : number(r.what));
     }
     /// A window, or the end, before the references that follow.
     void mark(const Turn& turn) { turns_.push_back(turn); }
@@ -30,10 +32,15 @@ private:
     struct Hash {
         std::size_t operator()(const Class& c) const { return static_cast<std::size_t>(hash(c)); }
     };
+    static Class as_access(Class c) {
+        c.part = Part::access;
+        return c;
+    }
     static std::uint64_t hash(const Class& c) {
         const std::uint64_t rest = std::uint64_t{c.size} << 32U | std::uint64_t{c.structure} << 16U |
                                    std::uint64_t{c.phase} << 8U | std::uint64_t{c.work} << 4U |
-                                   static_cast<std::uint64_t>(c.kind) | static_cast<std::uint64_t>(c.part) << 62U;
+                                   static_cast<std::uint64_t>(c.kind) |
+                                   static_cast<std::uint64_t>(c.part) << 62U;
         std::uint64_t h = (c.site + rest * 0x9E3779B97F4A7C15U) * 0xD6E8FEB86659FD93U;
         return h ^ h >> 32U;
     }

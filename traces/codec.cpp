@@ -87,26 +87,42 @@ template <class ClassOf> std::vector<std::uint32_t> without_parts(std::size_t cl
         return std::tuple_cat(key(a), std::tuple(a)) < std::tuple_cat(key(b), std::tuple(b));
     });
     for (std::size_t i = 0; i < classes; ++i)
-        first[sorted[i]] =
-            i != 0 && key(sorted[i]) == key(sorted[i - 1]) ? first[sorted[i - 1]] : sorted[i];
+        first[sorted[i]] = i != 0 && key(sorted[i]) == key(sorted[i - 1]) ? first[sorted[i - 1]] : sorted[i];
     return first;
 }
 
-// The order: a varint a turn, 0 a window, 1 the end, 2 + the segment's number; and what it has.
+/// Windows mostly follow each other, and are as long.
+struct WindowGuess {
+    std::uint64_t last, length = 0;
+    void see(const Turn& t) {
+        last = t.until;
+        length = t.until - t.begin;
+    }
+};
+
+// The order: how many bytes the turns take, and the counts; a varint a turn, 0 a window, 1 the end, 2 + the
+// segment's number; the counts; what is to know of windows. (Apart, as each repeats itself.)
 void put_order(const Block& block, std::string& out) {
-    std::uint64_t before = block.times.front();
+    std::string turns, counts, windows;
+    WindowGuess guess{block.times.front()};
     for (const Turn& t : block.order) {
         if (t.what == Turn::What::references) {
-            append_varint(out, std::uint64_t{t.segment} + 2);
-            append_varint(out, t.count);
+            append_varint(turns, std::uint64_t{t.segment} + 2);
+            append_varint(counts, t.count);
             continue;
         }
-        append_varint(out, t.what == Turn::What::window ? 0 : 1);
-        append_varint(out, zigzag(t.until - before));
-        append_varint(out, zigzag(t.until - t.begin));
-        append_varint(out, zigzag(t.next - t.begin));
-        before = t.until;
+        append_varint(turns, t.what == Turn::What::window ? 0 : 1);
+        append_varint(windows, zigzag(t.until - guess.last - guess.length));
+        append_varint(windows, zigzag(t.begin - guess.last));
+        guess.see(t);
     }
+    if (!turns.empty()) {
+        append_varint(out, turns.size());
+        append_varint(out, counts.size());
+    }
+    out += turns;
+    out += counts;
+    out += windows;
 }
 
 [[noreturn]] void refuse(const std::string& place, const char* what) {
@@ -148,8 +164,8 @@ void Encoder::encode(const Block& block, std::string& out) {
     for (std::uint32_t plane = 0; plane < id_bytes; ++plane)
         for (std::size_t i = 0; i < n; ++i)
             classes_[plane * n + i] = static_cast<char>(rank[block.classes[i]] >> (8 * plane));
-    const std::vector<std::uint32_t> place = without_parts(
-        order.size(), [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; });
+    const std::vector<std::uint32_t> place =
+        without_parts(order.size(), [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; });
     std::vector<std::uint64_t> last(order.size(), 0);
     addresses_.resize(n * longest_varint);
     char* to = addresses_.data();
@@ -165,6 +181,8 @@ void Encoder::encode(const Block& block, std::string& out) {
     for (const Segment& s : block.segments) {
         std::uint64_t before = first_time;
         for (std::size_t i = s.begin; i < s.end; ++i) {
+            if (i != s.begin && block.what(i).part == Part::piece)
+                continue; // at the same time
             to = put_varint(to, zigzag(block.times[i] - before));
             before = block.times[i];
         }
@@ -250,8 +268,9 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
                             phase = table.next(), work = table.next();
         site += unzigzag(table.next());
         const std::uint64_t kind = first & ((1U << part_shift) - 1), part = first >> part_shift;
-        if (kind >= kind_names.size() || part >= parts || size > ~std::uint32_t{0} || structure >= limits.structures ||
-            phase >= limits.phases || work >= limits.work || site > limits.sites)
+        if (kind >= kind_names.size() || part >= parts || size > ~std::uint32_t{0} ||
+            structure >= limits.structures || phase >= limits.phases || work >= limits.work ||
+            site > limits.sites)
             refuse(place, "a block names what the description does not");
         block.table.push_back({site, static_cast<std::uint32_t>(size), static_cast<std::uint16_t>(structure),
                                static_cast<std::uint16_t>(phase), static_cast<std::uint16_t>(work),
@@ -279,10 +298,13 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
         block.addresses[i] = (last_[place_of[block.classes[i]]] += unzigzag(addresses.next())) << shift;
     block.times.resize(n);
     VarintReader times(times_.data(), times_.data() + times_.size());
+    std::vector<char> piece;
+    for (const Class& c : block.table)
+        piece.push_back(static_cast<char>(c.part == Part::piece));
     for (const Segment& s : block.segments) {
         std::uint64_t t = first_time;
         for (std::size_t i = s.begin; i < s.end; ++i)
-            block.times[i] = t += unzigzag(times.next());
+            block.times[i] = i != s.begin && piece[block.classes[i]] != 0 ? t : t += unzigzag(times.next());
     }
     if (addresses.bad() || !addresses.ended() || times.bad() || !times.ended())
         refuse(place, "a block's addresses or times do not fit its count");
@@ -291,17 +313,26 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
 
 /// Turns that take all of every segment, once; or none.
 void Decoder::get_order(const std::string& place, Block& block) {
-    VarintReader order(order_.data(), order_.data() + order_.size());
+    const char* const end = order_.data() + order_.size();
+    VarintReader sizes(order_.data(), end);
+    const std::uint64_t of_turns = order_.empty() ? 0 : sizes.next();
+    const std::uint64_t of_counts = order_.empty() ? 0 : sizes.next();
+    const auto room = static_cast<std::uint64_t>(end - sizes.at());
+    if (sizes.bad() || of_turns > room || of_counts > room - of_turns)
+        refuse(place, "a block's order is longer than itself");
+    const char* const first = sizes.at();
+    VarintReader turns(first, first + of_turns), counts(first + of_turns, first + of_turns + of_counts),
+        windows(first + of_turns + of_counts, end);
+    WindowGuess guess{block.times.front()};
     std::vector<std::size_t> left;
     for (const Segment& s : block.segments)
         left.push_back(s.end - s.begin);
-    std::uint64_t before = block.times.front();
     std::size_t taken = 0;
-    while (!order.ended() && !order.bad()) {
+    while (!turns.ended() && !turns.bad()) {
         Turn t;
-        const std::uint64_t what = order.next();
+        const std::uint64_t what = turns.next();
         if (what >= 2) {
-            const std::uint64_t segment = what - 2, count = order.next();
+            const std::uint64_t segment = what - 2, count = counts.next();
             if (segment >= left.size() || count == 0 || count > left[segment])
                 refuse(place, "a block's order is of references that it does not have");
             left[segment] -= count;
@@ -310,13 +341,14 @@ void Decoder::get_order(const std::string& place, Block& block) {
             t.count = static_cast<std::uint32_t>(count);
         } else {
             t.what = what == 0 ? Turn::What::window : Turn::What::end;
-            before = t.until = before + unzigzag(order.next());
-            t.begin = t.until - unzigzag(order.next());
-            t.next = t.begin + unzigzag(order.next());
+            t.until = guess.last + guess.length + unzigzag(windows.next());
+            t.begin = guess.last + unzigzag(windows.next());
+            guess.see(t);
         }
         block.order.push_back(t);
     }
-    if (order.bad() || (taken != block.size() && !order_.empty()))
+    if (turns.bad() || counts.bad() || !counts.ended() || windows.bad() || !windows.ended() ||
+        (taken != block.size() && !order_.empty()))
         refuse(place, "a block's order does not fit its count");
 }
 

@@ -98,9 +98,10 @@ Description description_from_json(const std::string& text, const std::string& pl
     std::uint64_t end = 0;
     for (const Description::Region& r : d.regions) {
         if (r.begin < end || r.end <= r.begin || r.structure >= d.structures.size())
-            throw Error(fmt::format("{}: the description's regions are not in order, or of no structure; record "
-                                    "the trace again",
-                                    place));
+            throw Error(
+                fmt::format("{}: the description's regions are not in order, or of no structure; record "
+                            "the trace again",
+                            place));
         end = r.end;
     }
     if ((d.line_bytes != 0 && !std::has_single_bit(d.line_bytes)) || !(d.sample > 0 && d.sample <= 1) ||

@@ -20,8 +20,8 @@ struct Description {
     std::uint64_t window = 0;  // of time, in which streams went on by themselves; 0: none is known
     std::string filters;       // what else was left out, in words; empty: nothing
     std::string configuration; // of what was traced, whole
-    /// What lies where, by ascending addresses: whose structure a line is that leaves a cache. None: lines are
-    /// of the structure that references to them say.
+    /// What lies where, by ascending addresses: whose structure a line is that leaves a cache. None: lines
+    /// are of the structure that references to them say.
     struct Region {
         std::uint64_t begin = 0, end = 0;
         std::uint16_t structure = 0;

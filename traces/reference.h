@@ -61,10 +61,10 @@ struct Turn {
     enum class What : std::uint8_t { references, window, end };
     What what = What::references;
     std::uint32_t segment = 0, count = 0; // the next so many of this segment
-    /// A window of time begins, up to whose end streams go on by themselves, each in its turns: what was asked
-    /// for before is served as far as cycle `begin`, and nobody asks for anything before `next`. Or all has
-    /// ended at cycle `until`, served likewise.
-    std::uint64_t until = 0, begin = 0, next = 0;
+    /// A window of time begins, up to whose end streams go on by themselves, each in its turns: what was
+    /// asked for before is served as far as cycle `begin`. Or all has ended at cycle `until`, served
+    /// likewise.
+    std::uint64_t until = 0, begin = 0;
     friend bool operator==(const Turn&, const Turn&) = default;
 };
 

@@ -53,6 +53,7 @@ public:
     }
     bool bad() const { return bad_; }
     bool ended() const { return at_ == end_; }
+    const char* at() const { return at_; }
 
 private:
     std::uint64_t longer() {

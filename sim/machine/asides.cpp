@@ -51,8 +51,7 @@ void discard_below(const Config& config, const Asker& who, std::uint64_t address
         if (level < levels && tile.events)
             tile.arrivals[level][who.core / tile.sharing[level]]->discard(
                 first, at,
-                level == 1 ? tile.cores[who.core].l1.number()
-                           : tile.cache_of(level - 1, who.core).number());
+                level == 1 ? tile.cores[who.core].l1.number() : tile.cache_of(level - 1, who.core).number());
         else if (level < levels)
             tile.cache_of(level, who.core).discard(first);
         else if (first == address)

@@ -71,8 +71,8 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       vector_moves_(in_1024ths(config.core.vector_moves)),
       memory_operands_(narrow(config.core.memory_operands)), registers_(config.core.vector_registers > 0),
       by_register_(registers_ && config.core.broadcasts == "register"), strides_(uses_strides(config)),
-      notes_sites_(strides_ || options.recorder != nullptr),
-      lane_gather_(config.core.gather == "lane"), lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
+      notes_sites_(strides_ || options.recorder != nullptr), lane_gather_(config.core.gather == "lane"),
+      lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
       lane_shuffle_(config.lanes.shuffle == "on"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
       masked_by_lane_(config.lanes.masked == "on"), idle_lanes_(config.lanes.idle == "test"),
@@ -384,7 +384,7 @@ bool Engine::run_window() {
     const cycle served = window_end_;
     window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
     if (recorder_ != nullptr)
-        recorder_->window(window_end_, served, next);
+        recorder_->window(window_end_, served);
     set_floors(next);
     cycle begin = window_end_ - window_cycles_;
     if (intervals_.due(begin))

@@ -218,8 +218,7 @@ private:
     void note_core(Hart& h, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, cycle at,
                    traces::Part part) const {
         if (recorder_ != nullptr && h.tile->tap->is_at(TraceLevel::core)) [[unlikely]]
-            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site,
-                                            part);
+            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site, part);
     }
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
@@ -368,8 +367,8 @@ private:
     Pairing pairing_;
     std::uint32_t overhead_, scalar_moves_, vector_moves_; // 1/1024 instructions
     std::uint32_t memory_operands_;
-    bool registers_, by_register_, strides_, notes_sites_, lane_gather_, lane_scatter_, lane_shuffle_, skip_idle_, folding_,
-        buffered_;
+    bool registers_, by_register_, strides_, notes_sites_, lane_gather_, lane_scatter_, lane_shuffle_,
+        skip_idle_, folding_, buffered_;
     bool masked_by_lane_, idle_lanes_;
     struct LanePath { // config's, narrowed
         std::uint32_t piece_instructions, piece_references, gather_instructions;

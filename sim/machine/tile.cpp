@@ -32,8 +32,7 @@ Core& Tile::add_core(const Config& config, std::size_t pairing_ports) {
     const std::size_t number = cores.size(), group = number / sharing[1];
     Below& l2 = way_to(1, number);
     Below& below = config.sim.jitter != 0 ? static_cast<Below&>(jitters[group]) : l2;
-    Core& core =
-        cores.emplace_back(config, earliest, pairing_ports, site, l2, below, tickets, attribution);
+    Core& core = cores.emplace_back(config, earliest, pairing_ports, site, l2, below, tickets, attribution);
     caches[1][group].add_above(core.l1);
     return core;
 }

@@ -1,5 +1,6 @@
 #include "sim/memory/attribution.h"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
@@ -32,7 +33,10 @@ void Attribution::note_always(traces::Kind kind, std::uint64_t address, std::uin
 std::vector<TrafficRow> Attribution::traffic(const std::vector<const Attribution*>& tiles) {
     std::vector<TrafficRow> out;
     const Attribution& first = *tiles.front();
-    for (LineKind kind = 0; kind < first.map_.kind_count(); ++kind)
+    for (LineKind kind = 0; kind < first.map_.kind_count(); ++kind) {
+        const auto has = [kind](const Attribution* tile) { return tile->by_kind_[kind] != nullptr; };
+        if (std::none_of(tiles.begin(), tiles.end(), has))
+            continue;
         for (std::size_t column = 0; column < first.columns_; ++column) {
             Traffic sum;
             for (const Attribution* tile : tiles)
@@ -42,6 +46,7 @@ std::vector<TrafficRow> Attribution::traffic(const std::vector<const Attribution
             if (!is_empty(sum))
                 out.push_back({LineMap::structure_of(kind), LineMap::level_of(kind), column, sum});
         }
+    }
     return out;
 }
 

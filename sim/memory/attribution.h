@@ -53,8 +53,7 @@ public:
                         traces::Part::operation);
     }
     void note_always(traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
-                     std::size_t column, std::uint32_t stream, std::uint32_t site,
-                     traces::Part part);
+                     std::size_t column, std::uint32_t stream, std::uint32_t site, traces::Part part);
     std::uint32_t tile() const { return tile_; }
     std::uint64_t spill_begin() const { return map_.spill_begin(); }
     /// Between windows.

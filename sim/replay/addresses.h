@@ -1,5 +1,5 @@
-// Addresses of programs, of 64 bits, as ones that a machine's memory has: blocks of 256 MiB keep all that lies
-// below them and are numbered as they come, so that lines, sets and rows stay what they were.
+// Addresses of programs, of 64 bits, as ones that a machine's memory has: blocks of 256 MiB keep all that
+// lies below them and are numbered as they come, so that lines, sets and rows stay what they were.
 #pragma once
 
 #include "traces/error.h"
@@ -32,9 +32,10 @@ private:
         const std::uint64_t next = numbers_.size();
         const std::uint64_t n = numbers_.try_emplace(block, next).first->second;
         if (n >= most_blocks)
-            throw traces::Error(fmt::format("the trace touches more than {} blocks of 256 MiB, which a machine's "
-                                            "memory does not have; replay a part of it",
-                                            most_blocks));
+            throw traces::Error(
+                fmt::format("the trace touches more than {} blocks of 256 MiB, which a machine's "
+                            "memory does not have; replay a part of it",
+                            most_blocks));
         return n;
     }
 

@@ -17,23 +17,26 @@ constexpr cycle latest_cycle = cycle{1} << 48U;
 
 } // namespace
 
-Replay::Replay(const Config& config, const traces::Description& about, const ReplayOptions& options)
-    : vocabulary_(about, options), machine_(config, about, vocabulary_.labels()),
+Replay::Replay(const Config& config, const traces::Description& about, const ReplayOptions& options,
+               ReplayListener* listener)
+    : vocabulary_(about, options), machine_(config, about, vocabulary_.labels()), listener_(listener),
       clocked_(about.time == "cycles" || about.time == "instructions"),
       following_(about.window == machine_.window_cycles()) {
     if (!about.level.empty() && about.level != "core")
-        throw traces::Error(fmt::format("the trace is of what passes level {}; only what cores ask for can be "
-                                        "replayed: record it at level core",
-                                        about.level));
+        throw traces::Error(
+            fmt::format("the trace is of what passes level {}; only what cores ask for can be "
+                        "replayed: record it at level core",
+                        about.level));
 }
 
 void Replay::check(const traces::Block& block) const {
     const std::uint32_t last = block.segments.back().stream;
     if (last >= machine_.threads())
-        throw traces::Error(fmt::format("the trace has a stream {}, but the machine {} threads, numbered from 0; "
-                                        "give a machine with more (-g chip.threads=..., chip.cores or "
-                                        "chip.tiles)",
-                                        last, machine_.threads()));
+        throw traces::Error(
+            fmt::format("the trace has a stream {}, but the machine {} threads, numbered from 0; "
+                        "give a machine with more (-g chip.threads=..., chip.cores or "
+                        "chip.tiles)",
+                        last, machine_.threads()));
 }
 
 void Replay::add(const traces::Block& block) {
@@ -45,9 +48,8 @@ void Replay::add(const traces::Block& block) {
         origin_ = following_ ? 0 : *std::min_element(block.times.begin(), block.times.end());
     }
     if (block.order.empty())
-        return traces::each_in_time(block, [&](const traces::Segment& s, std::size_t i) {
-            run(block, s.stream, i, i + 1);
-        });
+        return traces::each_in_time(
+            block, [&](const traces::Segment& s, std::size_t i) { run(block, s.stream, i, i + 1); });
     std::vector<std::size_t> next;
     for (const traces::Segment& s : block.segments)
         next.push_back(s.begin);
@@ -65,15 +67,32 @@ void Replay::add(const traces::Block& block) {
 void Replay::mark(const traces::Turn& turn) {
     if (turn.what == traces::Turn::What::end) {
         machine_.settle(following_ ? turn.begin : machine_.window_end());
-        machine_.end_frame(std::max(turn.until, origin_) - origin_ + offset_);
+        const cycle end = std::max(turn.until, origin_) - origin_ + offset_;
+        if (listener_ != nullptr)
+            listener_->ended(end);
+        machine_.end_frame(end);
         result_.ended = true;
         return;
     }
-    const bool fits = turn.until > machine_.window_end() - machine_.window_cycles() && turn.begin < turn.until &&
-                      turn.until < latest_cycle;
+    const bool fits = turn.until > machine_.window_end() - machine_.window_cycles() &&
+                      turn.begin < turn.until && turn.until < latest_cycle;
     following_ = following_ && fits;
-    if (following_)
-        machine_.open_window(turn.until, turn.begin, turn.next);
+    if (!following_)
+        return;
+    machine_.open_window(turn.until, turn.begin);
+    if (listener_ != nullptr)
+        listener_->window(turn.begin);
+}
+
+void Replay::come_to(cycle t) {
+    machine_.come_to(t);
+    if (listener_ != nullptr)
+        listener_->window(machine_.window_end() - machine_.window_cycles());
+}
+
+void Replay::tell(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
+                  std::uint32_t accesses, cycle t, const Answer& answer) {
+    listener_->performed({a, stream, bytes, accesses, address, t - std::min(t, offset_), answer.ready});
 }
 
 /// The cycle of the next reference, whose window is open.
@@ -86,7 +105,7 @@ cycle Replay::arrive(std::uint64_t time) {
                                             time, origin_));
         following_ = following_ && t < machine_.window_end() + far_ahead;
         if (!following_)
-            machine_.come_to(t);
+            come_to(t);
     }
     return std::max(t, machine_.earliest());
 }
@@ -98,9 +117,8 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
     for (std::size_t i = begin; i < end;) {
         const ReplayAction& a = actions_[block.classes[i]];
         const auto goes_on = [&](const ReplayAction& next) {
-            return a.what == What::discard
-                       ? next.what == What::discard && next.part == traces::Part::access
-                       : next.part == traces::Part::piece && next.what == a.what;
+            return a.what == What::discard ? next.what == What::discard && next.part == traces::Part::access
+                                           : next.part == traces::Part::piece && next.what == a.what;
         };
         const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];
         const cycle t = arrive(block.times[i]);
@@ -137,6 +155,8 @@ void Replay::touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t lo
     const Answer answer = machine_.perform(a, stream, low, bytes, accesses, t);
     if (answer.refused) [[unlikely]]
         insist(a, stream, low, bytes, accesses, t, answer);
+    else if (listener_ != nullptr) [[unlikely]]
+        tell(a, stream, low, bytes, accesses, t, answer);
 }
 
 /// An access of each line.
@@ -150,6 +170,8 @@ void Replay::touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint6
         const Answer answer = machine_.perform(each, stream, at, bytes, 1, t);
         if (answer.refused)
             insist(each, stream, at, bytes, 1, t, answer);
+        else if (listener_ != nullptr)
+            tell(each, stream, at, bytes, 1, t, answer);
         if (each.part == traces::Part::operation)
             each.part = traces::Part::access;
     }
@@ -168,9 +190,11 @@ void Replay::insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t a
         result_.delay += next - t;
         t = next;
         if (t >= machine_.window_end())
-            machine_.come_to(t);
+            come_to(t);
         answer = machine_.perform(a, stream, address, bytes, accesses, t);
     }
+    if (listener_ != nullptr)
+        tell(a, stream, address, bytes, accesses, t, answer);
 }
 
 ReplayResult Replay::finish(const traces::Description& about) {

@@ -1,8 +1,8 @@
 // A trace on a machine, reference by reference in the order in which they were made: that which a trace says
-// (traces::Turn), else that of its times. Each comes at the cycle at which it was recorded, whatever earlier ones
-// have brought; where the machine has no room for one (an MSHR), it and all that follow come so much later. On
-// the machine that a trace of its cores was recorded on, in its fast mode and from cold caches, nothing has to
-// wait, and all that the memory system counts is what the run counted.
+// (traces::Turn), else that of its times. Each comes at the cycle at which it was recorded, whatever earlier
+// ones have brought; where the machine has no room for one (an MSHR), it and all that follow come so much
+// later. On the machine that a trace of its cores was recorded on, in its fast mode and from cold caches,
+// nothing has to wait, and all that the memory system counts is what the run counted.
 //
 // Times that are no cycles or instructions do not count: references come one a cycle.
 #pragma once
@@ -23,11 +23,13 @@ struct ReplayOptions {
 struct ReplayResult {
     /// What the memory system counted; of cores, threads and instructions it says nothing.
     Report report;
-    std::uint64_t references = 0;                                  // replayed
-    std::array<std::uint64_t, traces::kind_names.size()> left_out{}; // by kind: what the machine does not have
+    std::uint64_t references = 0; // replayed
+    std::array<std::uint64_t, traces::kind_names.size()>
+        left_out{};                     // by kind: what the machine does not have
     std::uint64_t waits = 0, delay = 0; // references that found no room, and cycles that all was delayed by
     bool windows = false;               // the run's own windows of time were followed to the end
-    bool ended = false;                 // the trace says when it was over, and what lasts was written back then
+    bool timed = false;                 // each came when what it waited for was there (timed_replay.h)
+    bool ended = false; // the trace says when it was over, and what lasts was written back then
 };
 
 /// What a trace is to a machine: which columns its phases and work count under, what its classes do.
@@ -47,10 +49,34 @@ private:
     Labels labels_;
 };
 
+/// Hears what a replay does.
+class ReplayListener {
+public:
+    ReplayListener() = default;
+    ReplayListener(const ReplayListener&) = delete;
+    ReplayListener& operator=(const ReplayListener&) = delete;
+    virtual ~ReplayListener() = default;
+
+    struct Performed {
+        ReplayAction action;
+        std::uint32_t stream, bytes, accesses;
+        std::uint64_t address;
+        cycle at, ready; // ready: a cycle, or a ticket (ReplayMachine::find)
+    };
+    virtual void performed(const Performed& p) = 0;
+    /// What was asked for in the window before is answered, as far as it can be; the next begins at this
+    /// cycle.
+    virtual void window(cycle begin) = 0;
+    /// The trace is over at this cycle.
+    virtual void ended(cycle t) = 0;
+};
+
 class Replay {
 public:
     /// Throws ConfigError where the machine cannot be replayed on, traces::Error where the trace cannot.
-    Replay(const Config& config, const traces::Description& about, const ReplayOptions& options);
+    Replay(const Config& config, const traces::Description& about, const ReplayOptions& options,
+           ReplayListener* listener = nullptr);
+    ReplayMachine& machine() { return machine_; }
     /// The next of the trace. Throws traces::Error.
     void add(const traces::Block& block);
     /// No more comes. `about`: with all names.
@@ -66,10 +92,14 @@ private:
     void insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
                 std::uint32_t accesses, cycle t, const Answer& refused);
     cycle arrive(std::uint64_t time);
+    void come_to(cycle t);
+    void tell(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
+              std::uint32_t accesses, cycle t, const Answer& answer);
     void mark(const traces::Turn& turn);
 
     ReplayVocabulary vocabulary_;
     ReplayMachine machine_;
+    ReplayListener* listener_; // or null
     CompactAddresses compact_;
     std::vector<ReplayAction> actions_; // of the block at hand
     bool clocked_, following_;          // times are cycles; the run's windows are followed

@@ -37,9 +37,10 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
       reach_(reach_cycles(config)), shortest_answer_(shortest_answer(config)),
       shortest_line_(shortest_line(config)), l1_latency_(wide(config.l1.latency)) {
     if (config.sim.mode != "fast")
-        throw ConfigError(fmt::format("sim.mode = {}: traces are replayed in the fast mode, as what caches within "
-                                      "tiles ask each other is in no trace; give -g sim.mode=fast",
-                                      config.sim.mode));
+        throw ConfigError(
+            fmt::format("sim.mode = {}: traces are replayed in the fast mode, as what caches within "
+                        "tiles ask each other is in no trace; give -g sim.mode=fast",
+                        config.sim.mode));
     std::vector<std::string> names = about.structures;
     std::vector<LineMap::Extent> extents;
     std::uint64_t end = CompactAddresses::end;
@@ -70,16 +71,16 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
     }
     sites_.resize(tiles_.size());
     beyond_->connect(tiles_);
-    open_window(window_cycles_, 0, 0);
+    open_window(window_cycles_, 0);
 }
 
-void ReplayMachine::open_window(cycle until, cycle served, cycle next) {
+void ReplayMachine::open_window(cycle until, cycle served) {
     if (served != 0)
         serve(served);
     window_end_ = until;
     const cycle begin = until - std::min(until, window_cycles_);
     earliest_ = begin > reach_ ? begin - reach_ : 0;
-    const Floors floors{next + shortest_answer_, next + shortest_line_};
+    const Floors floors{served + shortest_answer_, served + shortest_line_}; // what follows comes later
     for (Tile& tile : tiles_) {
         tile.tickets.set_floors(floors);
         tile.earliest = earliest_;
@@ -90,7 +91,7 @@ void ReplayMachine::open_window(cycle until, cycle served, cycle next) {
 
 void ReplayMachine::come_to(cycle t) {
     const cycle until = (t / window_cycles_ + 1) * window_cycles_, begin = until - window_cycles_;
-    open_window(until, begin, begin);
+    open_window(until, begin);
 }
 
 /// What left the tiles is answered, as far as it can be by then.
@@ -179,9 +180,9 @@ void ReplayMachine::settle(cycle served) {
 }
 
 bool ReplayMachine::lasts(std::uint64_t address) const {
-    const auto after = std::upper_bound(
-        regions_.begin(), regions_.end(), address,
-        [](std::uint64_t at, const traces::Description::Region& r) { return at < r.begin; });
+    const auto after =
+        std::upper_bound(regions_.begin(), regions_.end(), address,
+                         [](std::uint64_t at, const traces::Description::Region& r) { return at < r.begin; });
     return after != regions_.begin() && address < (after - 1)->end && (after - 1)->lasts;
 }
 

@@ -1,7 +1,7 @@
-// The memory system of a machine without the cores that run programs: its caches, network and memory, driven by
-// references that come from elsewhere. All of it is the machine's own code (sim/memory, sim/machine,
-// sim/network), in its fast mode. Not modelled: translation of addresses (a trace has the walks that were made)
-// and the L1s' ports (a trace has the cycles at which they were granted).
+// The memory system of a machine without the cores that run programs: its caches, network and memory, driven
+// by references that come from elsewhere. All of it is the machine's own code (sim/memory, sim/machine,
+// sim/network), in its fast mode. Not modelled: translation of addresses (a trace has the walks that were
+// made) and the L1s' ports (a trace has the cycles at which they were granted).
 #pragma once
 
 #include "sim/machine/asides.h"
@@ -59,9 +59,8 @@ public:
     bool by_reference() const { return by_reference_; }
     unsigned line_shift() const { return line_shift_; }
 
-    /// The window until here, in which nothing is asked for before `next`; what was asked for in the one before
-    /// is served as far as `served`.
-    void open_window(cycle until, cycle served, cycle next);
+    /// The window until here; what was asked for in the one before is served as far as `served`.
+    void open_window(cycle until, cycle served);
     /// ... the window that cycle `t` lies in, after all earlier ones.
     void come_to(cycle t);
     /// `accesses` of a line, or what else the action says, by a thread at `t`. Refused: ask again (Answer).
@@ -119,7 +118,7 @@ private:
     std::optional<LineMap> lines_;
     std::unique_ptr<Beyond> beyond_;
     std::deque<Tile> tiles_;
-    std::vector<Seat> seats_; // by thread
+    std::vector<Seat> seats_;        // by thread
     std::vector<SiteNumbers> sites_; // by tile
     cycle window_end_ = 0, earliest_ = 0, end_ = 0;
     std::uint64_t misplaced_ = 0, incoherent_ = 0;

@@ -53,9 +53,9 @@ json counts(const Report& r) {
     for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
         const std::string name = fmt::format("l{}", level + 1);
         out[name] = counters(r.cache_total(level), cache_counters);
-        const char* by = level == 0                                                           ? "core"
+        const char* by = level == 0                                                       ? "core"
                          : level == 1 && r.config.cores_sharing(1) == r.config.chip.cores ? "tile"
-                                                                                              : "cache";
+                                                                                          : "cache";
         for (const CacheCounters& c : r.caches(level))
             out[fmt::format("{}_by_{}", name, by)].push_back(counters(c, cache_counters));
     }
@@ -87,9 +87,9 @@ void compare(const std::string& part, const json& replayed, const json& run, std
 void compare_traffic(const Report& r, const json& run, std::vector<Comparison>& out) {
     std::map<std::string, std::map<std::string, Comparison>> rows;
     const auto add = [&](const json& row, std::uint64_t Comparison::*side) {
-        const std::string part = fmt::format(
-            "traffic of {}, {}, {}", row.at("structure").get<std::string>(),
-            row.at("kind").get<std::string>(), row.at("phase").get<std::string>());
+        const std::string part =
+            fmt::format("traffic of {}, {}, {}", row.at("structure").get<std::string>(),
+                        row.at("kind").get<std::string>(), row.at("phase").get<std::string>());
         for (const TrafficColumn& column : traffic_columns)
             if (column.level < r.config.cache_levels()) {
                 Comparison& c = rows[part][column.name];
@@ -118,6 +118,7 @@ std::string print_replay(const ReplayResult& result) {
                  {{"references", result.references},
                   {"waits", result.waits},
                   {"delay_cycles", result.delay},
+                  {"timed", result.timed},
                   {"windows_of_the_run", result.windows},
                   {"ended", result.ended}}}};
     json left_out = json::object();
@@ -144,19 +145,21 @@ std::vector<Comparison> compare_with_run(const ReplayResult& result, const std::
     try {
         const json run = json::parse(report);
         if (!run.is_object() || !run.contains("warm_up_cycles"))
-            throw traces::Error(fmt::format("{}: is no report of a run; give what razor-sim run --json wrote", name));
+            throw traces::Error(
+                fmt::format("{}: is no report of a run; give what razor-sim run --json wrote", name));
         const json counted = counts(result.report);
         for (const auto& [part, values] : counted.items()) {
             if (!run.contains(part) || (values.is_array() && run.at(part).size() != values.size()))
-                throw traces::Error(fmt::format("{}: is of a machine without the same {}; compare runs of the "
-                                                "machine that the trace is replayed on",
-                                                name, part));
+                throw traces::Error(
+                    fmt::format("{}: is of a machine without the same {}; compare runs of the "
+                                "machine that the trace is replayed on",
+                                name, part));
             compare(part, values, run.at(part), out);
         }
         compare_traffic(result.report, run.at("traffic"), out);
     } catch (const json::exception& e) {
-        throw traces::Error(
-            fmt::format("{}: is no report of a run ({}); give what razor-sim run --json wrote", name, e.what()));
+        throw traces::Error(fmt::format(
+            "{}: is no report of a run ({}); give what razor-sim run --json wrote", name, e.what()));
     }
     return out;
 }

@@ -20,9 +20,9 @@ struct Comparison {
     /// Of what the run has; infinite where it has none.
     double error() const;
 };
-/// All that a run's report (its text) and a replay count both, in the report's order, of all caches of a level
-/// together and of each. `name`: the file's. Throws traces::Error where that is no such report, or is of
-/// other caches.
+/// All that a run's report (its text) and a replay count both, in the report's order, of all caches of a
+/// level together and of each. `name`: the file's. Throws traces::Error where that is no such report, or is
+/// of other caches.
 std::vector<Comparison> compare_with_run(const ReplayResult& result, const std::string& report,
                                          const std::string& name);
 

@@ -48,9 +48,10 @@ ReplayVocabulary::ReplayVocabulary(const traces::Description& about, const Repla
     labels_.phases = about.phases;
     labels_.kinds = by_work_ ? about.work : std::vector<std::string>{"all"};
     if (labels_.phases.size() > max_columns)
-        throw traces::Error(fmt::format("the trace has {} phases, of which at most {} can be told apart; leave "
-                                        "some out",
-                                        labels_.phases.size(), max_columns));
+        throw traces::Error(
+            fmt::format("the trace has {} phases, of which at most {} can be told apart; leave "
+                        "some out",
+                        labels_.phases.size(), max_columns));
     labels_.phases.resize(phases_);
 }
 
@@ -58,10 +59,12 @@ void ReplayVocabulary::learn(const std::vector<traces::Class>& table,
                              std::vector<ReplayAction>& actions) const {
     actions.clear();
     for (const traces::Class& c : table) {
-        if (c.phase >= phases_ || c.structure >= most_replayed_structures || (by_work_ && c.work >= labels_.kinds.size()))
-            throw traces::Error(fmt::format("the trace has more than {} phases or {} structures, which cannot be "
-                                            "told apart; leave some out",
-                                            max_columns, most_replayed_structures));
+        if (c.phase >= phases_ || c.structure >= most_replayed_structures ||
+            (by_work_ && c.work >= labels_.kinds.size()))
+            throw traces::Error(
+                fmt::format("the trace has more than {} phases or {} structures, which cannot be "
+                            "told apart; leave some out",
+                            max_columns, most_replayed_structures));
         ReplayAction a;
         a.what = what_of(c, options_);
         a.kind = c.kind;

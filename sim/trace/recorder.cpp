@@ -173,10 +173,9 @@ void Recorder::learn_sites(std::size_t tile) {
     writer_->add_sites(std::move(fresh));
 }
 
-void Recorder::window(std::uint64_t until, std::uint64_t begin, std::uint64_t next) {
-    if (begin >= origin_)
-        window_ = {traces::Turn::What::window, 0, 0, until - origin_, begin - origin_,
-                   std::max(next, origin_) - origin_};
+void Recorder::window(std::uint64_t until, std::uint64_t begin) {
+    if (until > origin_)
+        window_ = {traces::Turn::What::window, 0, 0, until - origin_, std::max(begin, origin_) - origin_};
 }
 
 void Recorder::collect() {
@@ -203,8 +202,7 @@ void Recorder::collect(std::size_t tile) {
 
 void Recorder::end(std::uint64_t until, std::uint64_t begin) {
     collect();
-    writer_->mark({traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_,
-                   std::max(begin, origin_) - origin_});
+    writer_->mark({traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_});
 }
 
 void Recorder::finish() {

@@ -41,8 +41,8 @@ public:
     TraceTap& tap(std::size_t tile) { return taps_[tile]; }
     /// From this cycle on the run counts, and so does the trace.
     void start(std::uint64_t cycle);
-    /// A window of time begins, from `begin` to `until`; nobody asks for anything before `next`.
-    void window(std::uint64_t until, std::uint64_t begin, std::uint64_t next);
+    /// A window of time begins, from `begin` to `until`.
+    void window(std::uint64_t until, std::uint64_t begin);
     /// Takes what the tiles, or one of them, have noted by now: in the order in which that happened.
     void collect();
     void collect(std::size_t tile);
@@ -67,8 +67,8 @@ private:
     std::unique_ptr<traces::Sink> sink_;
     TraceTap::Filter filter_;
     std::size_t phases_ = 1;
-    std::deque<TraceTap> taps_; // by tile
-    std::vector<Names> names_;  // likewise
+    std::deque<TraceTap> taps_;          // by tile
+    std::vector<Names> names_;           // likewise
     std::optional<traces::Turn> window_; // at hand, of which nothing is noted yet
     std::uint64_t origin_ = 0;           // the cycle from which on the run counts
     std::map<std::string, std::uint32_t> sites_;

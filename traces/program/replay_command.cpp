@@ -1,6 +1,7 @@
 #include "traces/program/replay_command.h"
 
 #include "sim/config/error.h"
+#include "sim/replay/timed_replay.h"
 #include "traces/error.h"
 #include "traces/program/interrupt.h"
 #include "traces/program/progress.h"
@@ -12,6 +13,7 @@
 #include <atomic>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -60,15 +62,29 @@ void add_rows(const sim::ReplayResult& result, const std::vector<Table::Cell>& h
          all ? ratio(m.row_hits, bursts) : none});
 }
 
+/// The machine that the trace says it is of.
+std::optional<sim::Config> recorded_on(const Description& about) {
+    if (about.configuration.empty() || about.window == 0)
+        return std::nullopt;
+    const std::string text = about.configuration.substr(0, about.configuration.find("\n# scene\n"));
+    try {
+        return sim::parse_machine(text, "the trace's machine");
+    } catch (const sim::ConfigError&) {
+        return std::nullopt; // of another program
+    }
+}
+
 } // namespace
 
 void ReplayCommand::add_to(CLI::App& app) {
     app_ = app.add_subcommand("replay", "what the memory systems of machines make of a trace");
     app_->add_option("TRACE", file_, "a trace of any format, of what cores ask for, or -")->required();
-    app_->add_option("--from", from_, "its format; without it, as it begins or is named")->type_name("FORMAT");
-    app_->add_option("--machine", machines_,
-                     "a machine, such as configs/machines/tiny.toml; behind it overrides of its own: "
-                     "tiny.toml,l2.size_bytes=65536; may be given more than once, for one pass over the trace")
+    app_->add_option("--from", from_, "its format; without it, as it begins or is named")
+        ->type_name("FORMAT");
+    app_->add_option(
+            "--machine", machines_,
+            "a machine, such as configs/machines/tiny.toml; behind it overrides of its own: "
+            "tiny.toml,l2.size_bytes=65536; may be given more than once, for one pass over the trace")
         ->type_name("FILE[,KEY=VALUE...]")
         ->required()
         ->expected(1)
@@ -81,6 +97,9 @@ void ReplayCommand::add_to(CLI::App& app) {
         ->type_name("WHAT");
     app_->add_flag("--fetches", fetches_,
                    "fetches of instructions are reads, of unified caches; without it they are left out");
+    app_->add_flag("--timed", timed_,
+                   "references come when what they waited for in the run is there on this machine, which "
+                   "moves what follows; without it, in the order and at the times of the run");
     app_->add_option("--against", against_,
                      "the report of a run (razor-sim run --json) of the same machine: how far the replay's "
                      "counts are from it")
@@ -113,11 +132,24 @@ std::vector<ReplayCommand::Machine> ReplayCommand::machines() const {
 
 /// While machines work on a block, the next one is read.
 std::vector<sim::ReplayResult> ReplayCommand::replay(Input& input, const std::vector<Machine>& all) const {
-    std::vector<std::unique_ptr<sim::Replay>> replays;
+    struct Running {
+        std::unique_ptr<sim::Replay> ordered; // or ...
+        std::unique_ptr<sim::TimedReplay> timed;
+        void add(const Block& block) { ordered ? ordered->add(block) : timed->add(block); }
+        sim::ReplayResult finish(const Description& d) {
+            return ordered ? ordered->finish(d) : timed->finish(d);
+        }
+    };
+    const Description& about = input.description();
     const sim::ReplayOptions options{fetches_};
+    const std::optional<sim::Config> of = timed_ ? recorded_on(about) : std::nullopt;
+    std::vector<Running> replays;
     for (const Machine& m : all)
-        replays.push_back(
-            std::make_unique<sim::Replay>(m.description.config, input.description(), options));
+        if (timed_)
+            replays.push_back({nullptr, std::make_unique<sim::TimedReplay>(
+                                            m.description.config, of ? &*of : nullptr, about, options)});
+        else
+            replays.push_back({std::make_unique<sim::Replay>(m.description.config, about, options), nullptr});
     const std::size_t most =
         std::min(threads_ != 0 ? static_cast<std::size_t>(threads_)
                                : std::max<std::size_t>(1, std::thread::hardware_concurrency()),
@@ -135,7 +167,7 @@ std::vector<sim::ReplayResult> ReplayCommand::replay(Input& input, const std::ve
                 workers.emplace_back([&, w] {
                     try {
                         for (std::size_t i = next++; i < replays.size(); i = next++)
-                            replays[i]->add(block);
+                            replays[i].add(block);
                     } catch (...) {
                         failed[w] = std::current_exception();
                     }
@@ -148,8 +180,8 @@ std::vector<sim::ReplayResult> ReplayCommand::replay(Input& input, const std::ve
         progress.add(block.size());
     }
     std::vector<sim::ReplayResult> out;
-    for (const auto& r : replays)
-        out.push_back(r->finish(input.description()));
+    for (Running& r : replays)
+        out.push_back(r.finish(input.description()));
     return out;
 }
 
@@ -160,8 +192,8 @@ Table ReplayCommand::table(const std::vector<Machine>& machines,
         out.columns.emplace_back("machine");
     if (by != By::all)
         out.columns.emplace_back(by_names[static_cast<std::size_t>(by)]);
-    for (const char* name : {"level", "reads", "writes", "hits", "misses", "miss ratio", "write backs", "fills",
-                             "prefetches", "row hits"})
+    for (const char* name : {"level", "reads", "writes", "hits", "misses", "miss ratio", "write backs",
+                             "fills", "prefetches", "row hits"})
         out.columns.emplace_back(name);
     for (std::size_t m = 0; m < machines.size(); ++m) {
         const sim::Report& r = results[m].report;
@@ -227,7 +259,7 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
     if (!csv_.empty())
         write(csv_, rows.csv());
     if (!json_.empty()) {
-        json out{{"analysis", "replay"}, {"trace", file_},          {"program", d.program},
+        json out{{"analysis", "replay"}, {"trace", file_},           {"program", d.program},
                  {"level", d.level},     {"complete", note.empty()}, {"note", note}};
         for (std::size_t m = 0; m < machines.size(); ++m) {
             json one{{"label", machines[m].label}};
@@ -254,14 +286,22 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
             for (std::size_t k = 0; k < r.left_out.size(); ++k)
                 if (r.left_out[k] != 0)
                     left_out += fmt::format("; {} {} references are left out", r.left_out[k], kind_names[k]);
-            fmt::print("{}: {} references{}{}{}\n", machines[m].label, r.references,
-                       r.windows ? ", each at its cycle and in the run's windows"
-                       : r.waits == 0
-                           ? ", each at its time"
-                           : fmt::format(", {} of which found no room: all came {} cycles later in the end",
-                                         r.waits, r.delay),
-                       r.ended ? "" : "; what caches have changed stays there", left_out);
+            fmt::print(
+                "{}: {} references{}{}{}\n", machines[m].label, r.references,
+                r.timed
+                    ? fmt::format(", each when what it waited for was there: up to {} cycles later", r.delay)
+                : r.windows ? ", each at its cycle and in the run's windows"
+                : r.waits == 0
+                    ? ", each at its time"
+                    : fmt::format(", {} of which found no room: all came {} cycles later in the end", r.waits,
+                                  r.delay),
+                r.ended ? "" : "; what caches have changed stays there", left_out);
         }
+        if (!d.filters.empty() || d.sample < 1)
+            fmt::print("The trace is of a part alone: {}{}\n", d.filters,
+                       d.sample < 1 ? fmt::format("{}a fraction {:g} of all lines",
+                                                  d.filters.empty() ? "" : "; ", d.sample)
+                                    : "");
         fmt::print("\n{}", rows.text());
         if (!compared.empty())
             compare(compared.front());

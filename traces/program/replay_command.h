@@ -38,7 +38,7 @@ private:
     std::string file_, from_, by_ = "all", csv_, json_, against_;
     std::vector<std::string> machines_, settings_;
     int threads_ = 0;
-    bool fetches_ = false;
+    bool fetches_ = false, timed_ = false;
 };
 
 } // namespace traces

@@ -1,5 +1,5 @@
-// A trace of what cores asked for, replayed on the machine that it is of, gives all that the run's caches, network,
-// directory and memory counted, to the last one.
+// A trace of what cores asked for, replayed on the machine that it is of, gives all that the run's caches,
+// network, directory and memory counted, to the last one.
 #include "sim/replay/replay_report.h"
 #include "tests/sim/replay/workload.h"
 
@@ -84,13 +84,15 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Queued", "tiny", {"memory.controller=queued"}},
         Case{"Written", "tiny", {"sim.frame_end=write", "sim.miss_causes=on"}},
         Case{"SharedL3", "tiny",
-             with(two_by_two, {"l3.size_bytes=262144", "l3.share=chip", "l3.prefetcher=next", "sim.quantum=1000"})},
+             with(two_by_two,
+                  {"l3.size_bytes=262144", "l3.share=chip", "l3.prefetcher=next", "sim.quantum=1000"})},
         Case{"Directory", "tiny",
-             with(two_by_two, {"coherence.plain=directory", "l2.inclusion=inclusive", "network.topology=mesh"})},
+             with(two_by_two,
+                  {"coherence.plain=directory", "l2.inclusion=inclusive", "network.topology=mesh"})},
         Case{"SmallDirectory", "tiny",
-             with(two_by_two, {"coherence.plain=directory", "l2.inclusion=inclusive",
-                               "coherence.directory_entries=256", "sim.quantum=1000",
-                               "memory.controller=queued"})},
+             with(two_by_two,
+                  {"coherence.plain=directory", "l2.inclusion=inclusive", "coherence.directory_entries=256",
+                   "sim.quantum=1000", "memory.controller=queued"})},
         Case{"Copernicus", "copernicus", {"chip.tiles=3"}}, Case{"Niagara", "niagara-like", {}},
         Case{"Larrabee", "larrabee-like", {"chip.tiles=4"}}, Case{"Xeon", "xeon-x5355-2s", {}},
         Case{"Zen4", "zen4-2c", {}}, Case{"GoldenCove", "golden-cove-2c", {}}),

@@ -1,5 +1,7 @@
-// Replays beside the tests' own simple caches, which know no time: the same counts at every level, of long streams made
-// here and of a real program's trace.
+// Replays beside the tests' own simple caches, which know no time: the same counts at every level, of long
+// streams made here and of a real program's trace.
+#include "sim/config/error.h"
+#include "sim/config/machine_file.h"
 #include "sim/replay/replay.h"
 #include "tests/sim/hierarchy_oracle.h"
 #include "traces/block_builder.h"
@@ -33,7 +35,9 @@ const std::vector<Hierarchy> hierarchies = {
     {{"l1.size_bytes=16384", "l1.ways=4", "l1.line_bytes=64", "l2.size_bytes=32768", "l2.ways=8",
       "l2.line_bytes=64", "l2.inclusion=exclusive", "l2.share=1", "l3.size_bytes=262144", "l3.ways=16",
       "l3.share=tile"},
-     {{16384, 4, 64, 1, "", false}, {32768, 8, 64, 1, "exclusive", false}, {262144, 16, 64, 2, "none", false}}},
+     {{16384, 4, 64, 1, "", false},
+      {32768, 8, 64, 1, "exclusive", false},
+      {262144, 16, 64, 2, "none", false}}},
 };
 
 Config machine(const Hierarchy& h) {
@@ -42,8 +46,8 @@ Config machine(const Hierarchy& h) {
     return read_machine(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml", settings);
 }
 
-void access_lines(HierarchyOracle& oracle, std::uint64_t line_bytes, std::uint64_t core, std::uint64_t address,
-                  std::uint64_t bytes, bool write) {
+void access_lines(HierarchyOracle& oracle, std::uint64_t line_bytes, std::uint64_t core,
+                  std::uint64_t address, std::uint64_t bytes, bool write) {
     for (std::uint64_t at = address; at < address + bytes; at = (at | (line_bytes - 1)) + 1)
         oracle.access(core, at, write);
 }
@@ -100,10 +104,16 @@ traces::Description description(const char* time) {
     return d;
 }
 
-/// References of two streams in a row: mostly near what was used before, now and then anywhere, in a row, or as far
-/// up as programs have their stacks; some across lines.
-void make_block(std::mt19937_64& random, std::size_t count, std::uint64_t& time, traces::Block& block) {
-    static std::array<std::uint64_t, 2> at{}, region{};
+/// References of two streams in a row: mostly near what was used before, now and then anywhere, in a row, or
+/// as far up as programs have their stacks; some across lines.
+struct Synthetic {
+    std::mt19937_64 random{5};
+    std::uint64_t time = 7'000'000'000;
+    std::array<std::uint64_t, 2> at{}, region{};
+
+    void make_block(std::size_t count, traces::Block& block);
+};
+void Synthetic::make_block(std::size_t count, traces::Block& block) {
     traces::BlockBuilder builder;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t stream = random() % 4 == 0 ? 1 : 0;
@@ -130,12 +140,11 @@ TEST(IndependentReplay, TenMillionReferencesCountAsInSimpleCaches) {
             const Config config = machine(h);
             HierarchyOracle oracle(h.levels, 2);
             Replay replay(config, description(time), {});
-            std::mt19937_64 random(5);
-            std::uint64_t now = 7'000'000'000;
+            Synthetic synthetic;
             const std::size_t blocks = &h == &hierarchies.front() && time[0] == 'c' ? 40 : 4;
             for (std::size_t b = 0; b < blocks; ++b) {
                 traces::Block block;
-                make_block(random, 250'000, now, block);
+                synthetic.make_block(250'000, block);
                 replay.add(block);
                 traces::each_in_order(
                     block,

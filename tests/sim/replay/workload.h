@@ -32,9 +32,7 @@ inline void work(const WorkMemory& m, int worker, int count) {
     using namespace isa::timing;
     std::mt19937 random(static_cast<std::uint32_t>(worker) + 1);
     std::byte* const own = m.own + static_cast<std::ptrdiff_t>(worker % 64) * 65536;
-    const auto at = [&](std::byte* base, std::uint32_t bytes) {
-        return base + random() % (bytes / 4) * 4;
-    };
+    const auto at = [&](std::byte* base, std::uint32_t bytes) { return base + random() % (bytes / 4) * 4; };
     const auto site_of = [](std::uint32_t line) { return site{"work.h", line}; };
     std::array<std::int32_t, 64> index{};
     stamp s;
@@ -44,7 +42,8 @@ inline void work(const WorkMemory& m, int worker, int count) {
             set_phase(i / 64 % 2);
             set_kind(i / 128 % 2);
         }
-        const std::uint64_t lanes = (std::uint64_t{random()} << 32U | random()) & (~std::uint64_t{0} >> (64 - ISA_WIDTH));
+        const std::uint64_t lanes =
+            (std::uint64_t{random()} << 32U | random()) & (~std::uint64_t{0} >> (64 - ISA_WIDTH));
         for (std::int32_t& k : index)
             k = static_cast<std::int32_t>(random() % (i % 2 == 0 ? 512 : 16384));
         switch (random() % 16) {
@@ -62,7 +61,8 @@ inline void work(const WorkMemory& m, int worker, int count) {
             store(site_of(3), at(i % 3 == 0 ? m.shared : own, i % 3 == 0 ? 65536 : 60000), 4, stamp{}, s);
             break;
         case 4:
-            s = load_vector(site_of(4), at(own, 60000), ~std::uint64_t{0} >> (64 - ISA_WIDTH), stamp{}, stamp{});
+            s = load_vector(site_of(4), at(own, 60000), ~std::uint64_t{0} >> (64 - ISA_WIDTH), stamp{},
+                            stamp{});
             break;
         case 5:
             s = load_vector(site_of(5), own + random() % 512 * 64, lanes & random(), stamp{}, stamp{1, 1, 1});
@@ -80,7 +80,8 @@ inline void work(const WorkMemory& m, int worker, int count) {
             prefetch(site_of(9), at(m.shared, 1U << 20U), stamp{});
             break;
         case 10:
-            discard(site_of(10), own + random() % 400 * 100, static_cast<std::uint32_t>(100 + random() % 400), stamp{});
+            discard(site_of(10), own + random() % 400 * 100, static_cast<std::uint32_t>(100 + random() % 400),
+                    stamp{});
             break;
         case 11:
         case 12: { // a counter
