@@ -41,7 +41,7 @@ void Replay::check(const traces::Block& block) const {
 
 void Replay::add(const traces::Block& block) {
     check(block);
-    vocabulary_.learn(block.table, actions_);
+    learn(block.table);
     following_ = following_ && !block.order.empty();
     if (!begun_) {
         begun_ = true;
@@ -95,47 +95,74 @@ void Replay::tell(const ReplayAction& a, std::uint32_t stream, std::uint64_t add
     listener_->performed({a, stream, bytes, accesses, address, t - std::min(t, offset_), answer.ready});
 }
 
+/// The next reference comes at this cycle, which no window that is open holds.
+void Replay::pass_window(cycle t, std::uint64_t time) {
+    if (t >= latest_cycle)
+        throw traces::Error(
+            fmt::format("a reference has the time {}, beyond all that is simulated; the trace's "
+                        "times begin at {}",
+                        time, origin_));
+    following_ = following_ && t < machine_.window_end() + far_ahead;
+    if (!following_)
+        come_to(t);
+}
+
 /// The cycle of the next reference, whose window is open.
-cycle Replay::arrive(std::uint64_t time) {
-    cycle t = (clocked_ ? time - std::min(time, origin_) : result_.references) + offset_;
-    if (t >= machine_.window_end()) [[unlikely]] {
-        if (t >= latest_cycle)
-            throw traces::Error(fmt::format("a reference has the time {}, beyond all that is simulated; the "
-                                            "trace's times begin at {}",
-                                            time, origin_));
-        following_ = following_ && t < machine_.window_end() + far_ahead;
-        if (!following_)
-            come_to(t);
-    }
+inline cycle Replay::arrive(std::uint64_t time) {
+    const cycle t = (clocked_ ? time - std::min(time, origin_) : result_.references) + offset_;
+    if (t >= machine_.window_end()) [[unlikely]]
+        pass_window(t, time);
     return std::max(t, machine_.earliest());
 }
 
 /// References of a stream, one after the other.
 void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end) {
-    using What = ReplayAction::What;
     const bool compacts = machine_.by_reference();
+    const unsigned shift = machine_.line_shift();
     for (std::size_t i = begin; i < end;) {
-        const ReplayAction& a = actions_[block.classes[i]];
-        const auto goes_on = [&](const ReplayAction& next) {
-            return a.what == What::discard ? next.what == What::discard && next.part == traces::Part::access
-                                           : next.part == traces::Part::piece && next.what == a.what;
-        };
+        const std::uint32_t number = block.classes[i];
+        const ReplayAction& a = actions_[number];
         const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];
         const cycle t = arrive(block.times[i]);
         std::size_t n = 1;
-        while (i + n < end && goes_on(actions_[block.classes[i + n]]))
+        while (i + n < end && goes_on_[block.classes[i + n]] == leads_[number])
             ++n;
-        std::uint64_t high = low + std::max(a.size, 1U) - 1;
+        std::uint64_t high = low + a.size - 1;
         if (n != 1)
             high = low + (block.addresses[i + n - 1] - block.addresses[i]) +
-                   std::max(actions_[block.classes[i + n - 1]].size, 1U) - 1;
+                   actions_[block.classes[i + n - 1]].size - 1;
         i += n;
-        if (a.what == What::nothing) [[unlikely]] {
-            result_.left_out[static_cast<std::size_t>(a.kind)] += n;
+        const auto accesses = static_cast<std::uint32_t>(n);
+        if (a.what > ReplayAction::What::write || a.modifies || low >> shift != high >> shift) [[unlikely]] {
+            if (a.what == ReplayAction::What::nothing) {
+                result_.left_out[static_cast<std::size_t>(a.kind)] += n;
+                continue;
+            }
+            result_.references += n;
+            touch(a, stream, low, high, accesses, t);
             continue;
         }
         result_.references += n;
-        touch(a, stream, low, high, static_cast<std::uint32_t>(n), t);
+        const auto bytes = static_cast<std::uint32_t>(high - low + 1);
+        const Answer answer = machine_.perform(a, stream, low, bytes, accesses, t);
+        if (answer.refused) [[unlikely]]
+            insist(a, stream, low, bytes, accesses, t, answer);
+        else if (listener_ != nullptr) [[unlikely]]
+            tell(a, stream, low, bytes, accesses, t, answer);
+    }
+}
+
+/// Which references go on with what the one before them began: pieces of an access, lines of a discard.
+void Replay::learn(const std::vector<traces::Class>& table) {
+    vocabulary_.learn(table, actions_);
+    goes_on_.clear();
+    leads_.clear();
+    for (const ReplayAction& a : actions_) {
+        const bool discards = a.what == ReplayAction::What::discard;
+        const bool more = discards ? a.part == traces::Part::access : a.part == traces::Part::piece;
+        const auto what = static_cast<std::uint8_t>(static_cast<unsigned>(a.what) + 1);
+        goes_on_.push_back(more ? what : std::uint8_t{0});
+        leads_.push_back(what);
     }
 }
 

@@ -84,6 +84,7 @@ public:
 
 private:
     void check(const traces::Block& block) const;
+    void learn(const std::vector<traces::Class>& table);
     void run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end);
     void touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
                std::uint32_t accesses, cycle t);
@@ -92,6 +93,7 @@ private:
     void insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
                 std::uint32_t accesses, cycle t, const Answer& refused);
     cycle arrive(std::uint64_t time);
+    void pass_window(cycle t, std::uint64_t time);
     void come_to(cycle t);
     void tell(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
               std::uint32_t accesses, cycle t, const Answer& answer);
@@ -101,8 +103,9 @@ private:
     ReplayMachine machine_;
     ReplayListener* listener_; // or null
     CompactAddresses compact_;
-    std::vector<ReplayAction> actions_; // of the block at hand
-    bool clocked_, following_;          // times are cycles; the run's windows are followed
+    std::vector<ReplayAction> actions_;         // of the block at hand, by class
+    std::vector<std::uint8_t> goes_on_, leads_; // likewise: equal where one goes on with the other
+    bool clocked_, following_;                  // times are cycles; the run's windows are followed
     bool begun_ = false;
     std::uint64_t origin_ = 0, offset_ = 0;
     ReplayResult result_;

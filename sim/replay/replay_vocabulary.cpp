@@ -70,7 +70,7 @@ void ReplayVocabulary::learn(const std::vector<traces::Class>& table,
         a.kind = c.kind;
         a.part = c.part;
         a.modifies = c.kind == traces::Kind::modify && a.what == What::read;
-        a.size = c.size;
+        a.size = std::max(c.size, 1U);
         a.structure = c.structure;
         a.column = c.phase + (by_work_ ? c.work * phases_ : 0);
         a.site = c.site;

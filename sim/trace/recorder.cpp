@@ -141,7 +141,8 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
     for (std::size_t tile = 0; tile < wide(config_.chip.tiles); ++tile)
         taps_.emplace_back(filter_);
     names_.resize(taps_.size());
-    writer_.emplace(std::move(sink_), d, block_references);
+    // What a cache passes on is not replayed, for want of what cores say of lines besides.
+    writer_.emplace(std::move(sink_), d, block_references, filter_.level == TraceLevel::core);
 }
 
 void Recorder::start(std::uint64_t cycle) {

@@ -70,7 +70,8 @@ TEST_F(ReplayTool, SeveralMachinesTakeOnePass) {
     std::string together = "- ";
     for (const std::string& m : machines)
         together += " --machine " + m;
-    const Outcome piped = run("cat a.rzt | " + program + " replay " + together + " --json -", folder_.path());
+    const Outcome piped =
+        run("(cat a.rzt | " + program + " replay " + together + " --json -)", folder_.path());
     ASSERT_EQ(piped.code, 0) << piped.err;
     const nlohmann::json all = nlohmann::json::parse(piped.out).at("machines");
     ASSERT_EQ(all.size(), machines.size());
@@ -124,8 +125,9 @@ TEST_F(ReplayTool, TheErrorOfAnotherMachineIsSaid) {
         for (const nlohmann::json& c : all.at("against").at("counts")) {
             const double replayed = c.at("replay").get<double>(), ran = c.at("run").get<double>();
             EXPECT_EQ(c.at("error").is_null(), ran == 0 && replayed != 0);
-            if (ran != 0)
+            if (ran != 0) {
                 EXPECT_NEAR(c.at("error").get<double>(), std::abs(replayed - ran) / ran, 1e-12);
+            }
             if (c.at("of") == "l2" && c.at("counter") == "misses")
                 misses = c.at("error");
         }
@@ -136,8 +138,9 @@ TEST_F(ReplayTool, TheErrorOfAnotherMachineIsSaid) {
     for (const nlohmann::json& c : json_of("a.rzt --timed --machine " + machine("tiny") + " --against a.json")
                                        .at("against")
                                        .at("counts"))
-        if ((c.at("of") == "l1" || c.at("of") == "l2") && c.at("counter") == "misses")
+        if ((c.at("of") == "l1" || c.at("of") == "l2") && c.at("counter") == "misses") {
             EXPECT_LT(c.at("error").get<double>(), 0.1) << c;
+        }
 }
 
 TEST_F(ReplayTool, WhatIsLeftOfACutTraceCounts) {
