@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <vector>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
@@ -83,7 +84,14 @@ void check(const Block& block, const Description& d, bool own) {
     require(at == block.size());
     require(std::all_of(block.classes.begin(), block.classes.end(),
                         [&](std::uint32_t c) { return c < block.table.size(); }));
+    std::vector<std::size_t> taken(block.segments.size(), 0);
+    for (const Turn& t : block.order)
+        if (t.what == Turn::What::references)
+            taken.at(t.segment) += t.count;
+    for (std::size_t s = 0; s < taken.size(); ++s)
+        require(block.order.empty() || taken[s] == block.segments[s].end - block.segments[s].begin);
     for (const Class& c : block.table) {
+        require(static_cast<std::size_t>(c.part) < parts);
         require(static_cast<std::size_t>(c.kind) < kind_names.size());
         require(c.structure < d.structures.size() && c.phase < d.phases.size() && c.work < d.work.size());
         require(!own || d.site_addresses || c.site <= d.sites.size());
