@@ -4,6 +4,7 @@
 #include "analysis/plots/overlay.h"
 #include "analysis/plots/page.h"
 #include "analysis/plots/png.h"
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/address_picture.h"
 
 #include <gtest/gtest.h>
@@ -186,6 +187,30 @@ TEST(Chart, PutsValuesWhereTheirAxesSay) {
     EXPECT_NE(svg.find(">128 B<"), std::string::npos);
     // From 70 to 670 to the right; 294 is the axis, 14 the top, which stands for 0.8 * 1.05.
     EXPECT_NE(svg.find("70,27.33 370,160.67 670,294"), std::string::npos) << svg;
+}
+
+/// As many lines as there are names and columns, as many bars as rows, and where numbers say.
+TEST(TableChart, DrawsWhatTheTableSays) {
+    Table table{{"structure", "bytes", "misses", "ratio"}, {}};
+    for (const char* name : {"nodes", "grids"})
+        for (const std::uint64_t bytes : {1024U, 2048U})
+            table.rows.push_back(
+                {std::string(name), bytes, std::uint64_t{4096} / bytes, 512.0 / static_cast<double>(bytes)});
+    const auto count = [](const std::string& text, const std::string& what) {
+        std::size_t n = 0;
+        for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+            ++n;
+        return n;
+    };
+    const std::string lines =
+        lines_of(table, 1, "bytes", {"ratio"}, {"size", Unit::bytes, true}, {"part", Unit::percent});
+    EXPECT_EQ(count(lines, "<polyline"), 2U);
+    EXPECT_EQ(count(lines, "70,27.33 670,160.67"), 2U); // both fall from a half to a quarter
+    EXPECT_EQ(count(lines_of(table, 1, "bytes", {"ratio", "misses"}, {}, {}), "<polyline"), 4U);
+    const std::string bars = bars_of(table, 2, {"misses"}, {"misses"});
+    EXPECT_EQ(count(bars, "<title>"), 4U);
+    EXPECT_NE(bars.find("<title>grids, 2 KiB, misses: 2</title>"), std::string::npos);
+    EXPECT_THROW(bars_of(table, 1, {"hits"}, {}), std::logic_error);
 }
 
 TEST(Chart, HasTicksInItsRange) {

@@ -204,6 +204,14 @@ TEST_F(TraceTool, SaysWhyCachesMissAndWhatLinesAreUsedFor) {
     EXPECT_EQ(rows("strides a.csv --top 1").at(1).at("stride"), 256);
     EXPECT_EQ(rows("strides a.csv --histogram").back().at("forwards"), 9);
 
+    for (const char* command :
+         {"curve a.csv --by structure", "windows a.csv --window 10 --sizes 1KiB", "strides a.csv",
+          "strides a.csv --top 3", "strides a.csv --histogram", "causes a.csv --sizes 1KiB,2KiB",
+          "use a.csv --sizes 1KiB", "replicas a.csv --sizes 1KiB,2KiB"}) {
+        EXPECT_EQ(tool(std::string(command) + " --svg chart.svg").code, 0) << command;
+        EXPECT_NE(text("chart.svg").find("</svg>"), std::string::npos) << command;
+        std::filesystem::remove(folder_ / "chart.svg");
+    }
     EXPECT_EQ(tool("picture a.csv -o a.svg").code, 0);
     EXPECT_NE(text("a.svg").find("queue"), std::string::npos);
     EXPECT_EQ(tool("picture a.csv -o a.png").code, 0);

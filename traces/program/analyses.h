@@ -21,7 +21,7 @@ public:
 
     void add_to(CLI::App& app) {
         app_ = app.add_subcommand(name_, meaning_);
-        options_.add_to(*app_, by_);
+        options_.add_to(*app_, by_, draws());
         add_options(*app_);
     }
     bool parsed() const { return app_->parsed(); }
@@ -29,6 +29,8 @@ public:
     virtual void run() = 0;
 
 protected:
+    /// Whether it gives a chart besides its table.
+    virtual bool draws() const { return false; }
     /// Its own, besides those of all.
     virtual void add_options(CLI::App&) {}
     AnalysisOptions options_;

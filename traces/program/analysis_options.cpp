@@ -94,7 +94,7 @@ std::vector<std::uint64_t> lines_of(std::string_view option, const std::vector<s
     return out;
 }
 
-void AnalysisOptions::add_to(CLI::App& app, const char* by) {
+void AnalysisOptions::add_to(CLI::App& app, const char* by, bool draws) {
     app.add_option("TRACE", file_, "a trace of any format, or -")->required();
     app.add_option("--from", from_, "its format; without it, as it begins or is named")->type_name("FORMAT");
     app.add_option("--line", line_, "bytes of a line, a power of two; without it, those of the trace, or 64")
@@ -119,6 +119,8 @@ void AnalysisOptions::add_to(CLI::App& app, const char* by) {
     app.add_option("--csv", csv_, "write the table for programs, whole or not at all; - is standard output")
         ->type_name("FILE");
     app.add_option("--json", json_, "likewise, with what was analysed")->type_name("FILE");
+    if (draws)
+        app.add_option("--svg", svg_, "draw a chart of the table")->type_name("FILE");
 }
 
 void AnalysisOptions::prepare() {
@@ -215,8 +217,8 @@ void AnalysisOptions::each_block(const std::function<void(const Block&)>& visit)
     note_ = input_->note();
 }
 
-void AnalysisOptions::give(std::string_view command, const analysis::Table& table,
-                           const std::string& heading) const {
+void AnalysisOptions::give(std::string_view command, const analysis::Table& table, const std::string& heading,
+                           const std::function<std::string()>& draw) const {
     const auto write = [](const std::string& file, const std::string& text) {
         const std::unique_ptr<Sink> sink = open_sink(file);
         sink->write(text);
@@ -237,7 +239,9 @@ void AnalysisOptions::give(std::string_view command, const analysis::Table& tabl
         out["rows"] = nlohmann::ordered_json::parse(table.json());
         write(json_, out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     }
-    if (csv_ != "-" && json_ != "-")
+    if (!svg_.empty())
+        write(svg_, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + draw());
+    if (csv_ != "-" && json_ != "-" && svg_ != "-")
         fmt::print("{}\n\n{}", heading, table.text());
     if (!note_.empty())
         fmt::print(stderr, "razor-trace: {}\n", note_);

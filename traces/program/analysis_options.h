@@ -35,8 +35,9 @@ inline double part(std::uint64_t some, std::uint64_t all) {
 
 class AnalysisOptions {
 public:
-    /// `by`: what references are told apart by without --by; null: there is no such option.
-    void add_to(CLI::App& app, const char* by);
+    /// `by`: what references are told apart by without --by; null: there is no such option. `draws`: with
+    /// --svg.
+    void add_to(CLI::App& app, const char* by, bool draws);
     /// Other kinds than Touches::demand count without --kinds.
     void count_without_option(const analysis::Touches::Kinds& kinds) { kinds_in_ = kinds; }
     /// Visits all blocks. Throws Error, Interrupted.
@@ -49,6 +50,7 @@ public:
     /// The same by bursts of another memory than the trace's lines.
     analysis::Touches touches(std::uint64_t line_bytes) const;
     bool grouped() const { return !by_.empty(); }
+    std::size_t by_columns() const { return by_.size(); }
     /// "structure", or "structure and phase".
     std::string by() const;
     /// With a column for each that references are told apart by first.
@@ -67,12 +69,14 @@ public:
     /// After prepare(), where a sample of lines tells nothing. Throws Error.
     void refuse_sample() const;
     /// Prints the table, or writes it as asked; what the trace lacks is said.
-    void give(std::string_view command, const analysis::Table& table, const std::string& heading) const;
+    /// `draw`: makes the chart of --svg, an element.
+    void give(std::string_view command, const analysis::Table& table, const std::string& heading,
+              const std::function<std::string()>& draw = nullptr) const;
 
 private:
     void open();
 
-    std::string file_, from_, line_, kinds_, by_names_, window_, csv_, json_;
+    std::string file_, from_, line_, kinds_, by_names_, window_, csv_, json_, svg_;
     analysis::Touches::Kinds kinds_in_ = analysis::Touches::demand;
     std::vector<analysis::By> by_; // without `all`
     std::uint64_t window_length_ = 1;

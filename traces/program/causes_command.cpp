@@ -1,4 +1,5 @@
 // razor-trace causes: why caches miss.
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/miss_causes.h"
 #include "traces/program/analyses.h"
 #include "traces/program/cache_options.h"
@@ -47,10 +48,17 @@ public:
             }
         options_.give("causes", table,
                       fmt::format("{} touches of lines of {} bytes; {}", references, options_.line_bytes(),
-                                  caches_.text()));
+                                  caches_.text()),
+                      [&] {
+                          return analysis::bars_of(
+                              table, options_.by_columns() + 1,
+                              {"compulsory", "capacity", "conflict", "true sharing", "false sharing"},
+                              {"misses"});
+                      });
     }
 
 private:
+    bool draws() const override { return true; }
     void add_options(CLI::App& app) override { caches_.add_to(app); }
     CacheOptions caches_{"all"};
 };

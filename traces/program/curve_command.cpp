@@ -1,3 +1,4 @@
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/optimum.h"
 #include "analysis/traces/sampled_curve.h"
@@ -44,6 +45,7 @@ public:
     void run() override;
 
 private:
+    bool draws() const override { return true; }
     void add_options(CLI::App& app) override;
     Table exact();
     Table sampled(double rate, std::uint64_t most);
@@ -86,7 +88,11 @@ void CurveCommand::run() {
             "--ways, --optimum: the trace is of a sample of lines, which tells of fully associative LRU "
             "caches alone; leave them out");
     const Table table = samples || sample < 1 ? sampled(rate, most) : exact();
-    options_.give("curve", table, heading_);
+    options_.give("curve", table, heading_, [&] {
+        return analysis::lines_of(table, options_.by_columns(), "bytes", {"ratio"},
+                                  {"size", analysis::Unit::bytes, true},
+                                  {"misses a reference", analysis::Unit::percent});
+    });
 }
 
 Table CurveCommand::exact() {

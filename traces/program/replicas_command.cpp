@@ -1,4 +1,5 @@
 // razor-trace replicas: how much of what several caches hold is the same.
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/replication.h"
 #include "traces/program/analyses.h"
 #include "traces/program/cache_options.h"
@@ -48,10 +49,16 @@ public:
             fmt::format("lines of {} bytes{}, in the mean over all touches; {} {}", options_.line_bytes(),
                         options_.grouped() ? fmt::format(", by {} of who touched them first", options_.by())
                                            : "",
-                        caches, caches_.text()));
+                        caches, caches_.text()),
+            [&] {
+                return analysis::lines_of(table, options_.by_columns(), "bytes", {"copies a line"},
+                                          {"size of each cache", analysis::Unit::bytes, true},
+                                          {"copies a line"});
+            });
     }
 
 private:
+    bool draws() const override { return true; }
     void add_options(CLI::App& app) override { caches_.add_to(app); }
     CacheOptions caches_{"1"};
 };

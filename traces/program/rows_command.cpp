@@ -1,4 +1,5 @@
 // razor-trace rows: how a memory's rows and banks take a trace.
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/dram_rows.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
@@ -53,10 +54,15 @@ public:
                 "banks among {} bursts; the busiest bank has {:.4f} of all, {:.2f} times its share",
                 all, burst, memory.channels, memory.ranks, memory.bank_groups, memory.banks, memory.row_bytes,
                 memory.mapping, memory.bank_xor == "on" ? ", bank_xor" : "", reach_, part(busiest(rows), all),
-                part(busiest(rows) * rows.banks().size(), all)));
+                part(busiest(rows) * rows.banks().size(), all)),
+            [&] {
+                return analysis::bars_of(table, options_.by_columns(),
+                                         {"row hits", "row empties", "row conflicts"}, {"bursts"});
+            });
     }
 
 private:
+    bool draws() const override { return true; }
     static std::uint64_t busiest(const analysis::DramRows& rows) {
         return *std::max_element(rows.banks().begin(), rows.banks().end());
     }

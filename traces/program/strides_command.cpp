@@ -1,4 +1,5 @@
 // razor-trace strides: how far apart references are that follow each other.
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/strides.h"
 #include "traces/program/analyses.h"
 
@@ -26,15 +27,27 @@ public:
         options_.each_block([&](const Block& block) {
             touches.each_access(block, [&](const Access& a) { strides.add(a); });
         });
-        options_.give("strides",
-                      histogram_  ? histogram(strides, touches)
-                      : top_ != 0 ? frequent(strides, touches)
-                                  : patterns(strides, touches),
-                      "bytes from a reference to the next of its thread" +
-                          (options_.grouped() ? " and " + options_.by() : ""));
+        const Table table = histogram_  ? histogram(strides, touches)
+                            : top_ != 0 ? frequent(strides, touches)
+                                        : patterns(strides, touches);
+        options_.give(
+            "strides", table,
+            "bytes from a reference to the next of its thread" +
+                (options_.grouped() ? " and " + options_.by() : ""),
+            [&] {
+                const std::size_t by = options_.by_columns();
+                if (histogram_)
+                    return analysis::bars_of(table, by + 1, {"forwards", "backwards"}, {"references"});
+                if (top_ != 0)
+                    return analysis::bars_of(table, by + 1, {"at least"}, {"references"});
+                return analysis::bars_of(table, by,
+                                         {Strides::pattern_names.begin(), Strides::pattern_names.end()},
+                                         {"references"});
+            });
     }
 
 private:
+    bool draws() const override { return true; }
     void add_options(CLI::App& app) override {
         app.add_option("--top", top_, "instead, so many strides that are most frequent")
             ->type_name("N")

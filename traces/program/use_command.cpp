@@ -1,4 +1,5 @@
 // razor-trace use: how much of a line is used before it leaves a cache.
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/line_residency.h"
 #include "traces/program/analyses.h"
 #include "traces/program/cache_options.h"
@@ -49,10 +50,16 @@ public:
                                   options_.grouped()
                                       ? fmt::format(", by {} of who brought them in", options_.by())
                                       : "",
-                                  caches_.text()));
+                                  caches_.text()),
+                      [&] {
+                          return analysis::bars_of(table, options_.by_columns() + 1,
+                                                   {"to a quarter", "a half", "three quarters", "more"},
+                                                   {"lines that come"});
+                      });
     }
 
 private:
+    bool draws() const override { return true; }
     void add_options(CLI::App& app) override { caches_.add_to(app); }
     CacheOptions caches_{"all"};
 };

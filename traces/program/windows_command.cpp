@@ -1,4 +1,5 @@
 // razor-trace windows: what a trace touches and misses over time.
+#include "analysis/plots/table_chart.h"
 #include "analysis/traces/windows.h"
 #include "traces/error.h"
 #include "traces/program/analyses.h"
@@ -39,10 +40,18 @@ public:
         }
         options_.give("windows", table,
                       fmt::format("windows of {} of the trace's time ({}), lines of {} bytes", length,
-                                  options_.description().time, options_.line_bytes()));
+                                  options_.description().time, options_.line_bytes()),
+                      [&] {
+                          std::vector<std::string> shown = {"lines", "new lines"};
+                          for (const std::uint64_t size : sizes)
+                              shown.push_back(fmt::format("misses of {} bytes", size));
+                          return analysis::lines_of(table, 0, "begins", shown, {options_.description().time},
+                                                    {"in a window"});
+                      });
     }
 
 private:
+    bool draws() const override { return true; }
     void add_options(CLI::App& app) override {
         app.add_option("--window", length_, "units of the trace's time a window")->type_name("N")->required();
         app.add_option("--sizes", sizes_, "of LRU caches whose misses are counted, as 32KiB,1MiB")
