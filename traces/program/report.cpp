@@ -60,7 +60,7 @@ void Report::write(Page& page, const Names& names, const Description& descriptio
     write_curve(page, names);
     write_causes(page, names);
     write_use(page, names);
-    write_time(page, names, description);
+    write_time(page, description);
     page.heading("Addresses over time");
     page.paragraph("A band for each " + names.by +
                    ", time to the right; within a band addresses upwards, as far as they are touched; the "
@@ -69,7 +69,7 @@ void Report::write(Page& page, const Names& names, const Description& descriptio
                                        description.time));
     write_reuse(page, names);
     write_strides(page, names);
-    write_lines(page, names, description);
+    write_lines(page, names);
 }
 
 void Report::write_curve(Page& page, const Names& names) const {
@@ -156,7 +156,7 @@ void Report::write_use(Page& page, const Names& names) const {
     page.table("use", table);
 }
 
-void Report::write_time(Page& page, const Names&, const Description& description) const {
+void Report::write_time(Page& page, const Description& description) const {
     page.heading("Working set over time");
     page.paragraph(fmt::format(
         "In windows of {} of the trace's time ({}): bytes of the lines that are touched, of those "
@@ -241,7 +241,7 @@ void Report::write_strides(Page& page, const Names& names) const {
     page.table("strides", table);
 }
 
-void Report::write_lines(Page& page, const Names& names, const Description&) const {
+void Report::write_lines(Page& page, const Names& names) const {
     page.heading("Lines and who shares them");
     page.paragraph("Over the whole trace, by " + names.by + " of who touched them first.");
     BarChart chart = bars("bytes of lines", Unit::bytes,

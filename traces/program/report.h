@@ -48,11 +48,11 @@ public:
 private:
     void write_curve(analysis::Page& page, const Names& names) const;
     void write_reuse(analysis::Page& page, const Names& names) const;
-    void write_time(analysis::Page& page, const Names& names, const Description& description) const;
+    void write_time(analysis::Page& page, const Description& description) const;
     void write_causes(analysis::Page& page, const Names& names) const;
     void write_use(analysis::Page& page, const Names& names) const;
     void write_strides(analysis::Page& page, const Names& names) const;
-    void write_lines(analysis::Page& page, const Names& names, const Description& description) const;
+    void write_lines(analysis::Page& page, const Names& names) const;
 
     analysis::CacheShape shape_;
     std::vector<std::size_t> order_; // groups, those with the most touches first
