@@ -129,13 +129,10 @@ TEST(Shapes, ExerciseWhatTheyAreThereFor) {
 /// seam.
 TEST(Shapes, TextureCoordinatesFollowTheFaces) {
     const std::map<std::string_view, int> seams{
-        // Edges on whose sides they differ: a net of six squares keeps five of a box's twelve; of what is turned
+        // Edges on whose sides they differ: a net of six squares keeps five of a box's twelve; of what is
+        // turned
         // a foot's rim, a line along the profile, and all that meet at the pole.
-        {"plane", 0},
-        {"box", 7},
-        {"knot", 48 + 4},
-        {"dish", 0},
-        {"bowl", 12 + 10 + 12},
+        {"plane", 0},           {"box", 7}, {"knot", 48 + 4}, {"dish", 0}, {"bowl", 12 + 10 + 12},
         {"pawn", 10 + 13 + 10},
     };
     for (const ShapeKind& kind : shape_kinds()) {
