@@ -1,6 +1,7 @@
 // razor render --frames of cages that change their shape: each frame is the one rendered alone.
 #include "tests/program/pictures.h"
 #include "tests/program/run.h"
+#include "tests/scene/scene_texts.h"
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
@@ -12,7 +13,7 @@
 namespace razor {
 namespace {
 
-constexpr std::string_view head = R"(
+const std::string head = R"(
     [settings]
     size = [40, 30]
     samples = 2
@@ -23,11 +24,7 @@ constexpr std::string_view head = R"(
     target = [0, 0.5, 0]
     [sky]
     radiance = 0.4
-    [[light]]
-    corner = [-1, 4, -1]
-    edge_u = [2, 0, 0]
-    edge_v = [0, 0, 2]
-    radiance = 8
+)" + lamp_text + R"(
     [[mesh]]
     name = "floor"
     shape = "plane"
@@ -60,7 +57,7 @@ protected:
         return run(quoted_argument(RAZOR_PROGRAM) + " render " + arguments, folder_.path());
     }
     void scene(const std::string& name, const std::string& meshes) const {
-        folder_.file(name, std::string(head) + meshes);
+        folder_.file(name, head + meshes);
     }
     void expect_equal(const std::string& a, const std::string& b) const {
         expect_same_picture(folder_ / a, folder_ / b);

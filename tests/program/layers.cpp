@@ -1,31 +1,21 @@
 // razor render --layers and --false-colour: what is in files, and mistakes.
 #include "tests/program/pictures.h"
 #include "tests/program/run.h"
+#include "tests/scene/scene_texts.h"
 
 #include <set>
 
 namespace razor {
 namespace {
 
-constexpr std::string_view scene = R"(
+const std::string scene = R"(
     [settings]
     size = [40, 24]
     samples = 2
     [camera]
     position = [0, 2, 6]
-    [[light]]
-    corner = [-1, 4, -1]
-    edge_u = [2, 0, 0]
-    edge_v = [0, 0, 2]
-    radiance = 8
-    [[mesh]]
-    name = "floor"
-    shape = "plane"
-    scale = 6
-    translate = [0, -1, 0]
-    [[mesh]]
-    name = "gear"
-    shape = "gear"
+)" + lamp_text + floor_and_gear_text +
+                          R"(
     [[object]]
     mesh = "gear"
     [[object]]

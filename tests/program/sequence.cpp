@@ -1,13 +1,14 @@
 // razor render --frames: sequences of what moves.
 #include "tests/program/pictures.h"
 #include "tests/program/run.h"
+#include "tests/scene/scene_texts.h"
 
 #include <nlohmann/json.hpp>
 
 namespace razor {
 namespace {
 
-constexpr std::string_view moving = R"(
+const std::string moving = R"(
     [settings]
     size = [48, 32]
     samples = 2
@@ -19,25 +20,14 @@ constexpr std::string_view moving = R"(
     [[camera.key]]
     time = 0.25
     position = [2, 1, 5]
-    [[light]]
-    corner = [-1, 4, -1]
-    edge_u = [2, 0, 0]
-    edge_v = [0, 0, 2]
-    radiance = 8
+)" + lamp_text + R"(
     [[light.key]]
     time = 0
     corner = [-1, 4, -1]
     [[light.key]]
     time = 0.25
     corner = [1, 4, -1]
-    [[mesh]]
-    name = "floor"
-    shape = "plane"
-    scale = 6
-    translate = [0, -1, 0]
-    [[mesh]]
-    name = "gear"
-    shape = "gear"
+)" + floor_and_gear_text + R"(
     [[object]]
     mesh = "gear"
     cycle = 1
