@@ -55,7 +55,7 @@ SCENES = [
     ("smooth, under a constant sky", CONSTANT + PLAIN + SMOOTH, SURFACES | {"constant sky"}),
     ("metal, a point of light", DARK + POINT + METAL + OBJ,
      {"other lights", "paths", "lights met by bounces", "shading by materials' records"}),
-    ("one ray to many lights", "[settings]\nlight_choices = 1\n" + DARK + POINT * 13 + MATTE + OBJ, {"lights that are chosen"}),
+    ("one ray to many lights", DARK + POINT * 13 + MATTE + OBJ, {"lights that are chosen"}),
     ("textured", DARK + RECTANGLE + MAPPED + OBJ,
      {"rectangle lights", "normals or texture coordinates on vertices", "textures", "shading by materials' records"}),
     ("a smooth pattern", DARK + RECTANGLE + PATTERN + SMOOTH.replace('"matte"', '"m"'),
@@ -85,7 +85,7 @@ def png(width, height, rgba):
 def executed(program, valgrind, isa, folder, text):
     """Names of all functions that ran."""
     (folder / "scene.toml").write_text("[settings]\nsize = [12, 12]\nsamples = 1\nlight_samples = 1\nsky_samples = 1\n"
-                                       "bounces = 1\n[camera]\nposition = [1, 2, 4]\ntarget = [0, 0, 0]\n" + text)
+                                       "bounces = 1\nlight_choices = 1\n[camera]\nposition = [1, 2, 4]\ntarget = [0, 0, 0]\n" + text)
     out = folder / "callgrind.out"
     subprocess.run([valgrind, "--tool=callgrind", f"--callgrind-out-file={out}", program, "scene.toml", "--isa", isa,
                     "--arena", "16"], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
