@@ -11,6 +11,7 @@ import re
 from collections import defaultdict
 
 EVENTS = ("Ir", "Dr", "Dw")  # instructions, data read, data written
+MISSES = ("D1mr", "D1mw", "DLmr", "DLmw")  # of reads and writes, of the first and of the last level
 LIBRARY = re.compile(r"(__)?mem(set|cpy|move)(?![a-z])")
 SCOPE = re.compile(r"\bphase_scope\s+\w+\(phase_")
 ENTRY = re.compile(r"(\w+)\s*\([^{};]*\)\s*\{\s*phase_scope\s+\w+\(phase_(\w+)\)")
@@ -24,9 +25,10 @@ class Malformed(Exception):
 class Profile:
     """A file that callgrind wrote with --cache-sim=yes: costs of each function alone, and of its calls of others."""
 
-    def __init__(self, lines, name):
-        self.own = defaultdict(lambda: [0, 0, 0])
-        self.calls = defaultdict(lambda: [0, 0, 0])  # (caller, callee): all that the callee did, its own calls too
+    def __init__(self, lines, name, wanted=EVENTS):
+        self.wanted = wanted
+        self.own = defaultdict(lambda: [0] * len(wanted))
+        self.calls = defaultdict(lambda: [0] * len(wanted))  # (caller, callee): all that the callee did, its own calls too
         self.count = defaultdict(int)  # (caller, callee): how often
         self._names = {}
         columns, function, callee, called = None, None, None, False
@@ -35,7 +37,7 @@ class Profile:
             try:
                 if line.startswith("events:"):
                     events = line.split()[1:]
-                    columns = [events.index(e) for e in EVENTS]
+                    columns = [events.index(e) for e in wanted]
                 elif line.startswith("fn="):
                     function = self._name(line[3:])
                 elif line.startswith("cfn="):
@@ -101,10 +103,10 @@ class Kernels:
         for (caller, callee), cost in profile.calls.items():
             self._callers[callee][caller] = cost[0]
         self._parts = {}
-        self.by_kernel = defaultdict(lambda: [0.0, 0.0, 0.0])
+        self.by_kernel = defaultdict(lambda: [0.0] * len(profile.wanted))
         for function, cost in profile.own.items():
             for kernel, part in self.parts(function).items():
-                for i in range(3):
+                for i in range(len(profile.wanted)):
                     self.by_kernel[kernel][i] += part * cost[i]
 
     def parts(self, function, below=()):
@@ -134,12 +136,23 @@ class Kernels:
         return dict(out)
 
 
+def _by_kernel(path, isa, sources, wanted):
+    phase_of = entries(sources)
+    with open(path, encoding="utf-8", errors="replace") as file:
+        kernels = Kernels(Profile(file, path, wanted), isa, phase_of).by_kernel
+    if not kernels:
+        raise Malformed(f"{path}: no kernel of {isa} ran; count a build that has this target")
+    return sorted(kernels.items())
+
+
 def read_kernels(path, isa, sources):
     """{phase: {"instructions": n, "references": n}} of a callgrind file; `sources`: folder of the kernels. Throws
     Malformed, OSError."""
-    phase_of = entries(sources)
-    with open(path, encoding="utf-8", errors="replace") as file:
-        kernels = Kernels(Profile(file, path), isa, phase_of).by_kernel
-    if not kernels:
-        raise Malformed(f"{path}: no kernel of {isa} ran; count a build that has this target")
-    return {k: {"instructions": round(c[0]), "references": round(c[1] + c[2])} for k, c in sorted(kernels.items())}
+    return {k: {"instructions": round(c[0]), "references": round(c[1] + c[2])}
+            for k, c in _by_kernel(path, isa, sources, EVENTS)}
+
+
+def read_misses(path, isa, sources):
+    """{phase: {"references": n, "first": n, "last": n}}: data references and misses of both levels. Throws as read_kernels()."""
+    return {k: {"references": round(c[1] + c[2]), "first": round(c[3] + c[4]), "last": round(c[5] + c[6])}
+            for k, c in _by_kernel(path, isa, sources, EVENTS + MISSES)}

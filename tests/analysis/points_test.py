@@ -98,7 +98,7 @@ class Studies(unittest.TestCase):
             self.assertEqual(len(json.load(file)), 19)
         if "no plot" not in result.stderr:  # where there is nothing to draw with
             with open(os.path.join(self.path, "out", "simulated.svg"), encoding="utf-8") as file:
-                self.assertIn("who shares a tree", file.read())
+                self.assertTrue("one tree for all" in file.read())
 
         # Told anew without a run; another size is all that is missing; another program's points are others.
         again = self.study("simulated.py", *sizes)
