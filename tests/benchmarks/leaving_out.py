@@ -4,10 +4,10 @@
     tests/benchmarks/leaving_out.py
     tests/benchmarks/leaving_out.py --machine configs/machines/zen4-2c.toml configs/scenes/forest.toml -- --size 64x64
 
-Each scene (the four benchmark scenes, plain, textured and displaced, and the one of materials, where none is given) with the
-kernels that it needs, and with those that can do everything: the pictures must be the same, to the last bit. A table of what
-everything costs more: native processor time (the least of --runs), bytes built, and in the simulator instructions and lines from
-and to DRAM. What follows -- goes to each run, in place of --size 64x64 --spp 4. Exit code 1 if a picture differs.
+Each scene (the four benchmark scenes and the one of materials, where none is given) with the kernels that it needs, and with those
+that can do everything: the pictures must be the same, to the last bit. A table of what everything costs more: native processor
+time (the least of --runs), bytes built, and in the simulator instructions and lines from and to DRAM. What follows -- goes to
+each run, in place of --size 64x64 --spp 4. Exit code 1 if a picture differs.
 """
 import argparse
 import json
@@ -21,8 +21,7 @@ sys.path.insert(0, os.path.join(PROJECT, "analysis/sweep"))
 import simulation  # noqa: E402
 from simulation import Mistake  # noqa: E402
 
-SCENES = ("courtyard", "interior", "forest", "showcase", "materials", "courtyard-textured", "interior-textured", "forest-textured",
-          "showcase-textured", "showcase-displaced")
+SCENES = "courtyard", "interior", "forest", "showcase", "materials"
 FRAME = ["--size", "64x64", "--spp", "4"]
 
 
