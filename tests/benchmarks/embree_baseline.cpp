@@ -195,6 +195,8 @@ TEST(CoarseBaseline, DrawsTheTrianglesThatRazorDraws) {
     mesh.face_sizes = cube.face_sizes;
     mesh.face_vertices = cube.face_vertices;
     mesh.creases = cube.creases;
+    mesh.texcoords = cube.texcoords;
+    mesh.face_texcoords = cube.face_texcoords;
     mesh.edge_length = 0.3;
     scene.meshes.resize(2);
     scene.graph = {};

@@ -14,8 +14,7 @@ constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, tru
                                                      true, true, true, true, true},
                                               din = {true, true, false, true},
                                               lackey = {true, true, true, true}, plain = {true, true},
-                                              requests = {true},
-                                              drmemtrace = {true, true, false, true, true};
+                                              requests = {true}, drmemtrace = {true, true, false, true, true};
 
 // time, streams, size, sites, names, kinds
 constexpr Format table[] = {
