@@ -343,7 +343,8 @@ template <Features F, class Sampler> [[gnu::noinline]] inline bool render_meanwh
     c.counters = c.by_kind;
     c.stack = c.stack + spare_stack;
     c.packets = c.packets + spare_packets;
-    c.cuts = c.cuts + light_cut_floats;
+    if (branch(!is_null(c.cuts)))
+        c.cuts = c.cuts + light_cut_floats;
     tally(c.counters->meanwhile_runs, 1);
     render_run<F, Sampler>(c, run);
     return true;

@@ -223,7 +223,7 @@ TEST(Output, FailureLeavesTheOldFile) {
         const auto handler = std::signal(SIGXFSZ, SIG_IGN);
         const rlimit small{most, before.rlim_max};
         ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-        const std::string message = message_of([&] { write_image(folder / name, film, {}); });
+        const std::string message = message_of([&, file = folder / name] { write_image(file, film, {}); });
         ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
         std::signal(SIGXFSZ, handler);
         EXPECT_NE(message.find("cannot be written"), std::string::npos) << name << message;
