@@ -11,7 +11,8 @@ namespace razor {
 
 inline bool same_bits(const Plane& a, const Plane& b) {
     return a.ids == b.ids && a.values.size() == b.values.size() &&
-           std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
+           (a.values.empty() ||
+            std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0);
 }
 
 inline void expect_same_bits(const Film& film, const Film& expected, const std::string& what) {
