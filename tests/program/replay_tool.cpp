@@ -135,9 +135,8 @@ TEST_F(ReplayTool, TheErrorOfAnotherMachineIsSaid) {
         EXPECT_LT(misses, 0.2) << how;
     }
     // On its own machine a timed replay is near the run.
-    for (const nlohmann::json& c : json_of("a.rzt --timed --machine " + machine("tiny") + " --against a.json")
-                                       .at("against")
-                                       .at("counts"))
+    const nlohmann::json timed = json_of("a.rzt --timed --machine " + machine("tiny") + " --against a.json");
+    for (const nlohmann::json& c : timed.at("against").at("counts"))
         if ((c.at("of") == "l1" || c.at("of") == "l2") && c.at("counter") == "misses") {
             EXPECT_LT(c.at("error").get<double>(), 0.1) << c;
         }
