@@ -1,7 +1,7 @@
 // The report for programs.
-#include "sim/config/parameters.h"
 #include "sim/machine/derived.h"
 #include "sim/machine/energy.h"
+#include "sim/machine/json_parts.h"
 #include "sim/machine/limits.h"
 
 #include <fmt/core.h>
@@ -11,24 +11,6 @@ namespace sim {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-template <class Counters, class Rows> json counters(const Counters& c, const Rows& rows) {
-    json out = json::object();
-    for (const auto& row : rows)
-        out[row.name] = c.*row.count;
-    return out;
-}
-
-json configuration(const Config& config) {
-    json out = json::object();
-    for (const Parameter& p : parameters()) {
-        if (!applies(p, config))
-            continue;
-        std::size_t dot = p.key.find('.');
-        out[p.key.substr(0, dot)][p.key.substr(dot + 1)] = json::parse(print_value(p, config));
-    }
-    return out;
-}
 
 json stack(const Report& r, const Stack& s) {
     json out = json::object();
@@ -153,7 +135,7 @@ json instructions_by_class(const Report& r) {
 }
 
 json network(const Report& r) {
-    json out = counters(r.network.counters, network_counters);
+    json out = json_of_counters(r.network.counters, network_counters);
     const LinkUse& most = r.network.busiest();
     out["busiest_link"] = most.link;
     out["busiest_utilisation"] = ratio(most.flits, r.drained);
@@ -176,7 +158,7 @@ json energy(const Report& r) {
 
 std::string print_json(const Report& r, bool with_host) {
     json out;
-    out["machine"] = configuration(r.config);
+    out["machine"] = json_of_configuration(r.config);
     out["mode"] = r.config.sim.mode;
     out["workers"] = r.workers;
     out["warm_up_cycles"] = r.warm_up;
@@ -188,7 +170,7 @@ std::string print_json(const Report& r, bool with_host) {
     if (r.interval != 0)
         out["intervals"] = {{"cycles", r.interval}, {"rows", r.intervals.size()}};
     out["coherence_of_plain_data"] = r.config.coherence.kept() ? r.config.coherence.plain : "not modelled";
-    out["core"] = counters(r.core, core_counters);
+    out["core"] = json_of_counters(r.core, core_counters);
     out["instructions_by_class"] = instructions_by_class(r);
     out["stack"] = stack(r, r.stack());
     out["cores"] = cores(r);
@@ -196,28 +178,28 @@ std::string print_json(const Report& r, bool with_host) {
         out["shared_unit_cycles"] = r.shared_unit_cycles;
     out["phases"] = phases(r);
     out["kinds"] = kinds(r);
-    out["l1"] = counters(r.l1_total(), cache_counters);
+    out["l1"] = json_of_counters(r.l1_total(), cache_counters);
     for (const CacheCounters& c : r.l1)
-        out["l1_by_core"].push_back(counters(c, cache_counters));
+        out["l1_by_core"].push_back(json_of_counters(c, cache_counters));
     for (unsigned level = 1; level < r.config.cache_levels(); ++level) {
         const std::string name = fmt::format("l{}", level + 1);
-        out[name] = counters(r.cache_total(level), cache_counters);
+        out[name] = json_of_counters(r.cache_total(level), cache_counters);
         const char* by = level == 1 && r.config.cores_sharing(1) == r.config.chip.cores ? "tile" : "cache";
         for (const CacheCounters& c : r.caches(level))
-            out[fmt::format("{}_by_{}", name, by)].push_back(counters(c, cache_counters));
+            out[fmt::format("{}_by_{}", name, by)].push_back(json_of_counters(c, cache_counters));
     }
     if (!r.tlb.empty())
-        out["tlb"] = counters(r.tlb_total(), tlb_counters);
+        out["tlb"] = json_of_counters(r.tlb_total(), tlb_counters);
     for (const TlbCounters& c : r.tlb)
-        out["tlb_by_core"].push_back(counters(c, tlb_counters));
+        out["tlb_by_core"].push_back(json_of_counters(c, tlb_counters));
     if (r.config.coherence.kept())
-        out["coherence"] = counters(r.coherence, coherence_counters);
+        out["coherence"] = json_of_counters(r.coherence, coherence_counters);
     if (!r.network.ideal())
         out["network"] = network(r);
-    out["memory"] = counters(r.memory, memory_counters);
+    out["memory"] = json_of_counters(r.memory, memory_counters);
     out["memory"]["last_clock"] = r.memory.last_clock;
     for (const MemoryCounters& c : r.memory_by_rank)
-        out["memory_by_rank"].push_back(counters(c, memory_counters));
+        out["memory_by_rank"].push_back(json_of_counters(c, memory_counters));
     for (const Bandwidth& b : bandwidths(r))
         out["bandwidth"][b.level] = {
             {"achieved_gb_s", b.achieved}, {"peak_gb_s", b.peak}, {"utilisation", b.utilisation()}};

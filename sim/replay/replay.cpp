@@ -115,6 +115,15 @@ inline cycle Replay::arrive(std::uint64_t time) {
     return std::max(t, machine_.earliest());
 }
 
+inline void Replay::perform(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
+                            std::uint32_t bytes, std::uint32_t accesses, cycle t) {
+    const Answer answer = machine_.perform(a, stream, address, bytes, accesses, t);
+    if (answer.refused) [[unlikely]]
+        insist(a, stream, address, bytes, accesses, t, answer);
+    else if (listener_ != nullptr) [[unlikely]]
+        tell(a, stream, address, bytes, accesses, t, answer);
+}
+
 /// References of a stream, one after the other.
 void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end) {
     const bool compacts = machine_.by_reference();
@@ -144,11 +153,7 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         }
         result_.references += n;
         const auto bytes = static_cast<std::uint32_t>(high - low + 1);
-        const Answer answer = machine_.perform(a, stream, low, bytes, accesses, t);
-        if (answer.refused) [[unlikely]]
-            insist(a, stream, low, bytes, accesses, t, answer);
-        else if (listener_ != nullptr) [[unlikely]]
-            tell(a, stream, low, bytes, accesses, t, answer);
+        perform(a, stream, low, bytes, accesses, t);
     }
 }
 
@@ -179,11 +184,7 @@ void Replay::touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t lo
     if (a.what <= ReplayAction::What::write && low >> shift != high >> shift) [[unlikely]]
         return touch_lines(a, stream, low, high, t);
     const auto bytes = static_cast<std::uint32_t>(high - low + 1);
-    const Answer answer = machine_.perform(a, stream, low, bytes, accesses, t);
-    if (answer.refused) [[unlikely]]
-        insist(a, stream, low, bytes, accesses, t, answer);
-    else if (listener_ != nullptr) [[unlikely]]
-        tell(a, stream, low, bytes, accesses, t, answer);
+    perform(a, stream, low, bytes, accesses, t);
 }
 
 /// An access of each line.
@@ -194,11 +195,7 @@ void Replay::touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint6
     for (std::uint64_t at = low; at <= high; at = (at | (line_bytes - 1)) + 1) {
         const auto bytes = static_cast<std::uint32_t>(std::min(high, at | (line_bytes - 1)) - at + 1);
         t = std::max(t, machine_.earliest());
-        const Answer answer = machine_.perform(each, stream, at, bytes, 1, t);
-        if (answer.refused)
-            insist(each, stream, at, bytes, 1, t, answer);
-        else if (listener_ != nullptr)
-            tell(each, stream, at, bytes, 1, t, answer);
+        perform(each, stream, at, bytes, 1, t);
         if (each.part == traces::Part::operation)
             each.part = traces::Part::access;
     }

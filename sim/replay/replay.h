@@ -90,6 +90,8 @@ private:
                std::uint32_t accesses, cycle t);
     void touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
                      cycle t);
+    inline void perform(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
+                        std::uint32_t bytes, std::uint32_t accesses, cycle t);
     void insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
                 std::uint32_t accesses, cycle t, const Answer& refused);
     cycle arrive(std::uint64_t time);

@@ -1,6 +1,6 @@
 #include "sim/replay/replay_report.h"
 
-#include "sim/config/parameters.h"
+#include "sim/machine/json_parts.h"
 #include "traces/error.h"
 
 #include <fmt/format.h>
@@ -14,23 +14,6 @@ namespace sim {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-template <class Counters, class Rows> json counters(const Counters& c, const Rows& rows) {
-    json out = json::object();
-    for (const auto& row : rows)
-        out[row.name] = c.*row.count;
-    return out;
-}
-
-json configuration(const Config& config) {
-    json out = json::object();
-    for (const Parameter& p : parameters())
-        if (applies(p, config)) {
-            const std::size_t dot = p.key.find('.');
-            out[p.key.substr(0, dot)][p.key.substr(dot + 1)] = json::parse(print_value(p, config));
-        }
-    return out;
-}
 
 /// Levels of what lies there are in no trace: rows are of all of them.
 json traffic(const Report& r) {
@@ -52,24 +35,24 @@ json counts(const Report& r) {
     json out = json::object();
     for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
         const std::string name = fmt::format("l{}", level + 1);
-        out[name] = counters(r.cache_total(level), cache_counters);
+        out[name] = json_of_counters(r.cache_total(level), cache_counters);
         const char* by = level == 0                                                       ? "core"
                          : level == 1 && r.config.cores_sharing(1) == r.config.chip.cores ? "tile"
                                                                                           : "cache";
         for (const CacheCounters& c : r.caches(level))
-            out[fmt::format("{}_by_{}", name, by)].push_back(counters(c, cache_counters));
+            out[fmt::format("{}_by_{}", name, by)].push_back(json_of_counters(c, cache_counters));
     }
     // The L1s' ports are busy with what the cores make of their accesses.
     out["l1"].erase("busy_cycles");
     for (json& c : out["l1_by_core"])
         c.erase("busy_cycles");
     if (r.config.coherence.kept())
-        out["coherence"] = counters(r.coherence, coherence_counters);
+        out["coherence"] = json_of_counters(r.coherence, coherence_counters);
     if (!r.network.ideal())
-        out["network"] = counters(r.network.counters, network_counters);
-    out["memory"] = counters(r.memory, memory_counters);
+        out["network"] = json_of_counters(r.network.counters, network_counters);
+    out["memory"] = json_of_counters(r.memory, memory_counters);
     for (const MemoryCounters& c : r.memory_by_rank)
-        out["memory_by_rank"].push_back(counters(c, memory_counters));
+        out["memory_by_rank"].push_back(json_of_counters(c, memory_counters));
     return out;
 }
 
@@ -111,7 +94,7 @@ void compare_traffic(const Report& r, const json& run, std::vector<Comparison>& 
 
 std::string print_replay(const ReplayResult& result) {
     const Report& r = result.report;
-    json out = {{"machine", configuration(r.config)},
+    json out = {{"machine", json_of_configuration(r.config)},
                 {"cycles", r.cycles},
                 {"window_cycles", r.window},
                 {"replay",

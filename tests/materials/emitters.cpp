@@ -2,6 +2,7 @@
 // whatever the surface, the level of detail and the way it is placed.
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
+#include "tests/materials/parts.h"
 #include "tests/materials/skies.h"
 
 #include "razor/frame/emitters.h"
@@ -20,37 +21,6 @@ namespace razor::test {
 namespace {
 
 using glm::dvec3;
-
-/// Mean of each of 4 x 4 parts of the picture, over seeds, and the variance of that mean.
-struct Parts {
-    std::vector<dvec3> mean = std::vector<dvec3>(16, dvec3(0)), variance = mean;
-};
-Parts parts_of(Scene scene, int seeds) {
-    Parts all;
-    std::vector<dvec3> squares(16, dvec3(0));
-    for (int seed = 0; seed < seeds; ++seed) {
-        scene.settings.seed = seed;
-        RenderOptions options;
-        options.threads = 2;
-        const Film film = render_native(scene, options).film;
-        std::vector<dvec3> one(16, dvec3(0));
-        const int width = scene.settings.width, height = scene.settings.height;
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                const auto p = static_cast<std::size_t>(y * width + x);
-                one[static_cast<std::size_t>(y * 4 / height * 4 + x * 4 / width)] +=
-                    dvec3(film.find("R")->values[p], film.find("G")->values[p], film.find("B")->values[p]) *
-                    (16.0 / (width * height));
-            }
-        for (std::size_t k = 0; k < 16; ++k) {
-            all.mean[k] += one[k] / double(seeds);
-            squares[k] += one[k] * one[k] / double(seeds);
-        }
-    }
-    for (std::size_t k = 0; k < 16; ++k)
-        all.variance[k] = (squares[k] - all.mean[k] * all.mean[k]) / double(seeds - 1);
-    return all;
-}
 
 /// A glowing mesh over a floor that is seen from above, the mesh not.
 Scene glowing(const Mesh& mesh, Lod lod) {

@@ -1,6 +1,7 @@
 // Lights that are chosen from give what all of them give that have a ray each, in any picture, at any number
 // of choices; their tree holds them all.
 #include "tests/kernels/targets.h"
+#include "tests/materials/parts.h"
 #include "tests/materials/room.h"
 
 #include "razor/frame/frame.h"
@@ -44,37 +45,6 @@ std::vector<Light> lights(int count, unsigned seed) {
         l.radiance = glm::vec3(power * dvec3(next(), next(), next()) * (small ? 0.1 : 1.5));
         all.push_back(l);
     }
-    return all;
-}
-
-struct Parts {
-    std::vector<dvec3> mean = std::vector<dvec3>(16, dvec3(0)), variance = mean;
-};
-Parts parts_of(Scene scene, int seeds, const std::string& target) {
-    Parts all;
-    std::vector<dvec3> squares(16, dvec3(0));
-    for (int seed = 0; seed < seeds; ++seed) {
-        scene.settings.seed = seed;
-        RenderOptions options;
-        options.threads = 2;
-        options.isa = target;
-        const Film film = render_native(scene, options).film;
-        std::vector<dvec3> one(16, dvec3(0));
-        const int width = scene.settings.width, height = scene.settings.height;
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                const auto p = static_cast<std::size_t>(y * width + x);
-                one[static_cast<std::size_t>(y * 4 / height * 4 + x * 4 / width)] +=
-                    dvec3(film.find("R")->values[p], film.find("G")->values[p], film.find("B")->values[p]) *
-                    (16.0 / (width * height));
-            }
-        for (std::size_t k = 0; k < 16; ++k) {
-            all.mean[k] += one[k] / double(seeds);
-            squares[k] += one[k] * one[k] / double(seeds);
-        }
-    }
-    for (std::size_t k = 0; k < 16; ++k)
-        all.variance[k] = (squares[k] - all.mean[k] * all.mean[k]) / double(seeds - 1);
     return all;
 }
 
