@@ -12,7 +12,7 @@ struct Bounce {
     Rays rays;      // active where light goes on
     vvec carried;   // what of the radiance from there goes to the viewer
     vfloat density; // of that direction among all of its lobe, times the lobe's share
-    vmask diffuse;  // in all directions: lights and sky are sampled instead
+    vmask diffuse;  // in all directions: a sky without a map, or without samples, is not for them
 };
 
 /// What is chosen of the base, by a normal: a direction, its lobe's factor and density.
@@ -192,16 +192,15 @@ template <class Response>
     Bounce out;
     out.diffuse = !(of_base | of_coat);
     out.diffuse = out.diffuse & vmask(onward.diffuse); // matte surfaces have no other lobe to choose
-    vfloat rest = vfloat(1.0F) - g.coat_share;
-    rest = rest - g.base_share;
-    out.diffuse = out.diffuse & (rest > vfloat(1.0e-6F));
+    vfloat rest = scattered_share(g);
+    out.diffuse = out.diffuse & (rest > vfloat(0.0F));
     if (branch(any(s.hit & out.diffuse))) {
         vfloat cosine;
         vvec direction = sample_cosine(s.shading, square, cosine);
         vvec factor = scattered(g, s, colours, direction, cosine, rest, s.hit);
         way.direction = select(out.diffuse, direction, way.direction);
         way.factor = select(out.diffuse, factor, way.factor);
-        way.density = select(out.diffuse, cosine * 0.318309886183790672F, way.density);
+        way.density = select(out.diffuse, scattered_density(g, cosine), way.density);
         way.passes = way.passes & !out.diffuse;
     }
     vmask chosen = of_base | of_coat;

@@ -178,7 +178,6 @@ inline vfloat left_of_emitters(const Context& c, const Surface& s, const Beyond&
     vfloat of_light = by_angle * vfloat(to_float(samples));
     vfloat share = vfloat(1.0F) - power_share(of_light, bounce.density);
     vmask light = density_of_light > vfloat(0.0F);
-    share = select(bounce.diffuse, vfloat(0.0F), share);
     return select(light, share, vfloat(1.0F));
 }
 

@@ -42,6 +42,7 @@ struct Glossy {
     vfloat coat;                   // weight
     vfloat base_share, coat_share; // of bounces, that these lobes take; the rest goes in all directions
     vfloat through;                // weight of transmission against reflection, before Fresnel
+    sbool scatters = false;        // whether bounces take that rest
 
     Glossy permuted(const vint& from) const {
         Glossy p;
@@ -59,6 +60,7 @@ struct Glossy {
         p.base_share = permute(base_share, from);
         p.coat_share = permute(coat_share, from);
         p.through = permute(through, from);
+        p.scatters = scatters;
         return p;
     }
     template <class Domain>
@@ -134,6 +136,17 @@ inline vvec half_way(const Glossy& g, const LightRays& l) {
     return normalise(sum, g.toward);
 }
 
+/// The share of bounces that go in all directions; none where that is too little to be chosen.
+inline vfloat scattered_share(const Glossy& g) {
+    vfloat rest = vfloat(1.0F) - g.coat_share;
+    rest = rest - g.base_share;
+    return select(rest > vfloat(1.0e-6F), rest, vfloat(0.0F));
+}
+/// The density of these, by that cosine of their direction with the normal.
+inline vfloat scattered_density(const Glossy& g, const vfloat& cosine) {
+    return cosine * (scattered_share(g) * 0.318309886183790672F);
+}
+
 /// Bounces in the base's reflection lobe, of all that go by that normal.
 inline vfloat reflection_share(const Glossy& g, const vfloat& graze) {
     vfloat reflected = dielectric_reflection(g, graze);
@@ -141,6 +154,16 @@ inline vfloat reflection_share(const Glossy& g, const vfloat& graze) {
     vfloat all = max(reflected + passed, 1.0e-12F);
     vmask opaque = g.through <= vfloat(0.0F);
     return select(opaque, vfloat(1.0F), reflected / all);
+}
+
+/// By solid angle, of all samples of the light together; enormous where no bounce can meet it.
+template <class Domain>
+inline vfloat density_of_light(const LightRays& l, const Domain& over, sint samples,
+                               const vfloat& cos_light) {
+    vfloat domain = over.load();
+    vfloat spread = max(domain * l.weight, 1.0e-30F);
+    vfloat density = (cos_light * vfloat(to_float(samples))) / spread;
+    return select(domain > vfloat(0.0F), density, vfloat(delta_density * 1.0e12F));
 }
 
 template <class Domain>
@@ -152,11 +175,12 @@ inline void Glossy::reflect(const Surface& s, const LightRays& l, const Domain& 
     vfloat sine_square = dot(across, across);
     vfloat cos_light = max(dot(s.shading, l.rays.direction), 1.0e-9F);
     vfloat graze = grazing(dot(toward, h), inner);
-    vfloat domain = over.load();
-    vfloat spread = max(domain * l.weight, 1.0e-30F);
-    vfloat light_density = (cos_light * vfloat(to_float(samples))) / spread;
-    light_density = select(domain > vfloat(0.0F), light_density, vfloat(delta_density * 1.0e12F));
+    vfloat light_density = density_of_light(l, over, samples, cos_light);
     part[lobe_diffuse] = l.weight * kept_below(*this, cos_light);
+    if (branch(scatters)) {
+        vfloat density = scattered_density(*this, cos_light);
+        part[lobe_diffuse] = part[lobe_diffuse] * power_share(light_density, density);
+    }
     vfloat share = base_share * reflection_share(*this, graze);
     vfloat base =
         lobe_reflection(*this, alpha, base_norm, share, cos_half, sine_square, cos_light, light_density);

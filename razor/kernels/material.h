@@ -100,6 +100,7 @@ inline Glossy find_lobes(const Context& c, Surface& s, const Beyond& b, const On
     vfloat per_share = reciprocal(all);
     per_share = select(vmask(onward.at_all), per_share, vfloat(0.0F));
     g.coat_share = on_top * per_share;
+    g.scatters = onward.diffuse;
     g.base_share = base * per_share;
     return g;
 }

@@ -157,7 +157,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
                 sint stated = load(field(c.frame, &FrameHeader::sky_samples));
                 sint fewer = min(stated, sint(1));
                 sint taken = select(n > 1, fewer, stated);
-                vmask sees = open & !bounce.diffuse;
+                vmask sees = open & (!bounce.diffuse | vmask(stated > 0));
                 found = select(sees, see_mapped_sky(c, map, r, bounce.density, taken, sees), black);
             }
         }
@@ -169,7 +169,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
                 sint parts = select(n > 1, few, choices);
                 met = met + meet_chosen(c, r, end, bounce.density, before, parts);
             }
-            found = found + select(bounce.diffuse, black, met);
+            found = found + met;
         }
         sums.beauty = sums.beauty + times(found, carried);
         if (branch(none(hit)))

@@ -113,6 +113,12 @@ inline void Cloth::reflect(const Surface& s, const LightRays& l, const Domain& o
     for (int k = 0; k < lobe_count; ++k)
         part[k] = k == lobe_coat ? own[k] : own[k] * top.kept;
     part[lobe_sheen] = l.weight * top.reflected;
+    if (branch(scatters)) {
+        cosine = max(cosine, 1.0e-9F);
+        vfloat density = scattered_density(*this, cosine);
+        vfloat of_light = density_of_light(l, over, samples, cosine);
+        part[lobe_sheen] = part[lobe_sheen] * power_share(of_light, density);
+    }
 }
 
 inline void Cloth::reflect_sky(const Surface& s, const LightRays& l, vfloat (&part)[lobes]) const {
