@@ -19,4 +19,16 @@ struct alignas(line_bytes) EmitterRecord {
 };
 static_assert(sizeof(EmitterRecord) == line_bytes);
 
+/// Triangles of consecutive patches of an instance, which are chosen together: a leaf of the emitters' tree.
+struct alignas(32) EmitterGroup {
+    std::int32_t first_patch; // the number that names it; groups are in order of these
+    std::int32_t first;       // of its triangles
+    std::int32_t count;
+    std::int32_t sums; // word of FrameHeader::emitter_sums
+    std::int32_t leaf; // node of FrameHeader::emitter_nodes
+    float chance;      // what it is of all emitters, by area and radiance
+    std::int32_t padding[2];
+};
+static_assert(sizeof(EmitterGroup) == 32);
+
 } // namespace razor

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace razor {
 
@@ -52,6 +53,7 @@ Emitters::Emitters(const std::vector<Mesh>& meshes, const std::vector<Topology>&
     for (const dvec3& e : emitted_)
         bright_.push_back((e.x + e.y + e.z) / 3);
     makers_.resize(meshes.size());
+    group_patches(instances);
     for (;; steps_ /= 2) {
         count_ = 0;
         for (const Instance& i : instances)
@@ -66,6 +68,19 @@ Emitters::Emitters(const std::vector<Mesh>& meshes, const std::vector<Topology>&
 }
 
 Emitters::~Emitters() = default;
+
+void Emitters::group_patches(const std::vector<Instance>& instances) {
+    std::vector<std::size_t> lights; // patches of each instance
+    for (const Instance& i : instances) {
+        const std::vector<PatchRecord>& all = topologies_[static_cast<std::size_t>(i.mesh)].patches;
+        lights.push_back(static_cast<std::size_t>(
+            std::count_if(all.begin(), all.end(), [&](const PatchRecord& p) { return is_light(i, p); })));
+    }
+    const std::size_t all = std::accumulate(lights.begin(), lights.end(), std::size_t{0});
+    patches_a_group_ = std::max<std::size_t>(1, (all + most_emitter_groups - 1) / most_emitter_groups);
+    for (const std::size_t n : lights)
+        groups_ += (n + patches_a_group_ - 1) / patches_a_group_;
+}
 
 bool Emitters::is_light(const Instance& i, const PatchRecord& p) const {
     const int material =
@@ -127,21 +142,33 @@ Emitters::Grid Emitters::grid_of(const Mesh& mesh, std::size_t m, const PatchRec
     return g;
 }
 
-EmitterTables Emitters::tabulate(const Scene& scene, const SceneGeometry& geometry) {
+EmitterTables Emitters::tabulate(const Scene& scene, const SceneGeometry& geometry,
+                                 const std::vector<std::int32_t>& first_patches) {
     EmitterTables t;
     std::vector<double> power; // of each triangle
-    std::vector<std::size_t> material_of;
-    double all = 0;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n) {
         const Instance& i = geometry.instances[n];
         const auto m = static_cast<std::size_t>(i.mesh);
         const bool mirrored = glm::determinant(i.linear) < 0;
         const dvec3 at = dvec3(i.origin) + dvec3(i.offset) - i.linear * geometry.mesh_origins[m];
-        for (const PatchRecord& p : topologies_[m].patches) {
+        const std::vector<PatchRecord>& patches = topologies_[m].patches;
+        std::size_t in_group = most_emitters; // of patches; full
+        for (std::size_t k = 0; k < patches.size(); ++k) {
+            const PatchRecord& p = patches[k];
             if (!is_light(i, p))
                 continue;
+            if (in_group == most_emitters || (in_group >= patches_a_group_ && t.bounds.back().power > 0)) {
+                EmitterGroup group{};
+                group.first_patch = first_patches[n] + static_cast<std::int32_t>(k);
+                group.first = static_cast<std::int32_t>(t.records.size());
+                t.groups.push_back(group);
+                t.bounds.emplace_back();
+                in_group = 0;
+            }
+            ++in_group;
             const auto material = static_cast<std::size_t>(
                 i.material >= 0 ? i.material : meshes_[m].face_materials[static_cast<std::size_t>(p.face)]);
+            const bool one_sided = is_one_sided(scene.materials[material]);
             Grid g = grid_of(scene.meshes[m], m, p);
             for (dvec3& point : g.points)
                 point = i.linear * point + at;
@@ -150,18 +177,28 @@ EmitterTables Emitters::tabulate(const Scene& scene, const SceneGeometry& geomet
                                              glm::length(g.points[side - 1] - g.points[side * (side - 1)]));
             const auto add = [&](const dvec3& a, const dvec3& b, const dvec3& c) {
                 EmitterRecord r{};
+                const dvec3 u = (mirrored ? c : b) - a, v = (mirrored ? b : c) - a;
                 put(r.corner, a);
-                put(r.edge_u, (mirrored ? c : b) - a);
-                put(r.edge_v, (mirrored ? b : c) - a);
+                put(r.edge_u, u);
+                put(r.edge_v, v);
                 r.margin = static_cast<float>(g.steps > 1 ? diagonal / (4 * g.steps) : 0);
                 r.instance = static_cast<std::int32_t>(n);
                 r.material = static_cast<std::int32_t>(material);
-                const double area = glm::length(glm::cross(b - a, c - a)) / 2;
+                const dvec3 across = glm::cross(u, v);
+                const double area = glm::length(across) / 2;
                 t.records.push_back(r);
                 t.area += area;
                 power.push_back(area * bright_[material]);
-                material_of.push_back(material);
-                all += power.back();
+                if (!(power.back() > 0))
+                    return;
+                LightBounds bounds;
+                for (const dvec3& corner : {a, b, c})
+                    bounds.box.add(corner);
+                if (one_sided)
+                    bounds.normals = {glm::normalize(across), 0};
+                bounds.emission = std::numbers::pi / 2;
+                bounds.power = power.back();
+                t.bounds.back().add(bounds);
             };
             for (std::size_t v = 0; v + 1 < side; ++v)
                 for (std::size_t u = 0; u + 1 < side; ++u) {
@@ -173,26 +210,46 @@ EmitterTables Emitters::tabulate(const Scene& scene, const SceneGeometry& geomet
                 }
         }
     }
+    set_chances(power, t);
+    return t;
+}
+
+/// `power`: of each triangle.
+void Emitters::set_chances(const std::vector<double>& power, EmitterTables& t) const {
     t.density.assign(bright_.size(), 0.0F);
+    const double all = std::accumulate(power.begin(), power.end(), 0.0);
     if (!(all > 0)) {
         t.records.clear();
+        t.groups.clear();
+        t.bounds.clear();
         t.area = 0;
-        return t;
+        return;
     }
     for (std::size_t m = 0; m < bright_.size(); ++m)
         t.density[m] = static_cast<float>(bright_[m] / all);
-    double sum = 0;
-    t.sums.push_back(0);
-    for (std::size_t k = 0; k < t.records.size(); ++k) {
-        sum += power[k];
-        t.sums.push_back(static_cast<float>(std::min(sum / all, 1.0)));
-        EmitterRecord& r = t.records[k];
-        const double domain = all / bright_[material_of[k]];
+    for (EmitterRecord& r : t.records) {
+        const auto material = static_cast<std::size_t>(r.material);
+        const double domain = all / bright_[material];
         r.domain = static_cast<float>(domain);
-        put(r.radiance, emitted_[material_of[k]] * (domain / std::numbers::pi));
+        put(r.radiance, emitted_[material] * (domain / std::numbers::pi));
     }
-    t.sums.back() = 1;
-    return t;
+    for (std::size_t g = 0; g < t.groups.size(); ++g) {
+        EmitterGroup& group = t.groups[g];
+        const auto first = static_cast<std::size_t>(group.first);
+        const std::size_t end =
+            g + 1 < t.groups.size() ? static_cast<std::size_t>(t.groups[g + 1].first) : t.records.size();
+        const double own = t.bounds[g].power;
+        group.count = static_cast<std::int32_t>(end - first);
+        group.sums = static_cast<std::int32_t>(t.sums.size());
+        group.chance = static_cast<float>(own / all);
+        double sum = 0;
+        t.sums.push_back(0);
+        for (std::size_t k = first; k < end; ++k) {
+            sum += power[k];
+            t.sums.push_back(own > 0 ? static_cast<float>(std::min(sum / own, 1.0)) : 1.0F);
+        }
+        t.sums.back() = 1;
+    }
 }
 
 } // namespace razor

@@ -31,6 +31,11 @@ bool worth_choosing(std::size_t lights, const Settings& s) {
     return s.light_choices > 0 && lights > lights_a_choice * static_cast<std::size_t>(s.light_choices);
 }
 
+/// The largest power of two below a number of intervals: see find_interval() in razor/kernels/sky_map.h.
+std::int32_t largest_step(std::size_t count) {
+    return count < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(count - 1));
+}
+
 } // namespace
 
 void Frame::Impl::place_lights(const Scene& scene) {
@@ -40,10 +45,12 @@ void Frame::Impl::place_lights(const Scene& scene) {
     if (chooses_lights) {
         header->chosen_lights.set(region<LightRecord>("scene graph", -1, most_lights));
         header->light_nodes.set(region<LightNode>("scene graph", -1, 2 * most_lights));
+    }
+    place_emitters(scene);
+    if (chooses_lights || emitters)
         for (int w = 0; w < options.workers; ++w)
             header->workers.get()[w].cuts.set(
                 coloured<float>("packets", w, 2 * light_cut_floats, colour_cuts));
-    }
 }
 
 std::vector<bool> Frame::Impl::choose_lights(const Scene& scene) {
@@ -52,18 +59,20 @@ std::vector<bool> Frame::Impl::choose_lights(const Scene& scene) {
         return chosen;
     Settings once = scene.settings;
     once.light_samples = 1;
-    std::vector<Light> lights;
+    std::vector<LightBounds> lights;
     std::vector<LightRecord> records;
     for (std::size_t l = 0; l < scene.lights.size(); ++l)
         if (std::optional<LightRecord> record = light_record(scene.lights[l], once, geometry.origin);
             record && has_place(scene.lights[l])) {
-            lights.push_back(scene.lights[l]);
+            lights.push_back(bounds_of(scene.lights[l], geometry.origin));
             records.push_back(*record);
             chosen[l] = true;
         }
     if (!worth_choosing(lights.size(), scene.settings))
         return std::vector<bool>(scene.lights.size(), false);
-    const std::vector<LightNode> nodes = light_tree(lights, geometry.origin);
+    const std::vector<LightNode> nodes = light_tree(lights);
+    if (nodes.empty())
+        return std::vector<bool>(scene.lights.size(), false);
     std::copy(records.begin(), records.end(), header->chosen_lights.get());
     std::copy(nodes.begin(), nodes.end(), header->light_nodes.get());
     header->light_node_count = static_cast<std::int32_t>(nodes.size());
@@ -104,7 +113,9 @@ void Frame::Impl::place_emitters(const Scene& scene) {
         return;
     }
     header->emitters.set(region<EmitterRecord>("scene graph", -1, emitters->count()));
-    header->emitter_sums.set(region<float>("scene graph", -1, emitters->count() + 1));
+    header->emitter_groups.set(region<EmitterGroup>("scene graph", -1, emitters->groups()));
+    header->emitter_nodes.set(region<LightNode>("scene graph", -1, 2 * emitters->groups()));
+    header->emitter_sums.set(region<float>("scene graph", -1, emitters->count() + emitters->groups()));
     header->emitter_maps = mapped ? 1 : 0;
 }
 
@@ -113,12 +124,24 @@ void Frame::Impl::fill_emitters(const Scene& scene) {
         return;
     FrameHeader& h = *header;
     const int samples = scene.settings.light_samples;
-    const EmitterTables t = samples > 0 ? emitters->tabulate(scene, geometry) : EmitterTables{};
+    std::vector<std::int32_t> first_patches;
+    for (std::size_t n = 0; n < geometry.instances.size(); ++n)
+        first_patches.push_back(h.instances.get()[n].first_patch);
+    EmitterTables t = samples > 0 ? emitters->tabulate(scene, geometry, first_patches) : EmitterTables{};
+    const std::vector<LightNode> nodes = light_tree(t.bounds);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (nodes[n].second < 0)
+            t.groups[static_cast<std::size_t>(-1 - nodes[n].second)].leaf = static_cast<std::int32_t>(n);
     std::copy(t.records.begin(), t.records.end(), h.emitters.get());
+    std::copy(t.groups.begin(), t.groups.end(), h.emitter_groups.get());
+    std::copy(nodes.begin(), nodes.end(), h.emitter_nodes.get());
     std::copy(t.sums.begin(), t.sums.end(), h.emitter_sums.get());
     h.emitter_count = static_cast<std::int32_t>(t.records.size());
-    h.emitter_step =
-        t.records.size() < 2 ? 0 : static_cast<std::int32_t>(std::bit_floor(t.records.size() - 1));
+    h.emitter_group_count = static_cast<std::int32_t>(t.groups.size());
+    h.emitter_group_step = largest_step(t.groups.size());
+    h.emitter_step = 0;
+    for (const EmitterGroup& g : t.groups)
+        h.emitter_step = std::max(h.emitter_step, largest_step(static_cast<std::size_t>(g.count)));
     h.emitter_samples = samples;
     h.emitter_spacing = sample_spacing(scene.settings, t.area, samples);
     for (std::size_t m = 0; m < scene.materials.size(); ++m)

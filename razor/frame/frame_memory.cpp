@@ -326,7 +326,6 @@ void Frame::Impl::place_view(const Scene& scene) {
     if (options.tile_passes)
         tile_passes = region<TilePass>("frame buffer", -1, static_cast<std::size_t>(screen_tiles(s)));
     place_lights(scene);
-    place_emitters(scene);
     fill_view(scene);
 }
 

@@ -524,12 +524,16 @@ struct FrameHeader {
     std::int32_t light_node_count;
     std::int32_t light_choices;       // rays a hit to lights that are chosen; 0: each has its own
     isa::ref<EmitterRecord> emitters; // triangles of surfaces that are lights
-    isa::ref<float> emitter_sums;     // of their chances: before each, and at the end
+    isa::ref<EmitterGroup> emitter_groups;
+    isa::ref<LightNode> emitter_nodes; // over groups
+    isa::ref<float> emitter_sums;      // of chances in each group: before each triangle, and at the end
     std::int32_t emitter_count;
-    std::int32_t emitter_step;    // the largest power of two below it
-    std::int32_t emitter_samples; // rays to all of them together, a hit
-    std::int32_t emitter_maps;    // not 0: some of them have maps of what they emit
-    float emitter_spacing;        // see growth_to_area(), times edge_pixels
+    std::int32_t emitter_group_count;
+    std::int32_t emitter_group_step; // the largest power of two below it
+    std::int32_t emitter_step;       // no less than the largest power of two below any group's count
+    std::int32_t emitter_samples;    // rays to all of them together, a hit
+    std::int32_t emitter_maps;       // not 0: some of them have maps of what they emit
+    float emitter_spacing;           // see growth_to_area(), times edge_pixels
     isa::ref<float>
         sheen_albedo; // sheen_steps a kind of sheen (razor/frame/sheen_albedo.h); first that of none
 };

@@ -1,10 +1,8 @@
 #include "razor/frame/light_tree.h"
 
 #include "razor/frame/light_records.h"
-#include "razor/scene/graph/box.h"
 
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,96 +16,14 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-/// Directions within an angle of an axis.
-struct Cone {
-    dvec3 axis{0, 0, 1};
-    double angle = pi;
-};
-
-/// The smallest that holds both, if they are not all directions.
-Cone unite(const Cone& a, const Cone& b) {
-    const double between = std::atan2(glm::length(glm::cross(a.axis, b.axis)), glm::dot(a.axis, b.axis));
-    if (std::min(between + b.angle, pi) <= a.angle)
-        return a;
-    if (std::min(between + a.angle, pi) <= b.angle)
-        return b;
-    const double angle = (a.angle + between + b.angle) / 2;
-    const dvec3 about = glm::cross(a.axis, b.axis);
-    if (angle >= pi || glm::dot(about, about) == 0)
-        return {};
-    const double turn = angle - a.angle;
-    const dvec3 side = glm::normalize(glm::cross(glm::normalize(about), a.axis));
-    return {glm::normalize(a.axis * std::cos(turn) + side * std::sin(turn)), angle};
-}
-
-struct Bounds {
-    Box box;
-    Cone normals;
-    double emission = 0; // angle
-    double power = 0;
-
-    void add(const Bounds& b) {
-        if (power == 0) {
-            *this = b;
-            return;
-        }
-        box.add(b.box);
-        normals = unite(normals, b.normals);
-        emission = std::max(emission, b.emission);
-        power += b.power;
-    }
-};
-
 struct Item {
-    Bounds bounds;
+    LightBounds bounds;
     int light;
     dvec3 middle() const { return (bounds.box.low + bounds.box.high) * 0.5; }
 };
 
-Bounds bounds_of(const Light& l, const dvec3& origin) {
-    Bounds b;
-    const double bright = (double{l.radiance.x} + l.radiance.y + l.radiance.z) / 3;
-    b.emission = pi / 2;
-    b.power = bright;
-    const dvec3 at = l.position - origin;
-    switch (l.kind) {
-    case LightKind::rectangle: {
-        const dvec3 corner = l.corner - origin, normal = glm::cross(l.edge_u, l.edge_v);
-        for (const dvec3& p : {corner, corner + l.edge_u, corner + l.edge_v, corner + l.edge_u + l.edge_v})
-            b.box.add(p);
-        b.normals = {glm::normalize(normal), 0};
-        b.power *= glm::length(normal);
-        return b;
-    }
-    case LightKind::disk: {
-        const dvec3 normal = glm::normalize(l.direction);
-        const dvec3 reach = l.radius * glm::sqrt(glm::max(dvec3(1) - normal * normal, dvec3(0)));
-        b.box.add(at - reach);
-        b.box.add(at + reach);
-        b.normals = {normal, 0};
-        b.power *= pi * l.radius * l.radius;
-        return b;
-    }
-    case LightKind::sphere:
-        b.box.add(at - dvec3(l.radius));
-        b.box.add(at + dvec3(l.radius));
-        b.power *= pi * l.radius * l.radius;
-        return b;
-    case LightKind::spot:
-        b.box.add(at);
-        b.normals = {glm::normalize(l.direction), glm::radians(l.cone_angle - l.cone_delta)};
-        b.emission = glm::radians(l.cone_delta);
-        return b;
-    case LightKind::point:
-    case LightKind::directional:
-        b.box.add(at);
-        return b;
-    }
-    return b;
-}
-
 /// What lights in these bounds cost (Conty Estevez & Kulla 2018, equation 1), but for the box's shape.
-double cost(const Bounds& b) {
+double cost(const LightBounds& b) {
     const dvec3 d = b.box.high - b.box.low;
     const double o = b.normals.angle, w = std::min(o + b.emission, pi);
     const double angles =
@@ -134,7 +50,7 @@ private:
 
     void build(std::size_t first, std::size_t end, int parent, int depth) {
         const std::size_t number = nodes.size();
-        Bounds all;
+        LightBounds all;
         for (std::size_t i = first; i < end; ++i)
             all.add(items_[i].bounds);
         LightNode node{};
@@ -158,7 +74,7 @@ private:
         nodes[number].next = static_cast<std::int32_t>(nodes.size());
     }
 
-    std::size_t divide(std::size_t first, std::size_t end, const Bounds& all, int depth) {
+    std::size_t divide(std::size_t first, std::size_t end, const LightBounds& all, int depth) {
         Box middles;
         for (std::size_t i = first; i < end; ++i)
             middles.add(items_[i].middle());
@@ -174,13 +90,13 @@ private:
         for (int axis = 0; axis < 3 && depth < most_uneven; ++axis) {
             if (!(middles.high[axis] > middles.low[axis]))
                 continue;
-            std::array<Bounds, buckets> of;
+            std::array<LightBounds, buckets> of;
             for (std::size_t i = first; i < end; ++i)
                 of[static_cast<std::size_t>(bucket_of(items_[i], axis))].add(items_[i].bounds);
             for (int split = 1; split < buckets; ++split) {
-                Bounds low, high;
+                LightBounds low, high;
                 for (int k = 0; k < buckets; ++k)
-                    if (const Bounds& b = of[static_cast<std::size_t>(k)]; b.power > 0)
+                    if (const LightBounds& b = of[static_cast<std::size_t>(k)]; b.power > 0)
                         (k < split ? low : high).add(b);
                 if (low.power == 0 || high.power == 0)
                     continue;
@@ -215,14 +131,11 @@ private:
 
 } // namespace
 
-bool has_place(const Light& light) {
-    return light.kind != LightKind::directional;
-}
-
-std::vector<LightNode> light_tree(std::span<const Light> lights, const dvec3& origin) {
+std::vector<LightNode> light_tree(std::span<const LightBounds> lights) {
     std::vector<Item> items;
     for (std::size_t i = 0; i < lights.size(); ++i)
-        items.push_back({bounds_of(lights[i], origin), static_cast<int>(i)});
+        if (lights[i].power > 0)
+            items.push_back({lights[i], static_cast<int>(i)});
     return items.empty() ? std::vector<LightNode>{} : std::move(Builder(std::move(items)).nodes);
 }
 

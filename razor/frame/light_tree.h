@@ -2,20 +2,15 @@
 // Adaptive Tree Splitting, HPG 2018, with the bounds that pbrt-4 keeps of emission.
 #pragma once
 
+#include "razor/frame/light_bounds.h"
 #include "razor/frame/light_node.h"
-#include "razor/scene/light.h"
-
-#include <glm/vec3.hpp>
 
 #include <span>
 #include <vector>
 
 namespace razor {
 
-/// Whether a light is somewhere: others are not chosen from, but each sampled.
-bool has_place(const Light& light);
-
-/// Of lights that all have a place, numbered as they are given. `origin`: of scene coordinates.
-std::vector<LightNode> light_tree(std::span<const Light> lights, const glm::dvec3& origin);
+/// Leaves are numbered as the bounds are given; those without power are not in it.
+std::vector<LightNode> light_tree(std::span<const LightBounds> lights);
 
 } // namespace razor

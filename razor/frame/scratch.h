@@ -107,14 +107,15 @@ inline constexpr int most_lobes = 15; // five, each in red, green and blue where
 inline constexpr int packet_floats = packet_lobes + (most_lobes - 1) * ISA_WIDTH;
 
 /// Where lights are chosen from, nodes of their tree that between them hold all that may light each lane's
-/// hit: three arrays of a vector each, for each of FrameHeader::light_choices; nodes, chances, and while
-/// nodes are divided what it is worth to divide them.
+/// hit: three arrays of a vector each, for each part of the cut; nodes, chances, and while nodes are divided
+/// what it is worth to divide them. Then how many parts each lane has.
 inline constexpr int most_light_choices = 64;
 enum LightCut : int {
     cut_node = 0,
     cut_chance = most_light_choices * ISA_WIDTH, // that the tree leads there from its root
     cut_worth = 2 * cut_chance,
-    light_cut_floats = 3 * cut_chance
+    cut_count = 3 * cut_chance,
+    light_cut_floats = (cut_count + ISA_WIDTH + 15) / 16 * 16
 };
 
 /// So much further lies the scratch for tiles that are rendered in place of a wait (render_meanwhile() in

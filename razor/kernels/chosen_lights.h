@@ -9,9 +9,6 @@
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
 
-/// Added to the numbers of pixels for each part of a cut: samples of one have nothing to do with another's.
-inline constexpr std::uint32_t part_step = 0xc2b2ae35U;
-
 struct ChosenRays : LightRays {
     vvec colour;   // radiance, as LightRecord has it, / chance
     vfloat domain; // of the light, / expected_rays()
@@ -61,7 +58,8 @@ inline vfloat expected_rays(const vfloat& chance, sint parts) {
     vint node = gather(as<std::int32_t>(c.cuts) + int{cut_node}, at, here.hit);
     vint key = s.pixel + part * vint(std::int32_t(part_step));
     vpoint which = sample_square(key, s.sample, dimension_which_light);
-    LightChoice choice = choose_light(c, here, node, which.u);
+    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
+    LightChoice choice = choose_light(nodes, here, node, which.u);
     vmask some = here.hit & (choice.chance > zero);
     pointer<LightRecord> lights = load(field(c.frame, &FrameHeader::chosen_lights));
     constexpr int stride = sizeof(LightRecord) / 4;
@@ -137,7 +135,7 @@ struct TowardsChosen {
 template <Features F, bool Mapped, class Response>
 inline GatheredColours<Response> gather_chosen(const Context& c, const Surface& s, const Response& response,
                                                sint parts) {
-    cut_lights(c, s, parts);
+    cut_lights(c, load(field(c.frame, &FrameHeader::light_nodes)), s, parts);
     return {gather_light<F, Mapped>(c, s, TowardsChosen{parts}, Tinted<Response>{response}, parts)};
 }
 
@@ -184,7 +182,7 @@ inline sint parts_after_bounces(sint parts) {
         Met at = meet_light(light, r);
         vmask seen = r.active & (at.t < hit_t);
         if (branch(any(seen))) {
-            vfloat chance = chance_of_light(c, n - 1, from);
+            vfloat chance = chance_of_light(nodes, n - 1, from);
             vfloat of_rays = at.density * expected_rays(chance, parts);
             vfloat share = vfloat(1.0F) - power_share(of_rays, density);
             vvec emitted = load_broadcast_vec(field(light, &LightRecord::emitted));

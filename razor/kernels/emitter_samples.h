@@ -8,31 +8,98 @@
 
 #include "razor/frame/emitter_record.h"
 #include "razor/kernels/bounce.h"
+#include "razor/kernels/light_cut.h"
 #include "razor/kernels/sky_map.h"
 
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
 
 struct EmitterRays : LightRays {
-    vvec colour;   // radiance, without what maps show there, / (pi x density by area)
-    vfloat domain; // 1 / density by area
+    vvec colour;   // radiance, without what maps show there, / (pi x density by area) x the ray's share
+    vfloat scale;  // that over radiance
+    vfloat domain; // all rays / expected density of them all, by area
     vfloat distance, margin;
     vint instance, material;
     vmask front; // of the surface, or its back
 };
 
-/// A point of some triangle for each lane; rays to it.
-[[gnu::noinline]] inline EmitterRays sample_emitters(const Context& c, const Surface& s, const vint& sample) {
+/// The part of the cut that a hit's ray goes to, of all rays in turn.
+struct EmitterTurn {
+    vint part;      // first, then the next, ...
+    vint round;     // how many rays went there before
+    vint rounds;    // how many do in all
+    vfloat per_ray; // 1 / that
+};
+inline EmitterTurn turn_of(const vint& number, const vint& parts, sint samples) {
+    vfloat per_part = reciprocal(to_float(parts));
+    vfloat half(0.5F); // so that rounding does not matter
+    EmitterTurn t;
+    t.round = to_int((to_float(number) + half) * per_part);
+    t.part = number - t.round * parts;
+    vint after = vint(samples - 1) - t.part;
+    t.rounds = to_int((to_float(after) + half) * per_part) + vint(1);
+    t.per_ray = reciprocal(to_float(t.rounds));
+    return t;
+}
+
+/// A triangle for each lane: of the part of the cut whose turn it is some group, of that one.
+struct EmitterChoice {
+    vmask some;
+    vint triangle;
+    vfloat u, v;   // evenly in [0, 1], to choose a point by
+    vfloat weight; // of what a point of all emitters stands for, which the point of this one does
+    vfloat chance; // of its group, that the tree leads there from its root, over its share of all
+};
+[[gnu::noinline]] inline EmitterChoice choose_emitter(const Context& c, const Surface& s, const vint& number,
+                                                      const vint& lane, sint samples) {
+    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::emitter_nodes));
+    pointer<EmitterGroup> groups = load(field(c.frame, &FrameHeader::emitter_groups));
     pointer<float> sums = load(field(c.frame, &FrameHeader::emitter_sums));
-    pointer<EmitterRecord> first = load(field(c.frame, &FrameHeader::emitters));
-    sint count = load(field(c.frame, &FrameHeader::emitter_count));
     sint step = load(field(c.frame, &FrameHeader::emitter_step));
-    vpoint square = sample_square(s.pixel, sample, dimension_emitters);
-    vint which = find_interval(sums, vint(0), count, step, square.u, s.hit);
-    vfloat chance;
-    vfloat rest = within_interval(sums, which, square.u, s.hit, chance);
+    vfloat zero(0.0F);
+    vfloat one(1.0F);
+    vint parts = gather(as<std::int32_t>(c.cuts) + int{cut_count}, lane, s.hit);
+    EmitterTurn turn = turn_of(number, select(s.hit, parts, vint(1)), samples);
+    vint at = turn.part * vint(isa::width) + lane;
+    vmask present = s.hit & (number < vint(samples));
+    vfloat of_part = gather(c.cuts + int{cut_chance}, at, present);
+    Surface here = s;
+    here.hit = present & (of_part > zero);
+    vint node = gather(as<std::int32_t>(c.cuts) + int{cut_node}, at, here.hit);
+    vint key = s.pixel + turn.part * vint(std::int32_t(part_step));
+    vint sample = s.sample * turn.rounds + turn.round;
+    vpoint which = sample_square(key, sample, dimension_which_light);
+    LightChoice group = choose_light(nodes, here, node, which.u);
+    EmitterChoice e;
+    e.some = here.hit & (group.chance > zero);
+    constexpr int group_stride = sizeof(EmitterGroup) / 4;
+    vint record = group.light * vint(group_stride);
+    vint first_sum = gather(field(groups, &EmitterGroup::sums), record, e.some);
+    vint count = gather(field(groups, &EmitterGroup::count), record, e.some);
+    vpoint square = sample_square(key, sample, dimension_emitters);
+    vint interval = find_interval(sums, first_sum, count, step, square.u, e.some);
+    vfloat length;
+    e.u = within_interval(sums, first_sum + interval, square.u, e.some, length);
+    e.v = square.v;
+    e.triangle = gather(field(groups, &EmitterGroup::first), record, e.some) + interval;
+    vfloat share = gather(field(groups, &EmitterGroup::chance), record, e.some);
+    vfloat chance = select(e.some, group.chance, one);
+    e.weight = (share / chance) * turn.per_ray;
+    vfloat of_all = select(e.some, share, one);
+    e.chance = (of_part * chance) / of_all;
+    return e;
+}
+
+/// A point of some triangle for each lane; rays to it.
+[[gnu::noinline]] inline EmitterRays sample_emitters(const Context& c, const Surface& from,
+                                                     const vint& number_of_ray, const vint& lane,
+                                                     sint samples) {
+    EmitterChoice choice = choose_emitter(c, from, number_of_ray, lane, samples);
+    Surface s = from;
+    s.hit = choice.some;
+    pointer<EmitterRecord> first = load(field(c.frame, &FrameHeader::emitters));
     constexpr int stride = sizeof(EmitterRecord) / 4;
-    vint record = which * vint(stride);
+    vint record = choice.triangle * vint(stride);
     const auto number = [&](float EmitterRecord::*member) {
         return gather(field(first, member), record, s.hit);
     };
@@ -43,8 +110,8 @@ struct EmitterRays : LightRays {
         return gather_vec(field(first, member), record, vint(1), s.hit);
     };
     // Evenly over a triangle: the root of one number away from the first corner.
-    vfloat away = sqrt(rest);
-    vfloat along_v = away * square.v;
+    vfloat away = sqrt(choice.u);
+    vfloat along_v = away * choice.v;
     vfloat along_u = away - along_v;
     vvec edge_u = vector(&EmitterRecord::edge_u);
     vvec edge_v = vector(&EmitterRecord::edge_v);
@@ -53,8 +120,11 @@ struct EmitterRays : LightRays {
     vfloat inverse;
     EmitterRays l;
     static_cast<LightRays&>(l) = rays_to(s, point, inverse);
-    l.colour = vector(&EmitterRecord::radiance);
-    l.domain = number(&EmitterRecord::domain);
+    l.colour = vector(&EmitterRecord::radiance) * choice.weight;
+    vfloat domain = number(&EmitterRecord::domain);
+    constexpr float per_domain = 0.318309886183790672F; // 1 / pi
+    l.scale = (domain * choice.weight) * per_domain;
+    l.domain = domain / max(choice.chance, 1.0e-30F);
     l.margin = number(&EmitterRecord::margin);
     l.instance = word(&EmitterRecord::instance);
     l.material = word(&EmitterRecord::material);
@@ -124,11 +194,12 @@ struct EachDomain {
 template <bool Mapped> struct TowardsEmitters {
     static constexpr RayKind kind = kind_light;
     const Context& context;
-    EmitterRays sample(const Context& c, const Surface& s, const vint& number) const {
-        return sample_emitters(c, s, number);
+    sint samples;
+    EmitterRays sample_lane(const Context& c, const Surface& s, const vint& number, const vint& lane) const {
+        return sample_emitters(c, s, number, lane, samples);
     }
     template <class Response>
-    void reflect(const Tinted<Response>& r, const Surface& s, const EmitterRays& l, sint samples,
+    void reflect(const Tinted<Response>& r, const Surface& s, const EmitterRays& l, sint,
                  vfloat (&part)[3 * Response::lobes]) const {
         vfloat own[Response::lobes];
         r.response.reflect(s, l, EachDomain{l.domain}, samples, own);
@@ -151,9 +222,7 @@ template <bool Mapped> struct TowardsEmitters {
             find_surface<look_mapped>(context, l.rays, found, false, beyond);
             Materials of = materials_of(context, l.material, seen);
             vvec map = of.mapped(context, map_emission, beyond.map, seen);
-            constexpr float per_domain = 0.318309886183790672F; // 1 / pi
-            vfloat scale = l.domain * per_domain;
-            vvec shown = times(of.colour(&MaterialRecord::emission), map) * scale;
+            vvec shown = times(of.colour(&MaterialRecord::emission), map) * l.scale;
             l.colour = select(seen, shown, l.colour);
         }
         return arrives;
@@ -163,21 +232,58 @@ template <bool Mapped> struct TowardsEmitters {
 template <Features F, bool Mapped, class Response>
 inline GatheredColours<Response> gather_emitters(const Context& c, const Surface& s, const Response& response,
                                                  sint samples) {
-    return {gather_light<F, Mapped>(c, s, TowardsEmitters<Mapped>{c}, Tinted<Response>{response}, samples)};
+    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::emitter_nodes));
+    cut_lights(c, nodes, s, min(samples, sint(most_light_choices)));
+    TowardsEmitters<Mapped> towards{c, samples};
+    return {gather_light<F, Mapped>(c, s, towards, Tinted<Response>{response}, samples)};
+}
+
+/// With which chance the tree leads from its root to the group of each lane's patch, over that group's share
+/// of all emitters. `from`: where the ray that met it left.
+[[gnu::noinline]] inline vfloat chance_of_emitter(const Context& c, const vint& patch, const Surface& from,
+                                                  const vmask& m) {
+    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::emitter_nodes));
+    pointer<EmitterGroup> groups = load(field(c.frame, &FrameHeader::emitter_groups));
+    sint count = load(field(c.frame, &FrameHeader::emitter_group_count));
+    constexpr int stride = sizeof(EmitterGroup) / 4;
+    vint group(0); // the last that does not begin behind it
+    for (sint step = load(field(c.frame, &FrameHeader::emitter_group_step)); branch(step > 0);
+         step = step >> 1) {
+        vint next = group + vint(step);
+        vmask within = m & (next < vint(count));
+        vint begins = gather(field(groups, &EmitterGroup::first_patch), next * vint(stride), within);
+        group = select(within & (begins <= patch), next, group);
+    }
+    vint record = group * vint(stride);
+    vint leaf = gather(field(groups, &EmitterGroup::leaf), record, m);
+    vfloat share = gather(field(groups, &EmitterGroup::chance), record, m);
+    vmask left = m & (share > vfloat(0.0F));
+    vfloat chance(0.0F);
+    while (branch(any(left))) {
+        sint one = extract(leaf, first(left));
+        vmask same = left & (leaf == vint(one));
+        left = left & !same;
+        chance = select(same, chance_of_light(nodes, one, from) / share, chance);
+    }
+    return chance;
 }
 
 /// What is left of emission to bounces that meet surfaces which are lights. `fewer`: one ray went to them
-/// from where the bounces left.
+/// from where the bounces left, `from`.
 inline vfloat left_of_emitters(const Context& c, const Surface& s, const Beyond& b, const Hits& h,
-                               const Bounce& bounce, sbool fewer) {
+                               const Bounce& bounce, const Surface& from, sbool fewer) {
     vfloat density_of_light = materials_of(c, b.material, s.hit).number(&MaterialRecord::light_density);
+    vmask light = s.hit & (density_of_light > vfloat(0.0F));
+    if (branch(none(light)))
+        return vfloat(1.0F);
     sint all = load(field(c.frame, &FrameHeader::emitter_samples));
     sint samples = select(fewer, sint(1), all);
     vfloat cosine = max(abs(dot(s.geometric, b.toward)), 1.0e-6F);
     vfloat by_angle = ((h.t * h.t) * density_of_light) / cosine;
-    vfloat of_light = by_angle * vfloat(to_float(samples));
+    vfloat chance = chance_of_emitter(c, h.patch, from, light);
+    vfloat rays = chance * vfloat(to_float(samples));
+    vfloat of_light = by_angle * rays;
     vfloat share = vfloat(1.0F) - power_share(of_light, bounce.density);
-    vmask light = density_of_light > vfloat(0.0F);
     return select(light, share, vfloat(1.0F));
 }
 

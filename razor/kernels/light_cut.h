@@ -11,11 +11,14 @@
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
 
-/// Cuts the tree of lights for each hit, into `parts` or as many as there are lights that may light it: what
+/// Added to the numbers of pixels for each part of a cut: samples of one have nothing to do with another's.
+inline constexpr std::uint32_t part_step = 0xc2b2ae35U;
+
+/// Cuts a tree of lights for each hit, into `parts` or as many as there are lights that may light it: what
 /// gives most, and most unevenly, is divided first.
-[[gnu::noinline]] inline void cut_lights(const Context& c, const Surface& s, sint parts) {
+[[gnu::noinline]] inline void cut_lights(const Context& c, pointer<LightNode> nodes, const Surface& s,
+                                         sint parts) {
     phase_scope phase(phase_light);
-    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
     constexpr int stride = sizeof(LightNode) / 4;
     pointer<std::int32_t> seconds = field(nodes, &LightNode::second);
     pointer<std::int32_t> node_at = as<std::int32_t>(c.cuts) + int{cut_node};
@@ -26,7 +29,8 @@ inline namespace light_kernel {
     vfloat done(-1.0F);
     store_vector(node_at, vint(0));
     store_vector(chance_at, one);
-    store_vector(worth_at, one);
+    sint second_of_root = load(seconds);
+    store_vector(worth_at, select(vmask(second_of_root >= 0), one, done)); // of one light there are no parts
     for (sint k = 1; branch(k < parts); ++k) {
         sint row = k * isa::width;
         store_vector(chance_at + row, zero);
@@ -45,8 +49,10 @@ inline namespace light_kernel {
         }
         vmask going = s.hit & (count < vint(parts));
         going = going & (best > zero);
-        if (branch(none(going)))
+        if (branch(none(going))) {
+            store_vector(as<std::int32_t>(c.cuts) + int{cut_count}, count);
             return;
+        }
         vint at = row * vint(isa::width) + lane_index();
         vint node = gather(node_at, at, going);
         vfloat chance = gather(chance_at, at, going);
@@ -91,9 +97,8 @@ struct LightChoice {
 };
 
 /// Of the parts with those nodes.
-[[gnu::noinline]] inline LightChoice choose_light(const Context& c, const Surface& s, const vint& part,
-                                                  const vfloat& number) {
-    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
+[[gnu::noinline]] inline LightChoice choose_light(pointer<LightNode> nodes, const Surface& s,
+                                                  const vint& part, const vfloat& number) {
     constexpr int stride = sizeof(LightNode) / 4;
     pointer<std::int32_t> seconds = field(nodes, &LightNode::second);
     vfloat one(1.0F);
@@ -131,8 +136,7 @@ struct LightChoice {
 }
 
 /// With which chance the tree leads from its root to a leaf.
-[[gnu::noinline]] inline vfloat chance_of_light(const Context& c, sint leaf, const Surface& from) {
-    pointer<LightNode> nodes = load(field(c.frame, &FrameHeader::light_nodes));
+[[gnu::noinline]] inline vfloat chance_of_light(pointer<LightNode> nodes, sint leaf, const Surface& from) {
     vfloat chance(1.0F);
     sint child = leaf;
     sint parent = load(field(nodes + child, &LightNode::parent));

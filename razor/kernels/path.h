@@ -75,8 +75,7 @@ inline void add_light(const Context& c, const Surface& s, const Response& g, con
         sint all = load(field(c.frame, &FrameHeader::emitter_samples));
         sint taken = select(fewer, sint(1), all);
         GatheredColours<Response> gathered = gather_emitters<F, Mapped>(c, s, g, taken);
-        vfloat share = reciprocal(vfloat(to_float(taken)));
-        vvec seen = times(coloured(gathered, g, colours) * share, carried);
+        vvec seen = times(coloured(gathered, g, colours), carried);
         beauty = beauty + select(s.hit, seen, {zero, zero, zero});
     }
     sint sky_samples = load(field(c.frame, &FrameHeader::sky_samples));
@@ -131,6 +130,8 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
     sint choices = load(field(c.frame, &FrameHeader::light_choices));
     sbool sheens = load(field(c.frame, &FrameHeader::sheens)) != 0;
     vvec carried{one, one, one};
+    sbool chosen = choices > 0;
+    chosen = chosen | (emitters > 0);
     Surface before; // where bounces left, if lights are chosen
     Bounce bounce;
     bounce.rays = camera;
@@ -157,7 +158,8 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
                 sint stated = load(field(c.frame, &FrameHeader::sky_samples));
                 sint fewer = min(stated, sint(1));
                 sint taken = select(n > 1, fewer, stated);
-                vmask sees = open & (!bounce.diffuse | vmask(stated > 0));
+                vmask unseen = bounce.diffuse & vmask(stated == 0);
+                vmask sees = open & !unseen;
                 found = select(sees, see_mapped_sky(c, map, r, bounce.density, taken, sees), black);
             }
         }
@@ -192,9 +194,9 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         sbool met = emitters > 0;
         met = met & (n > 0);
         if (branch(met))
-            emitted = emitted * left_of_emitters(c, s, beyond, h, bounce, n > 1);
+            emitted = emitted * left_of_emitters(c, s, beyond, h, bounce, before, n > 1);
         sums.beauty = sums.beauty + select(hit, emitted, black);
-        if (branch(choices > 0))
+        if (branch(chosen))
             before = s;
         const auto go_on = [&](const auto& response) {
             add_light<F, Mapped>(c, s, response, colours, carried, n > 0, sums.beauty);

@@ -44,14 +44,15 @@ inline vvec sky_colour(const Context& c, pointer<SkyRecord> sky, const SkyPlace&
     return sample_map<false>(c, maps + number, at, m);
 }
 
-/// Of `count` intervals the one that x in [0, 1) lies in: the last whose sum does not exceed it. `sums`: from
-/// word `first` of each lane on.
-inline vint find_interval(pointer<float> sums, const vint& first, sint count, sint largest_step,
+/// Of `count` intervals of each lane the one that x in [0, 1) lies in: the last whose sum does not exceed it.
+/// `sums`: from word `first` of each lane on. `largest_step`: a power of two, no less than the largest below
+/// any count.
+inline vint find_interval(pointer<float> sums, const vint& first, const vint& count, sint largest_step,
                           const vfloat& x, const vmask& m) {
     vint found(0);
     for (sint step = largest_step; branch(step > 0); step = step >> 1) {
         vint next = found + vint(step);
-        vmask within = m & (next < vint(count));
+        vmask within = m & (next < count);
         vfloat sum = gather(sums, first + next, within);
         found = select(within & (sum <= x), next, found);
     }
@@ -85,11 +86,11 @@ struct SkySample {
     sint columns = load(field(sky, &SkyRecord::columns));
     sint row_step = load(field(sky, &SkyRecord::row_step));
     sint column_step = load(field(sky, &SkyRecord::column_step));
-    vint row = find_interval(row_sums, vint(0), rows, row_step, square.v, m);
+    vint row = find_interval(row_sums, vint(0), vint(rows), row_step, square.v, m);
     vfloat chance;
     vfloat down = within_interval(row_sums, row, square.v, m, chance);
     vint first = row * vint(columns + 1);
-    vint column = find_interval(cell_sums, first, columns, column_step, square.u, m);
+    vint column = find_interval(cell_sums, first, vint(columns), column_step, square.u, m);
     vfloat across = within_interval(cell_sums, first + column, square.u, m, chance);
     SkySample s;
     s.density = gather(row_density, row, m) * chance;

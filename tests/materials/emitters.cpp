@@ -161,7 +161,18 @@ TEST(Emitters, AreAsLargeAsTheSurface) {
         const EmitterRecord& r = h.emitters.get()[k];
         const dvec3 u(r.edge_u[0], r.edge_u[1], r.edge_u[2]), v(r.edge_v[0], r.edge_v[1], r.edge_v[2]);
         area += glm::length(glm::cross(u, v)) / 2;
-        EXPECT_NEAR(h.emitter_sums.get()[k + 1] - h.emitter_sums.get()[k], 1.0 / 12, 1e-6);
+    }
+    ASSERT_EQ(h.emitter_group_count, 6);
+    for (int g = 0; g < h.emitter_group_count; ++g) {
+        const EmitterGroup& group = h.emitter_groups.get()[g];
+        EXPECT_NEAR(group.chance, 1.0 / 6, 1e-6);
+        ASSERT_EQ(group.count, 2);
+        EXPECT_EQ(group.first, 2 * g);
+        const float* sums = h.emitter_sums.get() + group.sums;
+        EXPECT_EQ(sums[0], 0);
+        EXPECT_NEAR(sums[1], 0.5, 1e-6);
+        EXPECT_EQ(sums[2], 1);
+        EXPECT_EQ(h.emitter_nodes.get()[group.leaf].second, -1 - g);
     }
     EXPECT_NEAR(h.materials.get()[0].light_density * area, 1, 1e-5);
     EXPECT_EQ(h.materials.get()[1].light_density, 0);

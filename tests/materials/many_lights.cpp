@@ -135,7 +135,10 @@ double angle_between(const float (&a)[3], const float (&b)[3]) {
 TEST(ManyLights, TreesHoldAllLights) {
     for (const int count : {1, 2, 7, 300}) {
         const std::vector<Light> all = lights(count, 3);
-        const std::vector<LightNode> nodes = light_tree(all, {1, 2, 3});
+        std::vector<LightBounds> bounds;
+        for (const Light& l : all)
+            bounds.push_back(bounds_of(l, {1, 2, 3}));
+        const std::vector<LightNode> nodes = light_tree(bounds);
         ASSERT_EQ(nodes.size(), 2 * all.size() - 1);
         std::vector<int> found(all.size(), 0);
         std::vector<double> power(nodes.size(), 0);

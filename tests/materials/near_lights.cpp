@@ -79,6 +79,32 @@ TEST(NearLights, ThatAreSurfaces) {
     expect_quieter(s, "a mesh", 2);
 }
 
+// Rays go to those that matter where they leave: a lamp far away that emits much more leaves its share of the
+// light as quiet as it was.
+TEST(NearLights, ThatAreSurfacesWithBrightOnesFarAway) {
+    Scene s = bare_floor();
+    s.settings.samples = 64;
+    s.settings.light_samples = 4;
+    s.meshes.push_back(quad("lamp", {-0.2, 0.8, -0.2}, {0.4, 0, 0}, {0, 0, 0.4}, 3));
+    s.materials.push_back(named("lamp", {0, 0, 0}));
+    s.materials.back().emission = {3, 2, 1};
+    s.materials.back().light = true;
+    const Parts alone = parts_of(s, 24);
+    s.meshes.push_back(quad("beacon", {-30, 60, -30}, {12, 0, 0}, {0, 0, 12}, 3));
+    const Parts both = parts_of(s, 24);
+    double light = 0, light_of_both = 0, noise = 0, noise_of_both = 0;
+    for (std::size_t k = 0; k < 16; ++k) {
+        noise += alone.variance[k].y;
+        noise_of_both += both.variance[k].y;
+        light += alone.mean[k].y;
+        light_of_both += both.mean[k].y;
+    }
+    EXPECT_GT(light_of_both, 1.02 * light);
+    fmt::print("  light {:.2f} times and variance {:.2f} times that of one lamp\n", light_of_both / light,
+               noise_of_both / noise);
+    EXPECT_LT(noise_of_both, 4 * noise); // by area and radiance alone: 900 times fewer rays to the lamp
+}
+
 TEST(NearLights, OverFabric) {
     Scene s = bare_floor();
     s.lights = {strip(0.2)};
