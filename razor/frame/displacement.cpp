@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace razor {
 namespace {
@@ -29,6 +30,35 @@ float rounded_up(double x) {
     return static_cast<float>(x * (1 + 1e-6));
 }
 
+/// How fast a pattern's values change per cell (razor/kernels/pattern_value.h), at most, whatever it is seen
+/// through.
+glm::dvec2 steepest(const Pattern& p) {
+    // Of noise along an axis: its weights change by 15/8 at most while what they weigh differs by 2, and what
+    // they weigh changes by 1.
+    constexpr double of_noise = 2 * 1.875 + 1, lacunarity = 1.99;
+    double octaves = 0, height = 1;
+    for (int k = 0; k < p.octaves; ++k) {
+        octaves += of_noise * height;
+        height *= double{p.gain} * lacunarity;
+    }
+    const double bent = std::abs(double{p.amount}) * octaves, wave = std::numbers::pi;
+    switch (p.kind) {
+    case PatternKind::checker:
+    case PatternKind::bricks:
+        break;
+    case PatternKind::noise:
+        return glm::dvec2(octaves / 2);
+    case PatternKind::turbulence:
+        return glm::dvec2(octaves);
+    case PatternKind::marble:
+        return wave * glm::dvec2(1 + bent, bent);
+    case PatternKind::wood:
+        return wave * glm::dvec2(1 + bent / 4, bent / 4);
+    }
+    constexpr double step = 1e18; // no more than from the least height to the most
+    return glm::dvec2(step);
+}
+
 } // namespace
 
 double displacement_bound(const Scene& scene, int material) {
@@ -38,17 +68,22 @@ double displacement_bound(const Scene& scene, int material) {
     if (!is_displaced(m))
         return 0;
     const Texture& texture = scene.textures[static_cast<std::size_t>(m.displacement_map.texture)];
-    if (texture.heights == nullptr)
+    if (texture.heights == nullptr && !texture.pattern)
         throw UserError(fmt::format("{}: material '{}' is displaced by texture '{}', whose heights were not "
                                     "read; read them with the texture",
                                     scene.name, m.name, texture.name));
     const double scale = std::abs(double{m.displacement_scale});
-    const double least = double{texture.heights->least} - double{m.displacement_midlevel};
-    const double most = double{texture.heights->most} - double{m.displacement_midlevel};
+    if (texture.pattern && texture.pattern->space == PatternSpace::object)
+        throw UserError(
+            fmt::format("{}: material '{}' is displaced by texture '{}', a pattern of points, which "
+                        "displacement would move; make it one of texture coordinates",
+                        scene.name, m.name, texture.name));
+    const HeightRange heights = height_range(texture);
+    const double least = double{heights.least} - double{m.displacement_midlevel};
+    const double most = double{heights.most} - double{m.displacement_midlevel};
     // Means and their interpolation are rounded.
-    const double size =
-        std::max(std::abs(double{texture.heights->least}), std::abs(double{texture.heights->most})) +
-        std::abs(double{m.displacement_midlevel});
+    const double size = std::max(std::abs(double{heights.least}), std::abs(double{heights.most})) +
+                        std::abs(double{m.displacement_midlevel});
     const double bound = scale * (std::max(std::abs(least), std::abs(most)) + 1e-5 * size);
     if (least == 0 && most == 0)
         return 0;
@@ -119,7 +154,21 @@ void measure_texture_density(const Mesh& mesh, std::span<float> of_faces) {
     }
 }
 
+HeightRange height_range(const Texture& texture) {
+    if (texture.pattern) {
+        const float low = texture.pattern->low.x, high = texture.pattern->high.x;
+        return {std::min(low, high), std::max(low, high)};
+    }
+    return {texture.heights->least, texture.heights->most};
+}
+
 std::vector<HeightSlopes> height_slopes(const Texture& texture) {
+    if (texture.pattern) {
+        const HeightRange range = height_range(texture);
+        const glm::dvec2 slope =
+            steepest(*texture.pattern) * ((double{range.most} - range.least) / texture.pattern->size);
+        return {{rounded_up(std::min(slope.x, 1e30)), rounded_up(std::min(slope.y, 1e30))}};
+    }
     std::vector<HeightSlopes> slopes;
     for (const TextureLevel& level : texture.heights->levels) {
         double u = 0, v = 0;

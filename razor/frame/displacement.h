@@ -26,8 +26,14 @@ Box displaced_bounds(const Mesh& mesh, double bound);
 /// length is in texture coordinates, squared, per square of the length. 0 for faces without area.
 void measure_texture_density(const Mesh& mesh, std::span<float> of_faces);
 
+/// Of the heights that a texture has: a picture's, or a pattern's, which are its red.
+struct HeightRange {
+    float least = 0, most = 0;
+};
+HeightRange height_range(const Texture& texture);
+
 /// How fast the heights of each level of a pyramid change along u and v, at most, bilinear as they are: per
-/// unit of texture coordinates.
+/// unit of texture coordinates. Of a pattern those of its one level.
 struct HeightSlopes {
     float u = 0, v = 0;
 };

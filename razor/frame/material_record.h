@@ -80,8 +80,8 @@ struct alignas(line_bytes) DisplacementRecord {
     float scale, midlevel;
     float bound;      // of the product, either way
     float range;      // of the heights, times |scale|
-    std::int32_t map; // a MapRecord; its texture's texels are the bits of floats
-    float footprint;  // |determinant of the map| * (the texture's size)^2
+    std::int32_t map; // a MapRecord; its texture is a pattern, or its texels are the bits of floats
+    float footprint;  // |determinant of the map| * (the texture's size, or a pattern's cells a unit)^2
     std::int32_t padding[10];
     /// How fast heights of each level change, at most, per unit of the map's coordinates, times |scale|.
     float slope_u[16], slope_v[16];
@@ -90,7 +90,7 @@ static_assert(sizeof(DisplacementRecord) == 3 * line_bytes);
 
 enum TextureWrap : std::int32_t { wrap_repeat, wrap_clamp, wrap_mirror };
 
-/// A picture, or what razor/kernels/pattern.h makes.
+/// A picture, or what razor/kernels/pattern_value.h makes.
 enum TextureKind : std::int32_t {
     texture_image,
     texture_checker,

@@ -126,14 +126,16 @@ public:
         d.bound = static_cast<float>(bound);
         d.map = static_cast<std::int32_t>(t.maps.size());
         const Texture& texture = scene_.textures[static_cast<std::size_t>(m.displacement_map.texture)];
-        t.maps.push_back(
-            map_record(m.displacement_map, heights(m.displacement_map.texture, *texture.heights)));
+        t.maps.push_back(map_record(m.displacement_map,
+                                    texture.pattern ? this->texture(m.displacement_map.texture)
+                                                    : heights(m.displacement_map.texture, *texture.heights)));
         const MapRecord& map = t.maps.back();
         const TextureRecord& record = t.textures[static_cast<std::size_t>(map.texture)];
-        d.footprint =
-            std::abs(map.row_u[0] * map.row_v[1] - map.row_u[1] * map.row_v[0]) * (record.size * record.size);
+        const float size = texture.pattern ? record.per_cell : record.size;
+        d.footprint = std::abs(map.row_u[0] * map.row_v[1] - map.row_u[1] * map.row_v[0]) * (size * size);
         const float scale = std::abs(m.displacement_scale);
-        d.range = scale * (texture.heights->most - texture.heights->least);
+        const HeightRange range = height_range(texture);
+        d.range = scale * (range.most - range.least);
         const std::vector<HeightSlopes> slopes = height_slopes(texture);
         for (std::size_t l = 0; l < slopes.size(); ++l) {
             d.slope_u[l] = scale * slopes[l].u;

@@ -1,6 +1,6 @@
 // Heights by which surfaces are displaced: what a face's material says, and the height at texture
-// coordinates. Whoever asks for a place gets the same bits, as all of it is a function of the face and the
-// coordinates.
+// coordinates, of a picture or a pattern. Whoever asks for a place gets the same bits, as all of it is a
+// function of the face and the coordinates.
 //
 // The map is filtered to the mesh's spacing at level 0, whatever level asks: then a vertex has one place at
 // all levels, so that what moves towards it, or stands for finer ones, does as it does on any surface. What
@@ -8,6 +8,7 @@
 // spacing. They stay where they are on the surface, so nothing swims.
 #pragma once
 
+#include "razor/kernels/pattern_value.h"
 #include "razor/kernels/texels.h"
 #include "razor/kernels/texture_face.h"
 
@@ -37,7 +38,10 @@ struct Displacing {
     svec row_u, row_v;
     sint wrap_u, wrap_v;
     sfloat scale, midlevel, bound;
-    sint level; // the finer of the two
+    pointer<TextureRecord> texture;
+    sint kind;         // a TextureKind. Of a pattern:
+    sfloat cell_width; // what it is seen through, in cells
+    sint level;        // of a picture the finer of the two; else 0
     HeightLevel fine, coarse;
     sfloat weight; // of the coarser
 };
@@ -85,6 +89,14 @@ inline Displacing displacing_of(const Context& c, const Cage& g, sint face) {
     sfloat footprint = load(field(d.record, &DisplacementRecord::footprint));
     sfloat square = density * (edge * edge);
     sfloat covered = min(max(square * footprint, 1.0e-20F), 1.0e20F);
+    d.texture = texture;
+    d.kind = load(field(texture, &TextureRecord::kind));
+    if (branch(d.kind != sint(texture_image))) {
+        d.cell_width = sqrt(covered);
+        d.level = 0;
+        d.weight = 0.0F;
+        return d;
+    }
     sfloat level = extract(log2(vfloat(covered)), 0) * 0.5F;
     sint levels = load(field(texture, &TextureRecord::levels));
     sfloat last = to_float(levels - 1);
@@ -117,17 +129,9 @@ inline vfloat heights_in(const Displacing& d, const HeightLevel& level, const vp
     return fma(y.weight, lower - upper, upper);
 }
 
-/// Of places on a face, one a lane, by their texture coordinates: how far they are displaced, in the mesh's
-/// units. All that is known of heights: what makes them in another way belongs here, and says in
-/// height_change() how fast they change.
-inline vfloat height_at(const Displacing& d, const vpoint& uv, const vmask& m) {
+/// A picture's, at coordinates of its map.
+inline vfloat picture_height(const Displacing& d, const vfloat& u, const vfloat& v, const vmask& m) {
     vpoint at;
-    vfloat across(d.row_u.x);
-    vfloat up(d.row_u.y);
-    vfloat u = fma(across, uv.u, fma(up, uv.v, vfloat(d.row_u.z)));
-    across = vfloat(d.row_v.x);
-    up = vfloat(d.row_v.y);
-    vfloat v = fma(across, uv.u, fma(up, uv.v, vfloat(d.row_v.z)));
     at.u = wrap_coordinate(u, d.wrap_u);
     at.v = wrap_coordinate(v, d.wrap_v);
     vfloat value = heights_in(d, d.fine, at, m);
@@ -136,6 +140,36 @@ inline vfloat height_at(const Displacing& d, const vpoint& uv, const vmask& m) {
         vfloat weight(d.weight);
         value = fma(weight, coarse - value, value);
     }
+    return value;
+}
+/// A pattern's: its red.
+[[gnu::noinline]] inline vfloat pattern_height(const Displacing& d, const vfloat& u, const vfloat& v) {
+    sfloat per_cell = load(field(d.texture, &TextureRecord::per_cell));
+    vfloat width(d.cell_width);
+    vfloat zero(0.0F);
+    vvec q = in_cells({u, v, zero}, per_cell);
+    q.z = vfloat(pattern_plane);
+    vfloat value = pattern_value(d.texture, d.kind, q, {width, width, zero});
+    vfloat low = load_broadcast(field(d.texture, &TextureRecord::low));
+    vfloat high = load_broadcast(field(d.texture, &TextureRecord::high));
+    return fma(value, high - low, low);
+}
+
+/// Of places on a face, one a lane, by their texture coordinates: how far they are displaced, in the mesh's
+/// units. All that is known of heights: what makes them in another way belongs here, and says in
+/// height_change() how fast they change.
+inline vfloat height_at(const Displacing& d, const vpoint& uv, const vmask& m) {
+    vfloat across(d.row_u.x);
+    vfloat up(d.row_u.y);
+    vfloat u = fma(across, uv.u, fma(up, uv.v, vfloat(d.row_u.z)));
+    across = vfloat(d.row_v.x);
+    up = vfloat(d.row_v.y);
+    vfloat v = fma(across, uv.u, fma(up, uv.v, vfloat(d.row_v.z)));
+    vfloat value;
+    if (branch(d.kind == sint(texture_image)))
+        value = picture_height(d, u, v, m);
+    else
+        value = pattern_height(d, u, v);
     vfloat height = value - vfloat(d.midlevel);
     height = height * vfloat(d.scale);
     height = max(height, vfloat(-d.bound));

@@ -105,7 +105,12 @@ void read_heights(const TomlTable& table, const Material& material, std::span<Te
     }
     Texture& texture = textures[static_cast<std::size_t>(material.displacement_map.texture)];
     if (texture.pattern) {
-        table.fail("displacement_map", "a pattern cannot displace surfaces; give a texture with a file");
+        if (texture.pattern->space == PatternSpace::object)
+            table.fail("displacement_map",
+                       fmt::format("texture '{}' is a pattern of points, which displacement "
+                                   "would move; give it space = \"texture\"",
+                                   texture.name));
+        return;
     }
     try {
         texture.heights = cache.read(texture.file, true, Texels::heights);

@@ -40,7 +40,7 @@ struct TexturePyramid {
     float least = 0, most = 0; // of the picture's heights
 };
 
-/// What a texture may be instead of a picture: see razor/kernels/pattern.h.
+/// What a texture may be instead of a picture: see razor/kernels/pattern_value.h.
 enum class PatternKind : std::uint8_t { checker, bricks, noise, turbulence, marble, wood };
 /// What patterns are functions of: points of the object as its mesh has them, or texture coordinates.
 enum class PatternSpace : std::uint8_t { object, texture };

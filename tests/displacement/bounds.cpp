@@ -4,6 +4,7 @@
 #include "razor/check/dump.h"
 #include "razor/check/escapes.h"
 #include "razor/check/field_surface.h"
+#include "razor/frame/displacement.h"
 #include "tests/displacement/heights.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
@@ -11,6 +12,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace razor::test {
@@ -134,9 +137,13 @@ TEST_P(DisplacedBodies, LetNoRayThrough) {
         double scale;
     } maps[] = {{"smooth", smooth_heights(), 1},
                 {"random", random_heights(), -0.6},
-                {"steps", stepped_heights(), 0.7}};
+                {"steps", stepped_heights(), 0.7},
+                {"noise", pattern_heights(PatternKind::noise), 0.5},
+                {"checks", pattern_heights(PatternKind::checker), -0.3}};
     for (const auto& map : maps)
         for (const bool seams : {false, true}) {
+            if (map.texture.pattern && !seams)
+                continue;
             const Mesh mesh = seams ? with_seams(c.cage()) : with_smooth_texcoords(c.cage());
             const Scene scene = displaced_scene(mesh, 150, map.texture, map.scale * c.amplitude, 0.3);
             const std::string what = fmt::format("{}, {}{}", c.name, map.name, seams ? ", seams" : "");
@@ -147,6 +154,27 @@ TEST_P(DisplacedBodies, LetNoRayThrough) {
 
 INSTANTIATE_TEST_SUITE_P(Cages, DisplacedBodies, testing::ValuesIn(cases),
                          [](const auto& c) { return std::string(c.param.name); });
+
+// What is made finer later is bounded by how fast heights change.
+TEST(HeightSlopes, BoundPatterns) {
+    for (int kind = 0; kind < 6; ++kind) {
+        Texture t = pattern_heights(static_cast<PatternKind>(kind));
+        const HeightSlopes slopes = height_slopes(t).at(0);
+        double steepest = 0;
+        for (int k = 0; k < 40'000; ++k) {
+            const glm::dvec2 at(0.0173 * k, 0.0117 * k + 0.3 * std::sin(k));
+            constexpr double step = 1e-5;
+            const double u = std::abs(lookup(t, at + glm::dvec2(step, 0), 0) - lookup(t, at, 0));
+            const double v = std::abs(lookup(t, at + glm::dvec2(0, step), 0) - lookup(t, at, 0));
+            EXPECT_LE(u, double{slopes.u} * step * (1 + 1e-3)) << kind;
+            EXPECT_LE(v, double{slopes.v} * step * (1 + 1e-3)) << kind;
+            steepest = std::max({steepest, u / double{slopes.u} / step, v / double{slopes.v} / step});
+        }
+        if (kind >= static_cast<int>(PatternKind::noise)) {
+            EXPECT_GT(steepest, 0.2) << kind << ": bounds that say nothing";
+        }
+    }
+}
 
 TEST(DisplacedInstances, LetNoRayThrough) {
     Scene scene = displaced_scene(with_seams(creased_cube()), 60, smooth_heights(), 0.2, 0.5);

@@ -2,6 +2,9 @@
 
 #include "razor/scene/textures/pyramid_builder.h"
 #include "tests/kernels/cages.h"
+#include "tests/materials/plain_pattern.h"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -75,7 +78,26 @@ Texture constant_heights(float value) {
     return height_texture(4, 4, [=](int, int) { return value; });
 }
 
+Texture pattern_heights(PatternKind kind) {
+    Pattern p;
+    p.kind = kind;
+    p.space = PatternSpace::texture;
+    p.size = 0.7;
+    p.octaves = 2;
+    p.amount = kind == PatternKind::bricks ? 0.1F : 0.3F;
+    p.low = glm::vec3(-0.5F);
+    p.high = glm::vec3(1.5F);
+    Texture t;
+    t.name = "pattern";
+    t.pattern = p;
+    return t;
+}
+
 double lookup(const Texture& texture, const glm::dvec2& at, double level) {
+    if (texture.pattern) {
+        const Pattern& p = *texture.pattern;
+        return glm::mix(double{p.low.x}, double{p.high.x}, plain_value(p, {at / p.size, 0.25}));
+    }
     const double last = static_cast<double>(texture.heights->levels.size()) - 1;
     level = std::clamp(level, 0.0, last);
     const double below = std::floor(level);

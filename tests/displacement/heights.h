@@ -13,8 +13,11 @@ Texture smooth_heights();  // waves, in [0, 1]
 Texture random_heights();  // nothing to do with their neighbours, in [0, 1]
 Texture stepped_heights(); // a chequerboard of 0 and 1
 Texture constant_heights(float value);
+/// Of texture coordinates, from -0.5 to 1.5, features of a size of about a face.
+Texture pattern_heights(PatternKind kind);
 
-/// By what razor/scene/texture.h and razor/kernels/heights.h say: trilinear at this level.
+/// By what razor/scene/texture.h and razor/kernels/heights.h say: trilinear at this level; patterns as
+/// nothing but points sees them.
 double lookup(const Texture& texture, const glm::dvec2& at, double level);
 
 /// Coordinates by where points are: no seams.

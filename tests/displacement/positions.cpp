@@ -187,6 +187,8 @@ private:
                      s = std::sin(double{m.displacement_map.rotation});
         const dvec2 scale(m.displacement_map.scale), q = coordinates * scale;
         const dvec2 uv = dvec2(m.displacement_map.offset) + dvec2(c * q.x - s * q.y, s * q.x + c * q.y);
+        if (texture.pattern)
+            return double{m.displacement_scale} * (lookup(texture, uv, 0) - double{m.displacement_midlevel});
         const double texels = surface.density(face) * edge * edge * std::abs(scale.x * scale.y) *
                               texture.heights->levels[0].width * texture.heights->levels[0].height;
         const double level = 0.5 * std::log2(std::max(texels, 1e-12));
@@ -340,6 +342,13 @@ TEST(DisplacedPositions, AreThoseOfTheSurfaceAlongItsNormals) {
         expect_right(with_seams(bilinear(mesh)), smooth_heights(), 0.1, turned, mesh.name + ", bilinear");
     }
     expect_right(with_seams(creased), smooth_heights(), 0.1, plain, "creased");
+}
+
+TEST(DisplacedPositions, ByPatternsAsWell) {
+    TextureMap turned{.texture = 0, .scale = {1.5F, -0.8F}, .offset = {0.3F, 0.1F}, .rotation = 0.7F};
+    for (const PatternKind kind : {PatternKind::noise, PatternKind::marble, PatternKind::wood})
+        expect_right(with_seams(cube_cage()), pattern_heights(kind), 0.15, turned,
+                     fmt::format("pattern {}", static_cast<int>(kind)));
 }
 
 TEST(DisplacedPositions, FollowWrapsAndLevels) {

@@ -30,6 +30,11 @@ TEST(DisplacementRefusals, SayWhatIsMissing) {
     Scene unread = scene;
     unread.textures[0].heights = nullptr;
     EXPECT_NE(refusal(unread).find("heights were not read"), std::string::npos) << refusal(unread);
+    Scene solid = scene;
+    solid.textures[0] = pattern_heights(PatternKind::noise);
+    EXPECT_EQ(refusal(solid), "");
+    solid.textures[0].pattern->space = PatternSpace::object;
+    EXPECT_NE(refusal(solid).find("a pattern of points"), std::string::npos) << refusal(solid);
     for (const float scale :
          {1e35F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
         Scene far = scene;

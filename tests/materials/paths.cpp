@@ -319,11 +319,13 @@ TEST(Paths, Bumps) {
 TEST(Paths, Displacement) {
     for (const bool metal : {false, true}) {
         Scene s = room();
-        s.name = metal ? "displaced metal" : "displaced";
+        s.name = metal ? "metal displaced by noise" : "displaced";
         s.textures = {height_texture(96, 96, [](int x, int y) {
             const auto wave = [](int k) { return std::sin(0.065449847F * (static_cast<float>(k) + 0.5F)); };
             return 0.5F + 0.3F * wave(x) * wave(y) + 0.2F * wave(x + y);
         })};
+        if (metal)
+            s.textures = {pattern_heights(PatternKind::noise)};
         Mesh panel = quad("panel", {-1.6, 0.2, 0.2}, {2.6, 0, 0.6}, {-0.2, 1.7, -1.2}, 3);
         panel.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
         panel.face_texcoords = {0, 1, 2, 3};
