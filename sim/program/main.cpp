@@ -5,6 +5,7 @@
 #include "sim/config/machine_file.h"
 #include "sim/machine/describe.h"
 #include "sim/machine/machine.h"
+#include "sim/program/compare_command.h"
 #include "sim/program/dram_table.h"
 #include "sim/program/explain_command.h"
 #include "sim/program/provenance.h"
@@ -52,12 +53,15 @@ int main(int argc, char** argv) {
     dram.add_to(app);
     sim::ValidateCommand validate;
     validate.add_to(app);
+    sim::CompareCommand compare;
+    compare.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
             return print.parsed()               ? print_config(machine)
                    : describing.parsed()        ? describe(described)
                    : explain.parsed()           ? explain.run()
                    : validate.parsed()          ? validate.run()
+                   : compare.parsed()           ? compare.run()
                    : app.got_subcommand("dram") ? dram.run()
                                                 : run.run();
         } catch (const sim::ConfigError& e) {

@@ -1,0 +1,102 @@
+// Comparisons of reports say what differs, all of it, and nothing else.
+#include "sim/config/error.h"
+#include "sim/reports/compare.h"
+#include "sim/reports/flat.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace sim::test {
+namespace {
+
+using nlohmann::json;
+
+ReportFile report(double cycles, double misses = 100, int ways = 4) {
+    json r{{"program", "razor-sim"},
+           {"scene", "a\nb\n"},
+           {"mode", "fast"},
+           {"options", {{"workers", 8}}},
+           {"machine", {{"l1", {{"ways", ways}, {"line_bytes", 32}}}, {"sim", {{"jitter", cycles}}}}},
+           {"cycles", cycles},
+           {"l1", {{"misses", misses}}},
+           {"stack", {{"busy", 10}, {"idle", 0}}},
+           {"host", {{"seconds", cycles}}}};
+    r["phases"] = json::array();
+    r["phases"].push_back({{"phase", "traverse"}, {"vops", misses * 2}});
+    r["traffic"] = json::array();
+    r["traffic"].push_back({{"structure", "grids"}, {"memory_reads", misses}, {"memory_writes", 1}});
+    r["traffic"].push_back({{"structure", "grids"}, {"memory_reads", 3}, {"memory_writes", 0}});
+    return {"report", r};
+}
+
+ReportComparison compare(const std::vector<ReportFile>& a, const std::vector<ReportFile>& b) {
+    return compare_reports(a, b);
+}
+
+TEST(CompareReports, OfOneRunFindNothing) {
+    const ReportComparison c = compare({report(1000)}, {report(1000)});
+    EXPECT_TRUE(c.settings.empty());
+    EXPECT_TRUE(c.scene.empty());
+    EXPECT_TRUE(c.all.empty());
+    ASSERT_EQ(c.figures.size(), 3u) << "cycles, misses, busy; what is 0 in both is left out";
+    for (const FigureChange& f : c.figures) {
+        EXPECT_EQ(f.ratio(), 1) << f.name;
+        EXPECT_FALSE(f.beyond_spread()) << f.name;
+    }
+    EXPECT_NE(comparison_text(c, 0, true).find("the same machine and run"), std::string::npos);
+}
+
+TEST(CompareReports, FindSettingsScenesAndFigures) {
+    ReportFile other = report(1500, 50, 8);
+    other.json["scene"] = "a\nc\nd\n";
+    const ReportComparison c = compare({report(1000)}, {other});
+    ASSERT_EQ(c.settings.size(), 1u) << "jitter's seed is no other design";
+    EXPECT_EQ(c.settings[0].name, "l1.ways");
+    EXPECT_EQ(c.settings[0].first, "4");
+    EXPECT_EQ(c.settings[0].second, "8");
+    ASSERT_EQ(c.scene.size(), 2u);
+    EXPECT_EQ(c.scene[0].first, "b");
+    EXPECT_EQ(c.scene[1].second, "d");
+    EXPECT_EQ(c.figures[0].name, "cycles");
+    EXPECT_EQ(c.figures[0].ratio(), 1.5);
+    EXPECT_TRUE(c.figures[0].beyond_spread());
+    EXPECT_EQ(c.figures[1].name, "l1.misses");
+    EXPECT_EQ(c.figures[1].ratio(), 0.5);
+    ASSERT_EQ(c.memory_bytes.size(), 1u);
+    EXPECT_EQ(c.memory_bytes[0].first.median, 32 * 104);
+    EXPECT_EQ(c.memory_bytes[0].second.median, 32 * 54);
+    ASSERT_EQ(c.all.size(), 1u) << "the host's seconds are not the machine's";
+    EXPECT_EQ(c.all[0].name, "phases.traverse.vops");
+    EXPECT_EQ(json::parse(comparison_json(c))["figures"][0]["ratio"], 1.5);
+}
+
+TEST(CompareReports, KnowWhatRunsOfOneDesignDifferBy) {
+    const ReportComparison c = compare({report(1000, 90), report(1100, 90), report(1050, 90)},
+                                       {report(1090, 80), report(1200, 80), report(1150, 80)});
+    EXPECT_EQ(c.figures[0].first.median, 1050);
+    EXPECT_EQ(c.figures[0].second.most, 1200);
+    EXPECT_FALSE(c.figures[0].beyond_spread());
+    EXPECT_TRUE(c.figures[1].beyond_spread());
+    const std::string text = comparison_text(c, 0, false);
+    EXPECT_NE(text.find("within the runs' spread"), std::string::npos) << text;
+    EXPECT_NE(comparison_text(c, 20, false).find("within noise"), std::string::npos);
+    EXPECT_THROW(compare({report(1), report(1, 2, 8)}, {report(1)}), ConfigError);
+}
+
+TEST(CompareReports, AreOfReports) {
+    EXPECT_THROW(read_report("/nowhere/report.json"), ConfigError);
+    EXPECT_THROW(read_report(RAZOR_SOURCE_DIR "/README.md"), ConfigError);
+}
+
+TEST(FlatReports, NameThingsByWhatTheyAre) {
+    const json value{{"a", {{"b", 1}, {"c", "word"}}}, {"list", json::array({1.5, 2})}};
+    EXPECT_EQ(flat_numbers(value).at("a.b"), 1);
+    EXPECT_EQ(flat_numbers(value).at("list.1"), 2);
+    EXPECT_EQ(flat_words(value).at("a.c"), "word");
+    EXPECT_EQ(flat_numbers(report(1).json).at("traffic.grids.memory_reads"), 103)
+        << "rows of one name add up";
+}
+
+} // namespace
+} // namespace sim::test
