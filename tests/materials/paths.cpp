@@ -1,8 +1,6 @@
 // Whole pictures of small rooms against paths that are followed one by one in double.
 #include "tests/displacement/heights.h"
-#include "tests/kernels/targets.h"
-#include "tests/materials/floor.h"
-#include "tests/materials/plain_paths.h"
+#include "tests/materials/compare_paths.h"
 #include "tests/materials/room.h"
 #include "tests/materials/skies.h"
 
@@ -18,80 +16,6 @@ namespace razor::test {
 namespace {
 
 using glm::dvec3;
-
-constexpr int size = room_size, side = 4, seeds = 8; // pixels of a picture and of a block
-
-struct Comparison {
-    double worst = 0;  // difference of blocks, in standard errors
-    dvec3 relative{0}; // of the whole pictures' means
-    double noise = 0;  // of the mean, relative
-};
-
-Comparison compare(Scene scene, const std::string& target, const std::vector<BlockSums>& plain) {
-    std::vector<BlockSums> ours(plain.size()); // one sample a seed
-    for (int seed = 0; seed < seeds; ++seed) {
-        scene.settings.seed = seed;
-        RenderOptions options;
-        options.threads = 1;
-        options.isa = target;
-        const Film film = render_native(scene, options).film;
-        std::vector<dvec3> sums(plain.size(), dvec3(0));
-        for (std::size_t p = 0; p < film.pixel_count(); ++p)
-            sums[p / size / side * (size / side) + p % size / side] +=
-                dvec3(film.find("R")->values[p], film.find("G")->values[p], film.find("B")->values[p]) /
-                double(side * side);
-        for (std::size_t b = 0; b < sums.size(); ++b) {
-            ours[b].sum += sums[b];
-            ours[b].squares += sums[b] * sums[b];
-            ++ours[b].samples;
-        }
-    }
-    Comparison c;
-    dvec3 all(0), all_plain(0), variance(0);
-    for (std::size_t b = 0; b < plain.size(); ++b) {
-        // Few seeds may agree by chance: never less than 0.1 %.
-        const dvec3 floor = 1e-3 * plain[b].mean();
-        const dvec3 square = plain[b].variance() + ours[b].variance() + floor * floor;
-        for (int k = 0; k < 3; ++k)
-            c.worst = std::max(c.worst, std::abs(ours[b].mean()[k] - plain[b].mean()[k]) /
-                                            std::sqrt(std::max(square[k], 1e-12)));
-        all += ours[b].mean();
-        all_plain += plain[b].mean();
-        variance += square;
-    }
-    c.relative = all / all_plain - dvec3(1);
-    c.noise = std::sqrt(variance.y) / all_plain.y;
-    return c;
-}
-
-/// `alike`: rendered instead, if not null.
-void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* alike = nullptr) {
-    const std::vector<BlockSums> plain = plain_picture(scene, side, samples_a_pixel);
-    for (const KernelTable* target : best_target()) {
-        const Comparison c = compare(alike != nullptr ? *alike : scene, target->name, plain);
-        fmt::print(
-            "  {}, {}: blocks differ by {:.1f} standard errors at most, means by {:+.2f} {:+.2f} {:+.2f} "
-            "% (noise {:.2f} %)\n",
-            scene.name, target->name, c.worst, 100 * c.relative.x, 100 * c.relative.y, 100 * c.relative.z,
-            100 * c.noise);
-        EXPECT_LT(c.worst, 4) << scene.name;
-        for (int k = 0; k < 3; ++k)
-            EXPECT_LT(std::abs(c.relative[k]), 0.02) << scene.name;
-        EXPECT_LT(c.noise, 0.007) << "noise hides mistakes: " << scene.name;
-    }
-}
-
-/// That the comparison would see it if the picture were that of the other scene: else it says nothing.
-void expect_other_picture(const Scene& scene, const Scene& other, int samples_a_pixel) {
-    const std::vector<BlockSums> a = plain_picture(scene, side, samples_a_pixel),
-                                 b = plain_picture(other, side, samples_a_pixel);
-    double worst = 0;
-    for (std::size_t k = 0; k < a.size(); ++k)
-        for (int c = 0; c < 3; ++c)
-            worst = std::max(worst, std::abs(a[k].mean()[c] - b[k].mean()[c]) /
-                                        std::sqrt(std::max(a[k].variance()[c] + b[k].variance()[c], 1e-12)));
-    EXPECT_GT(worst, 8) << scene.name;
-}
 
 /// Each mesh mirrored, and drawn mirrored again.
 Scene twice_mirrored(Scene s) {
@@ -122,6 +46,9 @@ TEST(Paths, DiffuseBouncesAndEmission) {
             s.materials.back().light = light;
             s.settings.diffuse_bounces = diffuse_bounces;
             expect_same_picture(s, 160);
+            Scene other = s;
+            other.settings.diffuse_bounces = (diffuse_bounces + 1) % 3;
+            expect_other_picture(s, other, 160);
         }
 }
 
@@ -139,6 +66,11 @@ TEST(Paths, MirrorAndRoughMetal) {
         s.materials.back().roughness = roughness;
         s.settings.diffuse_bounces = 1;
         expect_same_picture(s, 160);
+        for (const std::size_t m : {3U, 4U}) {
+            Scene plastic = s;
+            plastic.materials[m].metallic = 0;
+            expect_other_picture(s, plastic, 160);
+        }
     }
 }
 
@@ -206,6 +138,11 @@ TEST(Paths, PlasticAndCoats) {
         m.roughness = 0.6F;
         s.settings.diffuse_bounces = 2;
         expect_same_picture(s, 160);
+        Scene bare = s, matte = s;
+        bare.materials[3].coat = 0;
+        matte.materials[0].specular = 0;
+        expect_other_picture(s, bare, 160);
+        expect_other_picture(s, matte, 160);
     }
 }
 
@@ -227,6 +164,9 @@ TEST(Paths, Sheen) {
         s.materials[1].sheen_roughness = roughness;
         s.settings.diffuse_bounces = 2;
         expect_same_picture(s, 160);
+        Scene without = s;
+        without.materials[1].sheen = {0, 0, 0};
+        expect_other_picture(s, without, 160);
     }
 }
 
@@ -248,6 +188,11 @@ TEST(Paths, GlassBox) {
             s.name += ", mirrored twice";
             const Scene mirrored = twice_mirrored(s);
             expect_same_picture(s, 160, &mirrored);
+            Scene opaque = s, thin = s;
+            opaque.materials[3].transmission = 0;
+            thin.materials[3].ior = 1.1F;
+            expect_other_picture(s, opaque, 160);
+            expect_other_picture(s, thin, 160);
         }
     }
 }

@@ -1,10 +1,12 @@
 #include "tests/materials/plain_bodies.h"
 
 #include "tests/displacement/heights.h"
+#include "tests/materials/plain_cage.h"
+#include "tests/materials/plain_textures.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
@@ -58,6 +60,9 @@ struct DisplacedQuad {
                     f.smooth_a = normal(u, v);
                     f.smooth_e1 = normal(b.x, b.y) - f.smooth_a;
                     f.smooth_e2 = normal(c.x, c.y) - f.smooth_a;
+                    f.uv_a = at(texcoords, u, v);
+                    f.uv_e1 = at(texcoords, b.x, b.y) - f.uv_a;
+                    f.uv_e2 = at(texcoords, c.x, c.y) - f.uv_a;
                     body.add(f);
                 }
             }
@@ -65,15 +70,134 @@ struct DisplacedQuad {
 };
 
 constexpr int parts = 24; // of a displaced face, both ways
+constexpr int divisions = 4;
 
-DisplacedQuad displaced(const Scene& scene, const Mesh& mesh, std::size_t first, const Material& material) {
-    DisplacedQuad quad{
-        {}, {}, material, scene.textures[static_cast<std::size_t>(material.displacement_map.texture)]};
-    for (std::size_t k = 0; k < 4; ++k) {
-        quad.points[k] = mesh.points[static_cast<std::size_t>(mesh.face_vertices[first + k])];
-        quad.texcoords[k] = mesh.texcoords[static_cast<std::size_t>(mesh.face_texcoords[first + k])];
+std::size_t at(int n) {
+    return static_cast<std::size_t>(n);
+}
+
+/// A mesh in its object's own units: bodies of faces that lie together.
+class Cutter {
+public:
+    Cutter(const Scene& scene, const Mesh& mesh, int material) : scene_(scene), mesh_(mesh), all_(material) {}
+
+    std::vector<Body> bodies() const {
+        if (mesh_.scheme == Scheme::catmull_clark)
+            return subdivided();
+        Body body;
+        std::size_t first = 0;
+        for (std::size_t f = 0; f < mesh_.face_sizes.size(); ++f) {
+            add_flat(f, first, body);
+            first += at(mesh_.face_sizes[f]);
+        }
+        return {body};
     }
-    return quad;
+
+private:
+    const Material& material_of(std::size_t face) const {
+        const int own = mesh_.face_materials.empty() ? mesh_.material : mesh_.face_materials[face];
+        return scene_.materials[at(all_ >= 0 ? all_ : own)];
+    }
+    Facet facet(const Material& m, const dvec3& a, const dvec3& b, const dvec3& c) const {
+        Facet f{a, b - a, c - a, glm::normalize(glm::cross(b - a, c - a)), &m};
+        if (m.alpha_cutoff > 0 && m.albedo_map.texture >= 0)
+            f.holes = &scene_.textures[at(m.albedo_map.texture)];
+        return f;
+    }
+    void add_flat(std::size_t face, std::size_t first, Body& body) const {
+        const Material& material = material_of(face);
+        const auto point = [&](int k) { return mesh_.points[at(mesh_.face_vertices[first + at(k)])]; };
+        const auto texcoord = [&](int k) {
+            return glm::dvec2(mesh_.texcoords[at(mesh_.face_texcoords[first + at(k)])]);
+        };
+        if (is_displaced(material)) {
+            DisplacedQuad quad{{}, {}, material, scene_.textures[at(material.displacement_map.texture)]};
+            for (int k = 0; k < 4; ++k) {
+                quad.points[at(k)] = point(k);
+                quad.texcoords[at(k)] = texcoord(k);
+            }
+            quad.cut(parts, body);
+            return;
+        }
+        for (int k = 1; k + 1 < mesh_.face_sizes[face]; ++k) {
+            Facet f = facet(material, point(0), point(k), point(k + 1));
+            if (!mesh_.face_texcoords.empty()) {
+                f.uv_a = texcoord(0);
+                f.uv_e1 = texcoord(k) - f.uv_a;
+                f.uv_e2 = texcoord(k + 1) - f.uv_a;
+            }
+            body.add(f);
+        }
+    }
+    std::vector<Body> subdivided() const {
+        const PlainQuads quads = plain_limit(mesh_, divisions);
+        const auto point = [&](int v) { return quads.points[at(v)]; };
+        const auto normal = [&](int v) { return quads.normals[at(v)]; };
+        std::vector<Body> bodies;
+        std::size_t quad = 0;
+        for (std::size_t f = 0; f < mesh_.face_sizes.size(); ++f)
+            for (int corner = 0; corner < mesh_.face_sizes[f]; ++corner) {
+                Body& body = bodies.emplace_back();
+                for (std::size_t end = quad + (std::size_t{1} << (2 * (divisions - 1))); quad < end; ++quad) {
+                    const auto& [a, b, c, d] = quads.faces[quad];
+                    for (const auto& [second, third] : {std::pair(b, c), std::pair(c, d)}) {
+                        Facet part = facet(material_of(f), point(a), point(second), point(third));
+                        part.smooth_a = normal(a);
+                        part.smooth_e1 = normal(second) - normal(a);
+                        part.smooth_e2 = normal(third) - normal(a);
+                        body.add(part);
+                    }
+                }
+            }
+        return bodies;
+    }
+
+    const Scene& scene_;
+    const Mesh& mesh_;
+    int all_; // the material that stands for all others; -1: none
+};
+
+/// As it stands where it is drawn: fronts stay fronts.
+Body placed(const Body& body, const Affine& to_world) {
+    Body out;
+    out.to_object = inverse(to_world);
+    const double size = glm::determinant(to_world.linear);
+    out.scale = std::cbrt(std::abs(size));
+    const glm::dmat3 of_normals = glm::transpose(out.to_object.linear);
+    for (Facet f : body.facets) {
+        f.a = to_world(f.a);
+        f.e1 = to_world.linear * f.e1;
+        f.e2 = to_world.linear * f.e2;
+        f.normal = glm::normalize(of_normals * f.normal);
+        if (f.smooth_a != dvec3(0)) {
+            const auto turned = [&](const dvec3& n) { return glm::normalize(of_normals * n); };
+            const dvec3 a = turned(f.smooth_a);
+            f.smooth_e1 = turned(f.smooth_a + f.smooth_e1) - a;
+            f.smooth_e2 = turned(f.smooth_a + f.smooth_e2) - a;
+            f.smooth_a = a;
+        }
+        out.add(f);
+    }
+    return out;
+}
+
+void draw(const Scene& scene, std::size_t group, const Affine& above, int material,
+          std::vector<Body>& bodies) {
+    for (const Placement& p : scene.graph.groups[group].placements) {
+        const int stated = p.material >= 0 ? p.material : material;
+        for (int copy = 0; copy < p.copies.x * p.copies.y * p.copies.z; ++copy) {
+            const glm::ivec3 step(copy % p.copies.x, copy / p.copies.x % p.copies.y,
+                                  copy / (p.copies.x * p.copies.y));
+            Affine local = to_affine(p.local);
+            local.translation += dvec3(step) * p.spacing;
+            const Affine to_world = above * local;
+            if (p.group >= 0)
+                draw(scene, at(p.group), to_world, stated, bodies);
+            else
+                for (const Body& body : Cutter(scene, scene.meshes[at(p.mesh)], stated).bodies())
+                    bodies.push_back(placed(body, to_world));
+        }
+    }
 }
 
 } // namespace
@@ -98,7 +222,7 @@ bool Body::may_meet(const dvec3& o, const dvec3& d) const {
     return begin <= end;
 }
 
-bool meet(const Facet& f, const dvec3& o, const dvec3& d, Meeting& m) {
+bool meet(const Body& body, const Facet& f, const dvec3& o, const dvec3& d, Meeting& m) {
     const dvec3 p = glm::cross(d, f.e2), s = o - f.a, q = glm::cross(s, f.e1);
     const double det = glm::dot(f.e1, p);
     if (det == 0)
@@ -107,35 +231,22 @@ bool meet(const Facet& f, const dvec3& o, const dvec3& d, Meeting& m) {
     const bool one_sided = !f.material->two_sided && f.material->transmission == 0;
     if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 1e-7 && t < m.t) || (one_sided && glm::dot(f.normal, d) > 0))
         return false;
-    m = {t, u, v, &f};
+    if (f.holes != nullptr &&
+        plain_opacity(*f.holes, f.material->albedo_map, f.uv_a + u * f.uv_e1 + v * f.uv_e2) <
+            double{f.material->alpha_cutoff})
+        return false;
+    m = {t, u, v, &f, &body};
     return true;
 }
 
 std::vector<Body> plain_bodies(const Scene& scene) {
     std::vector<Body> bodies;
-    for (const Mesh& mesh : scene.meshes) {
-        const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-        Body& body = bodies.emplace_back();
-        std::size_t first = 0;
-        for (const int size : mesh.face_sizes) {
-            if (is_displaced(material)) {
-                displaced(scene, mesh, first, material).cut(parts, body);
-                first += static_cast<std::size_t>(size);
-                continue;
-            }
-            const auto corner = [&](int k) {
-                return mesh.points[static_cast<std::size_t>(
-                    mesh.face_vertices[first + static_cast<std::size_t>(k)])];
-            };
-            for (int k = 1; k + 1 < size; ++k) {
-                Facet f{corner(0), corner(k) - corner(0), corner(k + 1) - corner(0), {}, nullptr};
-                f.normal = glm::normalize(glm::cross(f.e1, f.e2));
-                f.material = &material;
-                body.add(f);
-            }
-            first += static_cast<std::size_t>(size);
-        }
-    }
+    if (scene.graph.groups.empty())
+        for (const Mesh& mesh : scene.meshes)
+            for (Body& body : Cutter(scene, mesh, -1).bodies())
+                bodies.push_back(std::move(body));
+    else
+        draw(scene, 0, {}, -1, bodies);
     return bodies;
 }
 

@@ -64,9 +64,15 @@ template <class Fresnel> dvec3 lobe(const dvec3& v, double alpha, int n, Fresnel
 double PlainSurface::schlick(double cosine) {
     return std::pow(1 - std::min(cosine, 1.0), 5);
 }
+double PlainSurface::graze(double cosine) const {
+    if (!inside_)
+        return schlick(cosine);
+    const double sine = m_.ior * std::sqrt(std::max(1 - cosine * cosine, 0.0)); // outside
+    return sine >= 1 ? 1 : schlick(std::sqrt(1 - sine * sine));
+}
 double PlainSurface::dielectric(double cosine) const {
     const double f0 = std::pow((m_.ior - 1.0) / (m_.ior + 1.0), 2);
-    return m_.specular * (f0 + (1 - f0) * schlick(cosine));
+    return m_.specular * (f0 + (1 - f0) * graze(cosine));
 }
 double PlainSurface::below(double view, double light) const {
     const double f0 = std::pow((m_.ior - 1.0) / (m_.ior + 1.0), 2);
@@ -75,7 +81,7 @@ double PlainSurface::below(double view, double light) const {
 }
 dvec3 PlainSurface::base_fresnel(double cosine) const {
     const dvec3 albedo(m_.albedo);
-    const dvec3 metal = albedo + (dvec3(1) - albedo) * schlick(cosine);
+    const dvec3 metal = albedo + (dvec3(1) - albedo) * graze(cosine);
     return double(m_.metallic) * metal + dvec3((1 - double(m_.metallic)) * dielectric(cosine));
 }
 double PlainSurface::coat_fresnel(double cosine) const {
@@ -126,21 +132,26 @@ dvec3 PlainSurface::reflected(const dvec3& v, int n) const {
            lobe(v, coat_alpha, n, [this](double c, double) { return coat_fresnel(c); });
 }
 
+dvec3 PlainSurface::through(const dvec3& v, const dvec3& h, dvec3& l) const {
+    const double alpha = double(m_.roughness) * m_.roughness;
+    const double eta = inside_ ? double(m_.ior) : 1 / double(m_.ior), along = glm::dot(v, h);
+    const double sine_square = eta * eta * (1 - along * along);
+    if (along <= 0 || sine_square >= 1)
+        return dvec3(0);
+    l = (eta * along - std::sqrt(1 - sine_square)) * h - eta * v;
+    if (l.z >= 0)
+        return dvec3(0);
+    const double weight = alpha < 1e-3 ? 1 : shadowing(v, l, alpha) * along / (v.z * h.z);
+    // Radiance is as much larger as the cone that it comes from is narrower.
+    return dvec3(m_.albedo) * (let_through() * weight * (1 - dielectric(along)) * eta * eta *
+                               below_sheen(v.z, -l.z) * (1 - coat_fresnel(v.z)));
+}
+
 dvec3 PlainSurface::transmitted(const dvec3& v, int n) const {
-    const double alpha = double(m_.roughness) * m_.roughness, eta = 1 / double(m_.ior);
-    const dvec3 colour = dvec3(m_.albedo) * ((1 - double(m_.metallic)) * m_.transmission);
-    return (1 - coat_fresnel(v.z)) * over_normals(alpha, n, [&](const dvec3& h) {
-               const double along = glm::dot(v, h);
-               if (along <= 0)
-                   return dvec3(0);
-               const double through = std::sqrt(1 - eta * eta * (1 - along * along));
-               const dvec3 l = (eta * along - through) * h - eta * v;
-               if (l.z >= 0)
-                   return dvec3(0);
-               const double weight = alpha < 1e-3 ? 1 : shadowing(v, l, alpha) * along / (v.z * h.z);
-               const double kept = below_sheen(v.z, -l.z);
-               return colour * (weight * (1 - dielectric(along)) * eta * eta * kept);
-           });
+    return over_normals(double(m_.roughness) * m_.roughness, n, [&](const dvec3& h) {
+        dvec3 l;
+        return through(v, h, l);
+    });
 }
 
 } // namespace razor::test

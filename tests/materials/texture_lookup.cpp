@@ -38,7 +38,9 @@ int wrapped(int n, int size, Wrap wrap) {
     return n < size ? n : 2 * size - 1 - n;
 }
 
-dvec3 bilinear_lookup(const Texture& t, std::size_t level, const dvec2& at) {
+/// `texels`: the level's colours or opacity.
+dvec3 bilinear_lookup(const Texture& t, std::size_t level, const std::vector<std::uint32_t>& texels,
+                      const dvec2& at) {
     const TextureLevel& l = t.pyramid->levels[level];
     const double x = at.x * l.width - 0.5, y = (1 - at.y) * l.height - 0.5;
     const double x0 = std::floor(x), y0 = std::floor(y);
@@ -48,7 +50,7 @@ dvec3 bilinear_lookup(const Texture& t, std::size_t level, const dvec2& at) {
             const int column = wrapped(static_cast<int>(x0) + i, l.width, t.wrap_u);
             const int row = wrapped(static_cast<int>(y0) + j, l.height, t.wrap_v);
             const double share = (i == 0 ? 1 - (x - x0) : x - x0) * (j == 0 ? 1 - (y - y0) : y - y0);
-            sum += share * dvec3(unpack_shared_exponent(l.texels[word_of(l, column, row)]));
+            sum += share * dvec3(unpack_shared_exponent(texels[word_of(l, column, row)]));
         }
     return sum;
 }
@@ -91,9 +93,17 @@ dvec3 colour_at(const Texture& t, const dvec2& at, double area) {
     const double texels = area * levels[0].width * levels[0].height;
     const double level = std::clamp(0.5 * std::log2(std::max(texels, 1e-12)), 0.0, last);
     const double below = std::floor(level);
-    const dvec3 fine = bilinear_lookup(t, static_cast<std::size_t>(below), at);
-    const dvec3 coarse = bilinear_lookup(t, static_cast<std::size_t>(std::min(below + 1, last)), at);
+    const auto colour = [&](double number) {
+        const auto n = static_cast<std::size_t>(number);
+        return bilinear_lookup(t, n, levels[n].texels, at);
+    };
+    const dvec3 fine = colour(below), coarse = colour(std::min(below + 1, last));
     return fine + (level - below) * (coarse - fine);
+}
+
+double opacity_at(const Texture& t, const dvec2& at) {
+    const std::vector<std::uint32_t>& opacity = t.pyramid->levels[0].opacity;
+    return opacity.empty() ? 1 : bilinear_lookup(t, 0, opacity, at).x;
 }
 
 dvec2 mapped_by(const TextureMap& map, const dvec2& uv) {

@@ -21,6 +21,8 @@ Texture plain_texture(const glm::vec3& colour);
 
 /// `area`: in mapped texture coordinates, of what is asked for.
 glm::dvec3 colour_at(const Texture& t, const glm::dvec2& at, double area);
+/// Of its finest level, from 0 to 1.
+double opacity_at(const Texture& t, const glm::dvec2& at);
 glm::dvec2 mapped_by(const TextureMap& map, const glm::dvec2& uv);
 
 /// Texture coordinates from x and z of a floor.

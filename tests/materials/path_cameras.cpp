@@ -1,0 +1,56 @@
+// Pictures by cameras with a lens and without perspective against paths that are followed one by one in
+// double.
+#include "tests/materials/compare_paths.h"
+#include "tests/materials/room.h"
+
+#include <gtest/gtest.h>
+
+namespace razor::test {
+namespace {
+
+/// Surfaces near and far, of many edges.
+Scene deep_room() {
+    Scene s = room();
+    s.meshes.push_back(box("near", {0.7, 0, 1.4}, {0.5, 0.9, 0.5}, 25, 3));
+    s.meshes.push_back(box("far", {-1.6, 0, -1.6}, {0.9, 1.5, 0.6}, 10, 3));
+    s.meshes.push_back(ball("ball", {-0.2, 0.5, 0.2}, 0.5, 4));
+    s.materials.push_back(named("box", {0.2F, 0.7F, 0.3F}));
+    s.materials.push_back(named("metal", {0.9F, 0.7F, 0.3F}));
+    s.materials.back().metallic = 1;
+    s.materials.back().roughness = 0.3F;
+    s.materials[1].emission = {0.3F, 0.6F, 0.9F}; // bright behind what is dark
+    s.materials[2].albedo = {0.1F, 0.05F, 0.05F};
+    s.settings.diffuse_bounces = 1;
+    return s;
+}
+
+TEST(PathsOfCameras, ThinLens) {
+    for (const double focus : {0.0, 3.2}) { // on the target, and before it
+        Scene s = deep_room();
+        s.name = focus > 0 ? "thin lens, near in focus" : "thin lens";
+        s.camera.aperture_radius = 0.6;
+        s.camera.focus_distance = focus;
+        expect_same_picture(s, 320);
+        Scene pinhole = s, further = s;
+        pinhole.camera.aperture_radius = 0;
+        further.camera.focus_distance = 9;
+        expect_other_picture(s, pinhole, 160);
+        expect_other_picture(s, further, 160);
+    }
+}
+
+TEST(PathsOfCameras, Orthographic) {
+    Scene s = deep_room();
+    s.name = "orthographic";
+    s.camera.projection = Projection::orthographic;
+    s.camera.height = 3.4;
+    expect_same_picture(s, 160);
+    Scene larger = s, perspective = s;
+    larger.camera.height = 3.6;
+    perspective.camera.projection = Projection::perspective;
+    expect_other_picture(s, larger, 80);
+    expect_other_picture(s, perspective, 80);
+}
+
+} // namespace
+} // namespace razor::test
