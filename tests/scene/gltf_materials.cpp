@@ -155,6 +155,24 @@ TEST(GltfMaterials, MapsAndImagesWhereverTheyAre) {
     EXPECT_EQ(read(other, folder).own_materials->materials[0].metallic_map.texture, -1);
 }
 
+TEST(GltfMaterials, TexturesThatArePassedOverAreTold) {
+    const TemporaryFolder folder;
+    const Json texture{{"index", 0}};
+    const Mesh mesh = read(with_images({{"name", "cloth"},
+                                        {"extensions",
+                                         {{"KHR_materials_sheen",
+                                           {{"sheenColorFactor", {1, 1, 1}}, {"sheenColorTexture", texture}}},
+                                          {"KHR_materials_clearcoat", {{"clearcoatTexture", texture}}}}}},
+                                       folder),
+                           folder);
+    ASSERT_EQ(mesh.own_materials->notes.size(), 1U);
+    EXPECT_NE(mesh.own_materials->notes[0].find(
+                  "material 'cloth': textures that are passed over: clearcoatTexture, sheenColorTexture"),
+              std::string::npos)
+        << mesh.own_materials->notes[0];
+    EXPECT_TRUE(read(with_images({{"name", "plain"}}, folder), folder).own_materials->notes.empty());
+}
+
 TEST(GltfMaterials, DataUrisAreDecoded) {
     const TemporaryFolder folder;
     GltfWriter w = with_images({{"emissiveTexture", {{"index", 1}}}}, folder);

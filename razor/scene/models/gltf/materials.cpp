@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace razor::gltf {
 namespace {
@@ -84,7 +86,29 @@ private:
         m.normal_scale = f.object("normalTexture").number("scale", 1, normal_scale_range);
         set_opacity(f, colour.w, m);
         m.two_sided = f.flag("doubleSided") || m.transmission > 0;
+        note_passed_over(f, m);
         return m;
+    }
+
+    /// Textures of extensions: of these only the factors are read.
+    void note_passed_over(const Fields& f, const Material& m) {
+        static constexpr std::array<std::pair<const char*, const char*>, 9> unread{
+            {{"KHR_materials_specular", "specularTexture"},
+             {"KHR_materials_specular", "specularColorTexture"},
+             {"KHR_materials_transmission", "transmissionTexture"},
+             {"KHR_materials_volume", "thicknessTexture"},
+             {"KHR_materials_clearcoat", "clearcoatTexture"},
+             {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+             {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
+             {"KHR_materials_sheen", "sheenColorTexture"},
+             {"KHR_materials_sheen", "sheenRoughnessTexture"}}};
+        std::string found;
+        for (const auto& [extension, texture] : unread)
+            if (f.extension(extension).has(texture))
+                found += fmt::format("{}{}", found.empty() ? "" : ", ", texture);
+        if (!found.empty())
+            result_.notes.push_back(fmt::format("{}: material '{}': textures that are passed over: {}",
+                                                printable(document_.file, 1000), printable(m.name), found));
     }
 
     static void set_opacity(const Fields& f, float factor, Material& m) {
