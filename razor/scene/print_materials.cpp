@@ -47,10 +47,12 @@ std::string to_toml(const Texture& texture) {
             toml_text(word_of(pattern_space_words, p.space)), toml_number(p.size), toml_value(p.low),
             toml_value(p.high), p.octaves, toml_value(p.gain), toml_value(p.amount));
     }
-    return fmt::format("\n[[texture]]\nname = {}\nfile = {}\ncolor_space = {}\nwrap = {}\n",
-                       toml_text(texture.name), toml_text(texture.file),
-                       toml_text(word_of(color_space_words, texture.linear)),
-                       toml_text(word_of(wrap_words, texture.wrap_u)));
+    const std::string wrap_u = toml_text(word_of(wrap_words, texture.wrap_u));
+    const std::string wrap_v = toml_text(word_of(wrap_words, texture.wrap_v));
+    return fmt::format("\n[[texture]]\nname = {}\nfile = {}\ncolor_space = {}\n{}", toml_text(texture.name),
+                       toml_text(texture.file), toml_text(word_of(color_space_words, texture.linear)),
+                       wrap_u == wrap_v ? fmt::format("wrap = {}\n", wrap_u)
+                                        : fmt::format("wrap_u = {}\nwrap_v = {}\n", wrap_u, wrap_v));
 }
 
 std::string to_toml(const Material& material, const std::vector<Texture>& textures) {

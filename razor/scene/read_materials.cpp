@@ -81,7 +81,9 @@ Texture read_texture(TomlTable& table, const std::filesystem::path& folder, Text
     table.may_have("pattern");
     const std::string file = table.text("file", "");
     texture.linear = choose(table, "color_space", false, color_space_words);
-    texture.wrap_u = texture.wrap_v = choose(table, "wrap", Wrap::repeat, wrap_words);
+    const Wrap both = choose(table, "wrap", Wrap::repeat, wrap_words);
+    texture.wrap_u = choose(table, "wrap_u", both, wrap_words);
+    texture.wrap_v = choose(table, "wrap_v", both, wrap_words);
     table.finish();
     if (texture.name.empty()) {
         table.fail("name", "a texture without a name; write name = \"...\"");

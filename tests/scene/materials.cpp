@@ -44,6 +44,27 @@ constexpr std::string_view textures = "[[texture]]\nname = \"bricks\"\nfile = \"
                                       "[[texture]]\nname = \"rough\"\nfile = \"b.jpg\"\n"
                                       "color_space = \"linear\"\nwrap = \"mirror\"\n";
 
+/// Each direction has what it states, else what both do; and keeps it when the scene is printed.
+TEST(Materials, TexturesWrapEachWayByItself) {
+    const TemporaryFolder folder;
+    add_pictures(folder);
+    for (const auto& [stated, u, v] : std::vector<std::tuple<std::string, Wrap, Wrap>>{
+             {"wrap_u = \"clamp\"", Wrap::clamp, Wrap::repeat},
+             {"wrap_v = \"mirror\"", Wrap::repeat, Wrap::mirror},
+             {"wrap = \"mirror\"\nwrap_u = \"clamp\"", Wrap::clamp, Wrap::mirror},
+             {"wrap_u = \"mirror\"\nwrap_v = \"clamp\"", Wrap::mirror, Wrap::clamp}}) {
+        const std::string text = "[[texture]]\nname = \"t\"\nfile = \"a.png\"\n" + stated +
+                                 "\n[[material]]\nname = \"m\"\nalbedo_map = \"t\"\n" + box;
+        const SceneDescription read = parsed(text, folder.path());
+        const SceneDescription again = parsed(to_toml(read), folder.path());
+        for (const SceneDescription* scene : {&read, &again}) {
+            ASSERT_EQ(scene->textures.size(), 1U) << stated;
+            EXPECT_EQ(scene->textures[0].wrap_u, u) << stated;
+            EXPECT_EQ(scene->textures[0].wrap_v, v) << stated;
+        }
+    }
+}
+
 TEST(Materials, KindsAreWhatElseIsNotStated) {
     const Material plain{.name = "m"};
     EXPECT_EQ(material(""), plain);
@@ -274,6 +295,8 @@ TEST(Materials, MistakesNamePlaceCauseAndMend) {
         {"[[texture]]\nname = \"t\"\nfile = \"no.png\"\n" + box, "no.png: is no picture that is read"},
         {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\nwrap = \"tile\"\n" + box,
          "texture.wrap 'tile' is unknown"},
+        {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\nwrap_v = \"clam\"\n" + box,
+         "texture.wrap_v 'clam' is unknown; did you mean 'clamp'?"},
         {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\ncolour_space = \"linear\"\n" + box,
          "unknown key 'texture.colour_space'; did you mean 'color_space'?"},
         {"[[texture]]\nname = \"t\"\nfile = \"a.png\"\n[[texture]]\nname = \"t\"\nfile = \"a.png\"\n" + box,
