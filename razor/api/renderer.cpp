@@ -1,10 +1,13 @@
 #include "razor/api/renderer.h"
 
+#include "razor/api/mesh_file.h"
 #include "razor/api/scene_state.h"
 #include "razor/image/output.h"
+#include "razor/image/output_file.h"
 #include "razor/native/render.h"
 #include "razor/native/targets.h"
 #include "razor/scene/animation/moving_scene.h"
+#include "razor/scene/text_file.h"
 #include "razor/survey/layers.h"
 
 #include <fmt/format.h>
@@ -110,6 +113,16 @@ const Film& Renderer::render(const RenderCalls& calls) {
     s.pose();
     s.result = s.native->render(calls);
     return s.result->film;
+}
+
+MeshFigures Renderer::write_mesh(const std::filesystem::path& file) const {
+    if (file.extension() != ".obj")
+        throw UserError(fmt::format("{}: the mesh is written as OBJ only; end the name in .obj",
+                                    printable(file.string(), 1000)));
+    check_writable(file.string());
+    MovingScene moving(state_->scene.description());
+    moving.go_to(state_->seconds);
+    return write_mesh_file(file, moving.scene(), state_->options.isa);
 }
 
 std::string Renderer::scene_text() const {

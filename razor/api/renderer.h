@@ -56,6 +56,11 @@ struct Statistics {
     PassFigures passes;                                          // where there were any
 };
 
+/// What a mesh's file holds.
+struct MeshFigures {
+    long long points = 0, faces = 0;
+};
+
 class Renderer {
 public:
     /// Nothing is analysed before the first picture. Throws UserError for options that are not possible.
@@ -80,6 +85,11 @@ public:
     /// and Cancelled; after either, and after edits, it may be called again. What `calls` calls must not
     /// throw.
     const Film& render(const RenderCalls& calls = {});
+
+    /// Writes what the next picture would see of all surfaces, also of those that are hidden, cut as finely
+    /// as its camera asks for: an .obj with normals, an object for each instance, points in world
+    /// coordinates. The file is whole or not there. Throws UserError.
+    MeshFigures write_mesh(const std::filesystem::path& file) const;
 
     // Of the last picture, also while its passes are told:
     /// The scene file of that moment.

@@ -3,9 +3,15 @@
 
 #include "razor/api/layers.h"
 #include "razor/image/exr.h"
+#include "razor/scene/description.h"
 #include "tests/scene/temporary_folder.h"
 
+#include <glm/common.hpp>
+
 #include <atomic>
+#include <fstream>
+#include <map>
+#include <sstream>
 #include <thread>
 
 namespace razor {
@@ -136,6 +142,57 @@ TEST(Renders, HaveLayersAsTheirFilesDo) {
     }
     EXPECT_THROW(api::plane_name("layer", "lot"), UserError);
     EXPECT_THROW(api::in_colours(film, "kd.depth"), std::invalid_argument);
+}
+
+/// Where each object of an OBJ file lies: the least and the largest of its points.
+std::map<std::string, std::pair<glm::dvec3, glm::dvec3>> boxes_of(const std::filesystem::path& file) {
+    std::map<std::string, std::pair<glm::dvec3, glm::dvec3>> boxes;
+    std::ifstream text(file);
+    std::string line, name;
+    while (std::getline(text, line)) {
+        std::istringstream words(line);
+        std::string kind;
+        words >> kind;
+        glm::dvec3 p;
+        if (kind == "o") {
+            words >> name;
+            boxes[name] = {glm::dvec3(1e30), glm::dvec3(-1e30)};
+        } else if (kind == "v" && words >> p.x >> p.y >> p.z) {
+            boxes[name] = {glm::min(boxes[name].first, p), glm::max(boxes[name].second, p)};
+        }
+    }
+    return boxes;
+}
+
+TEST(Renders, WriteMeshesAsTheyAreEditedAndAtTheirMoment) {
+    const TemporaryFolder folder;
+    Renderer renderer(Scene::parse(small_scene), {.threads = 1});
+    const api::MeshFigures written = renderer.write_mesh(folder / "a.obj");
+    const auto before = boxes_of(folder / "a.obj");
+    EXPECT_EQ(before.size(), 6U) << "instances";
+    EXPECT_THROW(renderer.statistics(), std::logic_error) << "no picture was rendered";
+
+    const Scene again = Scene::load(folder / "a.obj", {.floor = false, .scheme = Scheme::bilinear});
+    std::size_t faces = 0, points = 0;
+    for (const MeshDescription& mesh : again.description().meshes) {
+        faces += mesh.cage->face_sizes.size();
+        points += mesh.cage->points.size();
+    }
+    EXPECT_EQ(static_cast<long long>(faces), written.faces);
+    EXPECT_EQ(static_cast<long long>(points), written.points);
+
+    renderer.scene().set_transform("back", {.translate = {0, 0.5, -1.5}});
+    renderer.go_to(0.5); // the gear has turned by 45 degrees about z
+    renderer.write_mesh(folder / "b.obj");
+    const auto after = boxes_of(folder / "b.obj");
+    EXPECT_EQ(after.at("floor"), before.at("floor"));
+    for (const char* name : {"pawn.3", "pawn.4"}) {
+        EXPECT_NEAR(after.at(name).first.y, before.at(name).first.y + 0.5, 1e-2) << name;
+        EXPECT_NEAR(after.at(name).second.y, before.at(name).second.y + 0.5, 1e-2) << name;
+    }
+    EXPECT_NE(after.at("gear"), before.at("gear"));
+    EXPECT_THROW(renderer.write_mesh(folder / "a.ply"), UserError);
+    EXPECT_THROW(renderer.write_mesh(folder / "none/a.obj"), UserError);
 }
 
 TEST(Renders, TellWhatTheyTook) {
