@@ -5,6 +5,7 @@
 #include "razor/scene/crop.h"
 #include "razor/scene/default_scene.h"
 #include "razor/scene/error.h"
+#include "razor/scene/models/model_file.h"
 #include "razor/scene/scene_file.h"
 #include "razor/scene/words.h"
 
@@ -92,6 +93,11 @@ void SceneOptions::add_to(CLI::App& app, const std::string& scene_name) {
     app.add_option("--frame", frame_, "of what moves, this moment, counted from 0; without it, 0")
         ->type_name("N");
     app.add_option("--scheme", scheme_, "surfaces of all meshes: catmark or bilinear")->type_name("NAME");
+    app.add_option(
+           "--crease-angle", crease_angle_,
+           "of an MD3 or glTF model: edges stay hard where normals of the file differ by more than so many "
+           "degrees between their faces; without it none does")
+        ->type_name("DEGREES");
     app.add_option("--up", up_, "the axis of a model file that points up: y or z")->type_name("AXIS");
     app.add_flag("--no-floor", no_floor_, "put no floor under a model file");
     app.add_flag("--everything", everything_,
@@ -165,6 +171,13 @@ SceneDescription SceneOptions::describe_moving() const {
     constexpr std::array<std::string_view, 2> axes{"y", "z"};
     framing.up = parse_choice("--up", up_, axes) == 0 ? Up::y : Up::z;
     framing.floor = !no_floor_;
+    if (!crease_angle_.empty()) {
+        framing.crease_angle = parse_number("--crease-angle", crease_angle_, {0, no_crease_angle});
+        if (!has_split_points(scene_)) {
+            throw UserError("--crease-angle: only MD3 and glTF models have normals instead of creases; leave "
+                            "it out, or state crease_angle in the scene file's [[mesh]]");
+        }
+    }
     if (!scheme_.empty()) {
         framing.scheme = parse_scheme(scheme_);
     }

@@ -29,7 +29,7 @@ public:
 private:
     std::string scene_, size_, crop_, samples_, noise_threshold_, filter_, filter_radius_, light_samples_,
         light_choices_, sky_samples_, bounces_, diffuse_bounces_, seed_, edge_pixels_, lod_, shading_,
-        scheme_, frame_, up_ = "y";
+        scheme_, frame_, crease_angle_, up_ = "y";
     bool no_floor_ = false, everything_ = false;
 };
 

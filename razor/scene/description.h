@@ -10,6 +10,7 @@
 #include "razor/scene/from_model.h"
 #include "razor/scene/graph/flatten.h"
 #include "razor/scene/instance_table.h"
+#include "razor/scene/models/hard_edges.h"
 #include "razor/scene/scene.h"
 
 #include <memory>
@@ -31,9 +32,11 @@ struct MeshDescription {
     std::string material; // of all faces; empty: those that the file itself states, but for
     std::vector<std::pair<std::string, std::string>> materials; // names of these, each with what replaces it
     glm::dvec3 scale{1, 1, 1};                                  // positive
-    glm::dvec3 rotate{0, 0, 0};      // degrees, about x, then y, then z; quarter turns are exact
-    glm::dvec3 translate{0, 0, 0};   // world units
-    double edge_length = 0;          // see Mesh::edge_length
+    glm::dvec3 rotate{0, 0, 0};    // degrees, about x, then y, then z; quarter turns are exact
+    glm::dvec3 translate{0, 0, 0}; // world units
+    double edge_length = 0;        // see Mesh::edge_length
+    /// Of MD3 and glTF models, degrees: see hard_edges() (razor/scene/models/hard_edges.h).
+    double crease_angle = no_crease_angle;
     Playback playback;               // of the file's motion, and when the deformers are at work
     std::vector<Deformer> deformers; // one after the other
     // As read or generated, before deformers, scale, rotate and translate: at the beginning, and its motion,

@@ -237,6 +237,7 @@ SceneDescription frame_model(const std::filesystem::path& path, const FramingOpt
     SceneDescription scene = empty_scene(options);
     MeshDescription& model = scene.meshes.emplace_back();
     model.file = std::filesystem::absolute(path).lexically_normal().string();
+    model.crease_angle = options.crease_angle;
     load_cage(model);
     model.name = cage_name(model.file);
     model.scheme = options.scheme;

@@ -14,7 +14,8 @@ struct FramingOptions {
     Up up = Up::y;
     bool floor = true; // a wide flat rectangle under the model
     Scheme scheme = Scheme::catmull_clark;
-    Settings settings; // the picture's shape decides how far the camera stands away
+    double crease_angle = no_crease_angle; // of the model: see MeshDescription
+    Settings settings;                     // the picture's shape decides how far the camera stands away
 };
 
 /// A scene of one model. What a glTF file brings is used: its first perspective camera, and its lights,

@@ -182,6 +182,9 @@ std::string to_toml(const SceneDescription& description) {
         fmt::format_to(out, "scale = {}\nrotate = {}\ntranslate = {}\nedge_length = {}\n",
                        toml_value(mesh.scale), toml_value(mesh.rotate), toml_value(mesh.translate),
                        toml_number(mesh.edge_length));
+        if (mesh.crease_angle < no_crease_angle) {
+            fmt::format_to(out, "crease_angle = {}\n", toml_number(mesh.crease_angle));
+        }
         text += playback_to_toml(mesh);
         if (!mesh.parameters.empty()) {
             text += "[mesh.parameters]\n";

@@ -8,6 +8,7 @@
 #include "razor/scene/framing.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/models/cage_source.h"
+#include "razor/scene/models/model_file.h"
 #include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/read_film.h"
@@ -244,6 +245,10 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
     mesh.rotate = table.vector("rotate", mesh.rotate, angle_range);
     mesh.translate = table.vector("translate", mesh.translate, coordinate_range);
     mesh.edge_length = table.number("edge_length", mesh.edge_length, {0, 1e30});
+    mesh.crease_angle = table.number("crease_angle", mesh.crease_angle, {0, no_crease_angle});
+    if (table.has("crease_angle") && !has_split_points(mesh.file)) {
+        table.fail("crease_angle", "only MD3 and glTF models have normals instead of creases; leave it out");
+    }
 
     std::vector<std::string_view> names;
     for (const Material& material : materials) {

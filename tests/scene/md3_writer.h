@@ -17,6 +17,9 @@ struct Md3SurfaceData {
     std::vector<std::array<int, 3>> triangles;                // clockwise seen from outside
     std::vector<std::array<float, 2>> texcoords;              // s, t of each vertex
     std::vector<std::vector<std::array<int, 3>>> frame_steps; // of each frame, of each vertex: 1/64 unit
+    /// As it is stored, of each vertex in frame 0; empty, and in other frames: something that differs from
+    /// vertex to vertex, on which nothing may depend.
+    std::vector<int> normals{};
 };
 
 inline void put(std::string& bytes, std::size_t at, std::int32_t number) {
@@ -50,11 +53,13 @@ inline std::string write_surface(const Md3SurfaceData& data) {
     }
     for (const auto& frame : data.frame_steps) {
         for (const auto& p : frame) {
+            const std::size_t number = points.size() / 8;
+            const auto normal = static_cast<std::uint32_t>(number < data.normals.size() ? data.normals[number]
+                                                                                        : int(points.size()));
             append(points, static_cast<std::int32_t>((static_cast<std::uint32_t>(p[0]) & 0xFFFFU) |
                                                      static_cast<std::uint32_t>(p[1]) << 16U));
-            // A normal that differs from vertex to vertex: nothing may depend on it.
-            append(points, static_cast<std::int32_t>((static_cast<std::uint32_t>(p[2]) & 0xFFFFU) |
-                                                     static_cast<std::uint32_t>(points.size()) << 16U));
+            append(points,
+                   static_cast<std::int32_t>((static_cast<std::uint32_t>(p[2]) & 0xFFFFU) | normal << 16U));
         }
     }
     std::string bytes = "IDP3";

@@ -28,14 +28,14 @@ std::pair<int, int> all_frames(const std::string& file) {
 std::string key_of(const MeshDescription& mesh) {
     const Playback& p = mesh.playback;
     const auto [first, last] = p.frames.value_or(std::pair(-1, -1));
-    return fmt::format("{}\n{}\n{} {} {} {} {} {}", mesh.file, p.clip_file, first, last, p.frame_rate,
-                       static_cast<int>(p.timing.interpolation), p.timing.cycle, p.clip);
+    return fmt::format("{}\n{}\n{} {} {} {} {} {} {}", mesh.file, p.clip_file, first, last, p.frame_rate,
+                       static_cast<int>(p.timing.interpolation), p.timing.cycle, mesh.crease_angle, p.clip);
 }
 
 CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
-    Md3Model model = read_md3(mesh.file);
+    Md3Model model = read_md3(mesh.file, mesh.crease_angle);
     const int last = static_cast<int>(model.frames.size()) - 1;
     if (!p.frames)
         p.frames = {0, last};
@@ -58,7 +58,7 @@ CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
 CageCache::Entry read_clip(const MeshDescription& mesh, TextureCache& textures) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
-    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle, &textures, p.clip_file);
+    GltfModel model = read_gltf(mesh.file, p.clip, p.timing.cycle, &textures, p.clip_file, mesh.crease_angle);
     if (p.clip.empty() && !model.clips.empty())
         p.clip = model.clips.front();
     entry.source = model.cage;

@@ -71,6 +71,8 @@ void append_faces(const DrawnMesh& drawn, int first_point, bool turn, MaterialRe
         }
     }
     cage.texcoords.insert(cage.texcoords.end(), drawn.texcoords.begin(), drawn.texcoords.end());
+    for (const Crease& c : drawn.creases)
+        cage.creases.push_back({first_point + c.v0, first_point + c.v1, c.sharpness});
 }
 
 /// Texture coordinates at all corners or at none.
@@ -149,7 +151,7 @@ void set_clip_of(const std::filesystem::path& path, GltfModel& model, const Docu
 }
 
 GltfModel read(const std::filesystem::path& path, const std::string& clip_name, double cycle,
-               TextureCache* textures, const std::filesystem::path& clip_file) {
+               TextureCache* textures, const std::filesystem::path& clip_file, double crease_degrees) {
     const Document document = load_document(path);
     if (!(cycle >= 0 && std::isfinite(cycle)))
         document.fail(fmt::format("a cycle of {} s; give 0 or more", cycle));
@@ -165,7 +167,7 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
     for (const int node : nodes_to_draw(document, skeleton)) {
         if (document.nodes[static_cast<std::size_t>(node)].mesh == none)
             continue;
-        DrawnMesh drawn = read_drawn_mesh(document, node);
+        DrawnMesh drawn = read_drawn_mesh(document, node, crease_degrees);
         const bool turn =
             drawn.skin.joints.empty() && is_mirrored(rest.world[static_cast<std::size_t>(node)].linear);
         constexpr std::size_t most = std::numeric_limits<int>::max();
@@ -192,13 +194,13 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
 } // namespace
 
 GltfModel read_gltf(const std::filesystem::path& path, const std::string& clip, double cycle,
-                    TextureCache* textures, const std::filesystem::path& clip_file) {
+                    TextureCache* textures, const std::filesystem::path& clip_file, double crease_degrees) {
     const auto too_large = [&path] {
         return UserError(fmt::format("{}: the model does not fit in memory; give a smaller one",
                                      printable(path.string(), 1000)));
     };
     try {
-        return read(path, clip, cycle, textures, clip_file);
+        return read(path, clip, cycle, textures, clip_file, crease_degrees);
     } catch (const std::bad_alloc&) {
         throw too_large();
     } catch (const std::length_error&) {

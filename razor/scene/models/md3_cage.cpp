@@ -1,5 +1,7 @@
 #include "razor/scene/models/md3_cage.h"
 
+#include "razor/scene/models/hard_edges.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -73,9 +75,11 @@ std::vector<int> number_groups(std::vector<int>& corners, const std::vector<int>
     return first;
 }
 
-/// Adds faces of the triangles whose corners stay distinct, with groups as their points.
-void add_faces(const Md3Triangles& triangles, const Groups& groups, Mesh& cage) {
+/// Adds faces of the triangles whose corners stay distinct, with groups as their points. The normals of their
+/// corners, if there are any.
+std::vector<glm::vec3> add_faces(const Md3Triangles& triangles, const Groups& groups, Mesh& cage) {
     const std::vector<int>& corners = triangles.corners;
+    std::vector<glm::vec3> normals;
     for (std::size_t c = 0; c < corners.size(); c += 3) {
         std::array<int, 3> points{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -88,17 +92,21 @@ void add_faces(const Md3Triangles& triangles, const Groups& groups, Mesh& cage) 
         for (std::size_t i = 0; i < 3; ++i) {
             cage.face_vertices.push_back(points[i]);
             cage.face_texcoords.push_back(groups.texcoord[as_size(corners[c + i])]);
+            if (!triangles.normals.empty()) {
+                normals.push_back(triangles.normals[as_size(corners[c + i])]);
+            }
         }
     }
+    return normals;
 }
 
 } // namespace
 
-Md3Model join(const Md3Triangles& triangles) {
+Md3Model join(const Md3Triangles& triangles, double crease_degrees) {
     const Groups groups = group_vertices(triangles);
     Md3Model model;
     Mesh& cage = model.cage;
-    add_faces(triangles, groups, cage);
+    const std::vector<glm::vec3> normals = add_faces(triangles, groups, cage);
     if (cage.face_sizes.empty()) {
         return model;
     }
@@ -106,6 +114,7 @@ Md3Model join(const Md3Triangles& triangles) {
         cage.texcoords.push_back(triangles.texcoords[as_size(v)]);
     }
     const std::vector<int> vertices = number_groups(cage.face_vertices, groups.point);
+    cage.creases = hard_edges(cage.face_vertices, normals, crease_degrees);
     model.frames.resize(triangles.frame_count);
     for (std::size_t f = 0; f < triangles.frame_count; ++f) {
         model.frames[f].reserve(vertices.size());

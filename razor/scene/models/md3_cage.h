@@ -17,11 +17,12 @@ struct Md3Triangles {
     /// Coordinates in 1/64 unit: x, y, z of the first vertex in frame 0, in frame 1 ..., then the next
     /// vertex.
     std::vector<std::int16_t> steps;
-    std::vector<int> corners; // vertices, three a triangle, counter-clockwise seen from outside
+    std::vector<glm::vec3> normals; // of each vertex in frame 0, unit; empty: not read
+    std::vector<int> corners;       // vertices, three a triangle, counter-clockwise seen from outside
 };
 
 /// The cage, without a name, and its frames as razor/scene/models/md3_reader.h describes them. Without a face
-/// if no triangle keeps three distinct corners.
-Md3Model join(const Md3Triangles& triangles);
+/// if no triangle keeps three distinct corners. `crease_degrees`: see hard_edges.h.
+Md3Model join(const Md3Triangles& triangles, double crease_degrees);
 
 } // namespace razor

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <numbers>
 
 namespace razor {
 namespace {
@@ -37,9 +38,9 @@ constexpr std::uint64_t point_bytes = 8;     // x, y, z: 16 bits; a normal: two 
 
 class Md3Reader {
 public:
-    Md3Reader(std::string_view bytes, std::string_view file_name)
+    Md3Reader(std::string_view bytes, std::string_view file_name, double crease_degrees)
         : bytes_(bytes), file_name_(printable(file_name, 1000)),
-          name_(std::filesystem::path(file_name).stem().string()) {}
+          name_(std::filesystem::path(file_name).stem().string()), crease_degrees_(crease_degrees) {}
 
     Md3Model read() {
         read_header();
@@ -47,7 +48,7 @@ public:
         for (std::uint64_t s = 0; s < surface_count_; ++s) {
             at += read_surface(s, at);
         }
-        Md3Model model = join(all_);
+        Md3Model model = join(all_, crease_degrees_);
         if (model.cage.face_sizes.empty()) {
             fail(fmt::format(
                 "none of its {} triangles has three distinct corners; give a model with a surface",
@@ -199,6 +200,9 @@ private:
         std::size_t to = all_.steps.size();
         all_.steps.resize(to + 3 * count * all_.frame_count);
         for (std::uint64_t v = 0; v < count; ++v) {
+            if (crease_degrees_ < no_crease_angle) {
+                all_.normals.push_back(normal(at + point_bytes * v + 6));
+            }
             for (std::uint64_t f = 0; f < all_.frame_count; ++f) {
                 const std::uint64_t from = at + point_bytes * (f * count + v);
                 for (std::uint64_t axis = 0; axis < 3; ++axis) {
@@ -207,6 +211,14 @@ private:
                 }
             }
         }
+    }
+
+    /// Of frame 0, as two angles: from z, and about it from x; 255 steps a turn.
+    glm::vec3 normal(std::uint64_t at) const {
+        constexpr float step = 2 * std::numbers::pi_v<float> / 255;
+        const float from_z = step * static_cast<float>(byte(at)),
+                    about = step * static_cast<float>(byte(at + 1));
+        return {std::cos(about) * std::sin(from_z), std::sin(about) * std::sin(from_z), std::cos(from_z)};
     }
 
     /// Of a number that is not negative.
@@ -225,19 +237,20 @@ private:
 
     std::string_view bytes_;
     std::string file_name_, name_;
+    double crease_degrees_;
     std::uint64_t surface_count_ = 0, surfaces_at_ = 0;
     Md3Triangles all_;
 };
 
 } // namespace
 
-Md3Model read_md3(const std::filesystem::path& path) {
-    return parse_md3(read_text_file(path, "an MD3 model"), path.string());
+Md3Model read_md3(const std::filesystem::path& path, double crease_degrees) {
+    return parse_md3(read_text_file(path, "an MD3 model"), path.string(), crease_degrees);
 }
 
-Md3Model parse_md3(std::string_view bytes, std::string_view file_name) {
+Md3Model parse_md3(std::string_view bytes, std::string_view file_name, double crease_degrees) {
     try {
-        return Md3Reader(bytes, file_name).read();
+        return Md3Reader(bytes, file_name, crease_degrees).read();
     } catch (const std::bad_alloc&) {
         throw UserError(fmt::format("{}: the model does not fit in memory; give a smaller one",
                                     printable(file_name, 1000)));

@@ -8,12 +8,15 @@
 // from outside, and its t downwards: corners are turned, and v = 1 - t. A texture coordinate is shared
 // between corners where the points are joined and both numbers agree; elsewhere there is a seam.
 //
-// Passed over: stored normals, boxes of frames, tags (where other models are attached), shaders and skins.
+// Of stored normals those of frame 0 say, if that is asked for, which edges are hard: these become creases.
+//
+// Passed over: boxes of frames, tags (where other models are attached), shaders and skins.
 // Coarser levels of detail are files of their own (_1.md3, _2.md3). Which frames make which movement, and at
 // what rate, stands in the game's animation.cfg, which is not read. The limits of the game (1024 frames, 32
 // surfaces, 4096 vertices a surface) are not enforced.
 #pragma once
 
+#include "razor/scene/models/hard_edges.h"
 #include "razor/scene/scene.h"
 
 #include <filesystem>
@@ -29,11 +32,12 @@ struct Md3Model {
     std::vector<std::vector<glm::dvec3>> frames; // one or more, each as long as cage.points
 };
 
-/// Reads `path`; the cage is named by the file's stem. Throws UserError: one line `file: cause; mend`, with
-/// the surface and where it begins in the file, if it is about one.
-Md3Model read_md3(const std::filesystem::path& path);
+/// Reads `path`; the cage is named by the file's stem. `crease_degrees`: see hard_edges(). Throws UserError:
+/// one line `file: cause; mend`, with the surface and where it begins in the file, if it is about one.
+Md3Model read_md3(const std::filesystem::path& path, double crease_degrees = no_crease_angle);
 
 /// The same from the file's bytes; `file_name` is used in messages and for the cage's name.
-Md3Model parse_md3(std::string_view bytes, std::string_view file_name);
+Md3Model parse_md3(std::string_view bytes, std::string_view file_name,
+                   double crease_degrees = no_crease_angle);
 
 } // namespace razor

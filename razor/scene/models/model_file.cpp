@@ -24,4 +24,9 @@ ModelFile model_file(const std::filesystem::path& path) {
     return extension == ".gltf" || extension == ".glb" ? ModelFile::gltf : ModelFile::none;
 }
 
+bool has_split_points(const std::filesystem::path& path) {
+    const ModelFile kind = model_file(path);
+    return kind == ModelFile::md3 || kind == ModelFile::gltf;
+}
+
 } // namespace razor

@@ -14,6 +14,9 @@ enum class ModelFile : std::uint8_t { none, still, sequence, md3, gltf };
 /// In any case.
 ModelFile model_file(const std::filesystem::path& path);
 
+/// Whether it is of a format that splits points where normals differ, and knows no creases (hard_edges.h).
+bool has_split_points(const std::filesystem::path& path);
+
 /// With its dot, in lower case.
 std::string lower_extension(const std::filesystem::path& path);
 

@@ -17,13 +17,14 @@ struct Vertices {
     Skin skin;
     std::vector<int> triangles, materials;
     std::vector<glm::vec2> texcoords;
-    std::vector<bool> textured; // of each point: it has one
+    std::vector<bool> textured;     // of each point: it has one
+    std::vector<glm::vec3> normals; // of each point, 0: it has none; empty: not read
 };
 
 class MeshReader {
 public:
-    MeshReader(const Document& document, int node)
-        : document_(document), node_(document.nodes[static_cast<std::size_t>(node)]),
+    MeshReader(const Document& document, int node, bool normals)
+        : document_(document), normals_(normals), node_(document.nodes[static_cast<std::size_t>(node)]),
           mesh_(entry(document, document.meshes, node_.mesh, "mesh", fmt::format("node {}", node))) {
         vertices_.skin.node = node;
         vertices_.skin.targets.resize(target_count(mesh_));
@@ -79,6 +80,8 @@ private:
         if (!vertices_.skin.joints.empty())
             read_influences(primitive, count);
         read_texcoords(primitive, count);
+        if (normals_)
+            read_normals(primitive, count);
         append_triangles(primitive, count, static_cast<int>(base));
         vertices_.materials.resize(vertices_.triangles.size() / 3, primitive.material);
     }
@@ -142,6 +145,20 @@ private:
             vertices_.texcoords.emplace_back(static_cast<float>(uv[i]), static_cast<float>(1 - uv[i + 1]));
     }
 
+    void read_normals(const Primitive& primitive, std::size_t count) {
+        const auto found = primitive.attributes.find("NORMAL");
+        const std::size_t before = vertices_.normals.size();
+        vertices_.normals.resize(before + count, glm::vec3(0));
+        if (found == primitive.attributes.end())
+            return;
+        const std::vector<double> numbers =
+            read_numbers(document_, found->second, 3, count, what_ + " normals");
+        for (std::size_t i = 0; i < count; ++i)
+            for (int axis = 0; axis < 3; ++axis)
+                vertices_.normals[before + i][axis] =
+                    static_cast<float>(numbers[3 * i + static_cast<std::size_t>(axis)]);
+    }
+
     void append_triangles(const Primitive& primitive, std::size_t count, int base) {
         std::vector<std::uint32_t> indices;
         if (primitive.indices != none)
@@ -171,6 +188,7 @@ private:
     }
 
     const Document& document_;
+    bool normals_;
     const NodeEntry& node_;
     const MeshEntry& mesh_;
     std::string what_;
@@ -217,8 +235,9 @@ private:
 
 } // namespace
 
-DrawnMesh read_drawn_mesh(const Document& document, int node) {
-    const Vertices vertices = MeshReader(document, node).read();
+DrawnMesh read_drawn_mesh(const Document& document, int node, double crease_degrees) {
+    const Vertices vertices = MeshReader(document, node, crease_degrees < no_crease_angle).read();
+    std::vector<glm::vec3> normals; // of corners
     const std::vector<int> points = first_alike(vertices.skin), texcoords = first_texcoord(vertices, points);
     Renumbering point(points.size()), texcoord(points.size());
     DrawnMesh drawn;
@@ -234,8 +253,11 @@ DrawnMesh read_drawn_mesh(const Document& document, int node) {
             const int t = texcoords[vertex(i)];
             drawn.triangles.push_back(point(p[i]));
             drawn.corner_texcoords.push_back(t == none ? none : texcoord(t));
+            if (!vertices.normals.empty())
+                normals.push_back(vertices.normals[vertex(i)]);
         }
     }
+    drawn.creases = hard_edges(drawn.triangles, normals, crease_degrees);
     drawn.skin = gather(vertices.skin, point.used());
     for (const int v : texcoord.used())
         drawn.texcoords.push_back(vertices.texcoords[static_cast<std::size_t>(v)]);

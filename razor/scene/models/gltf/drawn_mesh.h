@@ -3,6 +3,7 @@
 
 #include "razor/scene/animation/skin.h"
 #include "razor/scene/models/gltf/document.h"
+#include "razor/scene/models/hard_edges.h"
 
 #include <glm/vec2.hpp>
 
@@ -15,9 +16,11 @@ struct DrawnMesh {
     std::vector<int> materials;        // of each triangle, in the file; -1: none
     std::vector<glm::vec2> texcoords;  // v upwards
     std::vector<int> corner_texcoords; // texture coordinate of each corner, -1: none
+    std::vector<Crease> creases;       // between points of `skin`
 };
 
-/// All triangles of the node's mesh; points and lines are passed over. Throws UserError.
-DrawnMesh read_drawn_mesh(const Document& document, int node);
+/// All triangles of the node's mesh; points and lines are passed over. `crease_degrees`: see hard_edges();
+/// normals are of the mesh at rest. Throws UserError.
+DrawnMesh read_drawn_mesh(const Document& document, int node, double crease_degrees = no_crease_angle);
 
 } // namespace razor::gltf
