@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace analysis {
 namespace {
+
+constexpr double stroke_width = 1.6;
 
 /// The shortest text of a number of hundredths.
 std::string number(double x) {
@@ -54,6 +57,7 @@ std::string escaped(std::string_view text) {
 }
 
 void Svg::line(double x1, double y1, double x2, double y2, std::string_view colour, double width) {
+    shapes_.push_back({Shape::line, {{x1, y1}, {x2, y2}}, std::string(colour), width});
     body_ +=
         fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"{}\"/>\n",
                     number(x1), number(y1), number(x2), number(y2), colour, number(width));
@@ -61,24 +65,39 @@ void Svg::line(double x1, double y1, double x2, double y2, std::string_view colo
 
 void Svg::rectangle(double x, double y, double width, double height, std::string_view colour,
                     std::string_view title) {
+    shapes_.push_back({Shape::area,
+                       {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}},
+                       std::string(colour)});
     body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"", number(x),
                          number(y), number(width), number(height), colour);
     body_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></rect>\n", escaped(title));
 }
 
+void Svg::circle(double x, double y, double radius, std::string_view fill, std::string_view edge,
+                 std::string_view title) {
+    shapes_.push_back({Shape::disk, {{x, y}}, std::string(edge), radius + stroke_width / 2});
+    shapes_.push_back({Shape::disk, {{x, y}}, std::string(fill), std::max(0.0, radius - stroke_width / 2)});
+    body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"{}\"",
+                         number(x), number(y), number(radius), fill, edge, stroke_width);
+    body_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></circle>\n", escaped(title));
+}
+
 void Svg::polyline(const std::vector<std::pair<double, double>>& points, std::string_view colour,
                    bool dashed) {
-    body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"{}/>\n",
-                         list(points), colour, dashed ? " stroke-dasharray=\"5 3\"" : "");
+    shapes_.push_back({Shape::line, points, std::string(colour), stroke_width, dashed});
+    body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n",
+                         list(points), colour, stroke_width, dashed ? " stroke-dasharray=\"5 3\"" : "");
 }
 
 void Svg::polygon(const std::vector<std::pair<double, double>>& points, std::string_view colour,
                   double opacity) {
+    shapes_.push_back({Shape::area, points, std::string(colour), opacity});
     body_ += fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>\n", list(points), colour,
                          number(opacity));
 }
 
 void Svg::text(double x, double y, std::string_view text, Anchor anchor, double size, double degrees) {
+    shapes_.push_back({Shape::text_line, {{x, y}}, {}, size, false, std::string(text), anchor, degrees});
     const char* where = anchor == Anchor::start    ? ""
                         : anchor == Anchor::middle ? " text-anchor=\"middle\""
                                                    : " text-anchor=\"end\"";
@@ -90,6 +109,7 @@ void Svg::text(double x, double y, std::string_view text, Anchor anchor, double 
 }
 
 void Svg::image(double x, double y, double width, double height, std::string_view uri) {
+    shapes_.push_back({Shape::picture});
     body_ += fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
                          "style=\"image-rendering:pixelated\" xlink:href=\"{}\"/>\n",
                          number(x), number(y), number(width), number(height), uri);

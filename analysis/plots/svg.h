@@ -22,6 +22,9 @@ public:
     /// With what is shown where a pointer rests.
     void rectangle(double x, double y, double width, double height, std::string_view colour,
                    std::string_view title = {});
+    /// Likewise with a title.
+    void circle(double x, double y, double radius, std::string_view fill, std::string_view edge,
+                std::string_view title = {});
     void polyline(const std::vector<std::pair<double, double>>& points, std::string_view colour,
                   bool dashed = false);
     void polygon(const std::vector<std::pair<double, double>>& points, std::string_view colour,
@@ -31,6 +34,21 @@ public:
     /// A picture as a data URI, its pixels as they are.
     void image(double x, double y, double width, double height, std::string_view uri);
 
+    /// What was drawn, in order, for other forms than text.
+    struct Shape {
+        enum Kind { area, line, disk, text_line, picture } kind = area;
+        std::vector<std::pair<double, double>> points{}; // corners; a disk's middle; where a text stands
+        std::string colour{};
+        double size = 1; // an area's opacity, a line's width, a disk's radius, a text's size
+        bool dashed = false;
+        std::string text{};
+        Anchor anchor = Anchor::start;
+        double degrees = 0;
+    };
+    const std::vector<Shape>& shapes() const { return shapes_; }
+    double width() const { return width_; }
+    double height() const { return height_; }
+
     /// The element.
     std::string str() const;
     /// With what a file begins with.
@@ -39,6 +57,7 @@ public:
 private:
     double width_, height_;
     std::string body_;
+    std::vector<Shape> shapes_;
 };
 
 /// Colours that stay apart for most who see few (Okabe and Ito 2008, and darker ones behind them), in turn.

@@ -13,6 +13,7 @@ find_package(Boost 1.74 COMPONENTS context REQUIRED)
 find_package(zstd CONFIG REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(LibLZMA REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_easy_font.h REQUIRED) # libstb-dev: headers alone
 
 include(${CMAKE_CURRENT_LIST_DIR}/opensubdiv.cmake)
 if(RAZOR_TESTS)

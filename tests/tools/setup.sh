@@ -1,7 +1,7 @@
 # Sourced by run.sh and test.sh, which first go to the project's folder: packages, builds, messages.
 
 packages_to_run=(g++ cmake ninja-build ccache libosd-dev libglm-dev libopenexr-dev libpng-dev libjpeg-dev libfmt-dev libcli11-dev
-                 libtomlplusplus-dev nlohmann-json3-dev libtinygltf-dev libzstd-dev zlib1g-dev liblzma-dev libboost-context-dev)
+                 libtomlplusplus-dev nlohmann-json3-dev libtinygltf-dev libzstd-dev zlib1g-dev liblzma-dev libboost-context-dev libstb-dev)
 packages_to_test=("${packages_to_run[@]}" libgtest-dev libgmock-dev python3 binutils)
 packages_for_all=("${packages_to_test[@]}" clang-14 lld-14 libclang-rt-14-dev clang-format-14 libbenchmark-dev
                   libembree-dev valgrind python3-matplotlib)

@@ -1,0 +1,343 @@
+#include "analysis/study/study_file.h"
+
+#include "analysis/study/error.h"
+#include "analysis/study/toml_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace analysis {
+namespace {
+
+constexpr std::size_t largest_file = std::size_t{1} << 22; // bytes
+constexpr const char* give_one = "give a study file, such as those of configs/studies";
+
+/// Values for each of some settings, each combination of which is meant.
+using Lists = std::vector<std::pair<std::string, std::vector<Value>>>;
+
+/// All of which a point must have.
+struct Condition {
+    std::string key;
+    std::vector<Value> values; // one of these; or, where there are none,
+    std::optional<double> least, most;
+
+    bool holds(const Settings& settings) const;
+};
+
+std::optional<double> number_of(const Value& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value))
+        return static_cast<double>(*whole);
+    if (const auto* real = std::get_if<double>(&value))
+        return *real;
+    return {};
+}
+
+bool Condition::holds(const Settings& settings) const {
+    const auto found = settings.find(key);
+    if (found == settings.end())
+        return false;
+    if (!values.empty())
+        return std::find(values.begin(), values.end(), found->second) != values.end();
+    const std::optional<double> number = number_of(found->second);
+    return number && (!least || *number >= *least) && (!most || *number <= *most);
+}
+
+class Reader {
+public:
+    Reader(std::string_view file, const Vocabulary& vocabulary) : file_(file), vocabulary_(vocabulary) {}
+
+    Study read(const toml::table& root) {
+        TomlSection top(root, "", file_);
+        study_.file = file_;
+        if (top.needed_text("kind") != vocabulary_.kind)
+            top.fail("kind", fmt::format("this program measures studies of kind \"{}\"; use the program that "
+                                         "measures others (razor study: image, razor-sim study: machine)",
+                                         vocabulary_.kind));
+        study_.title = top.text("title").value_or(std::filesystem::path(file_).stem().string());
+        study_.seeds = top.whole("seeds", 1, 1, 1000);
+        study_.repeats = top.whole("repeats", 1, 0, 1000);
+        if (const toml::table* const settings = top.table("settings"))
+            study_.common = single_settings(*settings, "settings");
+        if (const toml::table* const reference = top.table("reference"))
+            read_reference(*reference);
+        const toml::table* const knobs = top.table("knobs");
+        const std::vector<const toml::table*> points = top.tables("points");
+        const std::vector<const toml::table*> exclude = top.tables("exclude");
+        for (const toml::table* const plot : top.tables("plot"))
+            read_plot(*plot);
+        const std::vector<const toml::table*> rivals = top.tables("rival");
+        top.table("full");
+        top.finish();
+        for (const toml::table* const one : exclude)
+            exclude_.push_back(conditions(*one));
+        if (knobs != nullptr)
+            add_points(*knobs, "knobs");
+        for (const toml::table* const one : points)
+            add_points(*one, "points");
+        if (study_.points.empty())
+            fail_at(file_, root.source(),
+                    given_ == 0 ? "there are no points; list values of some settings under [knobs]"
+                                : "all points are left out; mend [[exclude]]");
+        for (const toml::table* const rival : rivals)
+            read_rival(*rival);
+        for (const PlotRequest& plot : study_.plots)
+            for (const std::string& line : plot.lines)
+                if (std::find(study_.knobs.begin(), study_.knobs.end(), line) == study_.knobs.end())
+                    fail_at(file_, root.source(),
+                            fmt::format("a plot has lines by {}, in which no points differ; there are {}",
+                                        line, fmt::join(study_.knobs, ", ")));
+        return std::move(study_);
+    }
+
+private:
+    Value checked(const std::string& key, const toml::node& node) const {
+        Value value;
+        if (node.is_boolean())
+            value = node.as_boolean()->get();
+        else if (node.is_integer())
+            value = node.as_integer()->get();
+        else if (node.is_floating_point())
+            value = node.as_floating_point()->get();
+        else if (node.is_string())
+            value = node.as_string()->get();
+        else
+            fail_at(file_, node.source(),
+                    fmt::format("{} is no single value; write a number, true or false, or a text in quotes",
+                                key));
+        const std::string wrong = vocabulary_.wrong(key, value);
+        if (!wrong.empty())
+            fail_at(file_, node.source(), wrong);
+        return value;
+    }
+
+    /// visit(key, node) of all values, those of inner tables by "table.key".
+    template <class Visit> void each(const toml::table& table, const std::string& before, Visit visit) const {
+        for (const auto& [key, node] : table) {
+            const std::string name =
+                before.empty() ? std::string(key.str()) : fmt::format("{}.{}", before, key.str());
+            if (const toml::table* const inner = node.as_table(); inner != nullptr && !inner->is_inline())
+                each(*inner, name, visit);
+            else
+                visit(name, node);
+        }
+    }
+
+    Settings single_settings(const toml::table& table, std::string_view section) const {
+        Settings out;
+        each(table, "", [&](const std::string& key, const toml::node& node) {
+            if (node.is_array())
+                fail_at(file_, node.source(),
+                        fmt::format("{}.{} is a list; write one value, or move it to [knobs]", section, key));
+            out.emplace(key, checked(key, node));
+        });
+        return out;
+    }
+
+    void read_reference(const toml::table& table) {
+        TomlSection section(table, "reference", file_);
+        study_.reference_seeds = section.whole("seeds", 2, 1, 1000);
+        each(table, "", [&](const std::string& key, const toml::node& node) {
+            if (key != "seeds")
+                study_.reference.emplace(key, checked(key, node));
+        });
+    }
+
+    Lists lists(const toml::table& table) const {
+        Lists out;
+        each(table, "", [&](const std::string& key, const toml::node& node) {
+            std::vector<Value> values;
+            if (const toml::array* const array = node.as_array())
+                for (const toml::node& one : *array)
+                    values.push_back(checked(key, one));
+            else
+                values.push_back(checked(key, node));
+            if (values.empty())
+                fail_at(file_, node.source(), fmt::format("{} has no values; list some", key));
+            out.emplace_back(key, std::move(values));
+        });
+        // As the file has them, which TOML's tables forget.
+        std::stable_sort(out.begin(), out.end(), [&](const auto& a, const auto& b) {
+            return place_of(table, a.first) < place_of(table, b.first);
+        });
+        return out;
+    }
+
+    static std::pair<std::uint32_t, std::uint32_t> place_of(const toml::table& table, std::string_view name) {
+        std::pair<std::uint32_t, std::uint32_t> place{~0U, ~0U};
+        for (const auto& [key, node] : table)
+            if (name == key.str() || (name.starts_with(key.str()) && name[key.str().size()] == '.'))
+                place = {node.source().begin.line, node.source().begin.column};
+        return place;
+    }
+
+    std::vector<Condition> conditions(const toml::table& table) const {
+        std::vector<Condition> out;
+        each(table, "", [&](const std::string& key, const toml::node& node) {
+            Condition& condition = out.emplace_back();
+            condition.key = key;
+            if (const toml::table* const range = node.as_table()) {
+                const auto bound = [&](std::string_view name) -> std::optional<double> {
+                    const toml::node* const value = range->get(name);
+                    if (value != nullptr && !value->is_number())
+                        fail_at(file_, value->source(),
+                                fmt::format("{}.{} is no number; write one", key, name));
+                    return value == nullptr ? std::nullopt : value->value<double>();
+                };
+                condition.least = bound("least");
+                condition.most = bound("most");
+                if (range->size() != static_cast<std::size_t>(condition.least.has_value()) +
+                                         static_cast<std::size_t>(condition.most.has_value()) ||
+                    range->empty())
+                    fail_at(file_, range->source(),
+                            fmt::format("{} has other bounds than these; write {{ least = A, most = B }}, or "
+                                        "one of them",
+                                        key));
+                return;
+            }
+            if (const toml::array* const array = node.as_array())
+                for (const toml::node& one : *array)
+                    condition.values.push_back(checked(key, one));
+            else
+                condition.values.push_back(checked(key, node));
+        });
+        return out;
+    }
+
+    bool excluded(const Settings& point) const {
+        return std::any_of(exclude_.begin(), exclude_.end(), [&](const std::vector<Condition>& all) {
+            return !all.empty() && std::all_of(all.begin(), all.end(),
+                                               [&](const Condition& one) { return one.holds(point); });
+        });
+    }
+
+    /// visit(settings) of each combination, the last list's values in turn first.
+    template <class Visit>
+    void combine(const Lists& lists, std::size_t from, Settings& settings, Visit visit) const {
+        if (from == lists.size())
+            return visit(settings);
+        for (const Value& value : lists[from].second) {
+            settings.insert_or_assign(lists[from].first, value);
+            combine(lists, from + 1, settings, visit);
+        }
+    }
+
+    /// What combinations of a table's lists there are. Throws StudyError where there are too many.
+    std::vector<Settings> combinations(const toml::table& table, const Lists& lists) const {
+        double count = 1;
+        for (const auto& [key, values] : lists)
+            count *= static_cast<double>(values.size());
+        if (count + static_cast<double>(given_) > static_cast<double>(most_points))
+            fail_at(file_, table.source(),
+                    fmt::format("there are more than {} points; list fewer values", most_points));
+        std::vector<Settings> out;
+        Settings settings;
+        combine(lists, 0, settings, [&](const Settings& one) { out.push_back(one); });
+        return out;
+    }
+
+    void add_points(const toml::table& table, std::string_view section) {
+        const Lists values = lists(table);
+        if (values.empty())
+            fail_at(file_, table.source(),
+                    fmt::format("[{}] is empty; list values of some settings", section));
+        for (const auto& [key, unused] : values)
+            if (std::find(study_.knobs.begin(), study_.knobs.end(), key) == study_.knobs.end())
+                study_.knobs.push_back(key);
+        for (const Settings& one : combinations(table, values)) {
+            ++given_;
+            Settings point = overlaid(study_.common, one);
+            if (!excluded(point) && known_.insert(toml_text(point)).second)
+                study_.points.push_back(std::move(point));
+        }
+    }
+
+    void read_plot(const toml::table& table) {
+        TomlSection section(table, "plot", file_);
+        PlotRequest plot{section.needed_text("x"), section.needed_text("y"), section.texts("lines")};
+        section.finish();
+        const std::vector<std::string>& known = vocabulary_.figures;
+        for (const auto& [key, name] : {std::pair{"x", &plot.x}, std::pair{"y", &plot.y}})
+            if (std::find(known.begin(), known.end(), *name) == known.end())
+                section.fail(
+                    key, fmt::format("there is no figure {}; there are {}", *name, fmt::join(known, ", ")));
+        study_.plots.push_back(std::move(plot));
+    }
+
+    void read_rival(const toml::table& table) {
+        TomlSection section(table, "rival", file_);
+        Rival rival;
+        rival.name = section.needed_text("name");
+        rival.command = section.texts("command");
+        if (rival.command.empty())
+            section.fail("command", "there is no rival.command; write command = [\"program\", \"{scene}\"]");
+        if (const toml::table* const figures = section.table("figures"))
+            for (const auto& [key, node] : *figures) {
+                const bool known = std::find(vocabulary_.figures.begin(), vocabulary_.figures.end(),
+                                             std::string(key.str())) != vocabulary_.figures.end();
+                if (!known || !node.is_string() || !node.as_string()->get().starts_with('/'))
+                    fail_at(
+                        file_, node.source(),
+                        fmt::format("rival.figures.{} is no JSON pointer of a figure; write for example {} "
+                                    "= \"/runs/*/seconds\"",
+                                    key.str(), vocabulary_.figures.front()));
+                rival.figures.emplace_back(key.str(), node.as_string()->get());
+            }
+        Lists values;
+        // A rival's own words, which no program checks.
+        if (const toml::table* const knobs = section.table("knobs"))
+            values = Reader(file_, {vocabulary_.kind, [](std::string_view, Value&) { return ""; }, {}})
+                         .lists(*knobs);
+        section.finish();
+        rival.points = combinations(table, values);
+        const auto same_name = [&](const Rival& other) { return other.name == rival.name; };
+        if (std::any_of(study_.rivals.begin(), study_.rivals.end(), same_name))
+            section.fail("name",
+                         fmt::format("there are two rivals {}; give each a name of its own", rival.name));
+        study_.rivals.push_back(std::move(rival));
+    }
+
+    std::string file_;
+    const Vocabulary& vocabulary_;
+    Study study_;
+    std::vector<std::vector<Condition>> exclude_;
+    std::set<std::string> known_; // points' texts
+    std::size_t given_ = 0;
+};
+
+Study read_size(std::string_view text, std::string_view name, const Vocabulary& vocabulary, bool full) {
+    toml::table root = parse_toml(text, name);
+    if (toml::table* const over = root.get_as<toml::table>("full"); over != nullptr && full) {
+        toml::table taken = std::move(*over);
+        root.erase("full");
+        lay_over(root, taken);
+    }
+    return Reader(name, vocabulary).read(root);
+}
+
+} // namespace
+
+Study parse_study(std::string_view text, std::string_view name, const Vocabulary& vocabulary, bool full) {
+    read_size(text, name, vocabulary, !full); // its mistakes are said at once, not when its size is asked for
+    return read_size(text, name, vocabulary, full);
+}
+
+Study read_study(const std::string& file, const Vocabulary& vocabulary, bool full) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+        throw StudyError(fmt::format("{}: is a folder; {}", file, give_one));
+    std::ifstream in(file, std::ios::binary);
+    std::string text(largest_file + 1, '\0');
+    if (!in || (!in.read(text.data(), static_cast<std::streamsize>(text.size())) && !in.eof()))
+        throw StudyError(fmt::format("{}: cannot be read; {}", file, give_one));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (text.size() > largest_file)
+        throw StudyError(
+            fmt::format("{}: is larger than {} bytes, as no study is; {}", file, largest_file, give_one));
+    return parse_study(text, file, vocabulary, full);
+}
+
+} // namespace analysis

@@ -1,0 +1,87 @@
+// Study files: what is measured, at which points, against which reference, how often. In TOML:
+//
+//     kind = "image"               # of the program that measures: image, machine
+//     title = "Levels of detail"
+//     seeds = 4                    # runs of each point that differ in noise alone: seeds 1 to 4
+//     repeats = 2                  # timed frames of a run after its first
+//     [settings]                   # of all points, where they state nothing else
+//     scene = "../scenes/showcase.toml"
+//     [knobs]                      # a point for each combination
+//     lod = ["recursive", "fixed"]
+//     edge_pixels = [1, 2, 4]
+//     [[points]]                   # further ones: a value, or a list, of which each combination is a point
+//     lod = "paper"
+//     edge_pixels = [1, 2]
+//     [[exclude]]                  # leaves out points of which all of this holds
+//     lod = "fixed"                # a value, a list of them, or { least = 2, most = 4 } (either may be
+//     missing) edge_pixels = { most = 1 } [reference]                  # what the reference has instead of a
+//     point's settings seeds = 4 samples = 256
+//     [[plot]]                     # from figures that the program knows
+//     x = "seconds"
+//     y = "rmse"
+//     lines = ["lod"]              # settings that tell lines apart; points of a line differ in the others
+//     [[rival]]                    # another program, measured by the same rules: see Rival
+//     [full]                       # keys as above, which take their place where the full size is asked for
+//
+// Keys in tables of settings are the program's, "section.key" where they stand in tables of these.
+#pragma once
+
+#include "analysis/study/settings.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace analysis {
+
+/// What the program that reads a study knows.
+struct Vocabulary {
+    std::string kind; // of studies
+    /// What is wrong with a setting (cause; mend), or an empty text. May change the value's type, so that
+    /// equal settings are equal values.
+    std::function<std::string(std::string_view key, Value& value)> wrong;
+    std::vector<std::string> figures; // that plots may show
+};
+
+/// Another program: a command is run for each point, with words in braces replaced: settings of the point
+/// ({scene}, {samples}), {seed}, {repeats}, {json} (the file that it writes figures to), and what else the
+/// measuring program says. A braced word may stand within a longer one.
+struct Rival {
+    std::string name;
+    std::vector<std::string> command;
+    /// Figures by the measuring program's names, each a JSON pointer into the file (RFC 6901), of which `*`
+    /// stands for all elements of an array.
+    std::vector<std::pair<std::string, std::string>> figures;
+    std::vector<Settings> points; // what each combination of its knobs adds to, or replaces in, the settings
+};
+
+struct PlotRequest {
+    std::string x, y;
+    std::vector<std::string> lines;
+};
+
+struct Study {
+    std::string file, title;
+    int seeds = 1, repeats = 1;
+    std::vector<Settings> points;   // resolved: the settings of all, overlaid with those of each; none twice
+    std::vector<std::string> knobs; // what points differ in, in the file's order
+    Settings common;                // [settings]
+    Settings reference;             // [reference], without its seeds
+    int reference_seeds = 2;
+    std::vector<PlotRequest> plots;
+    std::vector<Rival> rivals;
+};
+
+/// Most points of a study.
+inline constexpr std::size_t most_points = 100000;
+
+/// Throws StudyError: `file:line:column: cause; mend`.
+Study read_study(const std::string& file, const Vocabulary& vocabulary, bool full = false);
+/// The same from text; `name` stands for the file's in messages.
+Study parse_study(std::string_view text, std::string_view name, const Vocabulary& vocabulary,
+                  bool full = false);
+
+} // namespace analysis
