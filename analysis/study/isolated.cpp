@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,11 +29,10 @@ Ended run_isolated(const std::function<int()>& work, const std::atomic<bool>& st
         std::fflush(nullptr);
         _exit(code);
     }
-    rusage usage{};
     int status = 0;
     bool asked = false;
     for (;;) {
-        const pid_t ended = wait4(child, &status, WNOHANG, &usage);
+        const pid_t ended = waitpid(child, &status, WNOHANG);
         if (ended == child)
             break;
         if (ended < 0 && errno != EINTR)
@@ -46,7 +44,6 @@ Ended run_isolated(const std::function<int()>& work, const std::atomic<bool>& st
         nanosleep(&nap, nullptr);
     }
     Ended out;
-    out.peak_megabytes = static_cast<double>(usage.ru_maxrss) / 1024;
     if (WIFSIGNALED(status))
         out.signal = strsignal(WTERMSIG(status));
     else

@@ -8,9 +8,8 @@
 namespace analysis {
 
 struct Ended {
-    int code = 0;              // exit code, where no signal ended it
-    std::string signal;        // that ended it: "Segmentation fault"; or empty
-    double peak_megabytes = 0; // resident memory at most
+    int code = 0;       // exit code, where no signal ended it
+    std::string signal; // that ended it: "Segmentation fault"; or empty
 };
 
 /// Runs `work` in a copy of this process, which must have no other threads, and waits for it. The copy ends

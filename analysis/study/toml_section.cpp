@@ -36,7 +36,9 @@ toml::table parse_toml(std::string_view text, std::string_view file) {
 }
 
 void lay_over(toml::table& table, toml::table& over) {
-    for (auto&& [key, value] : over) {
+    for (auto&& entry : over) {
+        const toml::key& key = entry.first; // named anew: lambdas cannot hold structured bindings in clang
+        toml::node& value = entry.second;
         toml::table* const own = table.get_as<toml::table>(key.str());
         if (toml::table* const inner = value.as_table(); inner != nullptr && own != nullptr) {
             lay_over(*own, *inner);
