@@ -5,12 +5,13 @@
 #include "razor/program/export_command.h"
 #include "razor/program/info_command.h"
 #include "razor/program/render_command.h"
+#include "razor/program/study_command.h"
 
 int main(int argc, char** argv) {
-    CLI::App app(
-        "Renders Catmull-Clark and bilinear-patch scenes, examines and lists them, compares pictures and "
-        "exports meshes.",
-        "razor");
+    CLI::App app("Renders Catmull-Clark and bilinear-patch scenes, examines and lists them, compares "
+                 "pictures, exports "
+                 "meshes and measures errors against run time.",
+                 "razor");
     app.set_version_flag("--version", "razor " + std::string(razor::version()));
     app.require_subcommand(1);
     razor::RenderCommand render;
@@ -23,9 +24,13 @@ int main(int argc, char** argv) {
     check.add_to(app);
     razor::InfoCommand info;
     info.add_to(app);
+    razor::StudyCommand study;
+    study.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         if (check.given())
             return check.run();
+        if (study.given())
+            return study.run();
         if (info.given())
             return info.run();
         if (compare.given())

@@ -1,0 +1,201 @@
+#include "razor/program/study/scene_knobs.h"
+
+#include "analysis/study/point.h"
+#include "razor/program/scene_options.h"
+#include "razor/scene/error.h"
+#include "razor/scene/nearest.h"
+#include "razor/scene/ranges.h"
+#include "razor/scene/text_file.h"
+#include "razor/scene/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace razor {
+namespace {
+
+namespace fs = std::filesystem;
+using analysis::plain_text;
+using analysis::toml_text;
+using analysis::Value;
+
+template <class Meaning, std::size_t Count>
+std::vector<std::string_view> words_of(const std::array<Word<Meaning>, Count>& words) {
+    std::vector<std::string_view> out;
+    for (const auto& [word, meaning] : words)
+        out.push_back(word);
+    return out;
+}
+
+SceneKnob whole(std::string_view key, std::string_view option, Range range) {
+    return {SceneKnob::whole, key, option, range.least, range.most};
+}
+SceneKnob number(std::string_view key, std::string_view option, Range range) {
+    return {SceneKnob::number, key, option, range.least, range.most};
+}
+
+std::vector<SceneKnob> make_knobs() {
+    return {{SceneKnob::text, "scene", ""},
+            {SceneKnob::text, "size", "--size"},
+            {SceneKnob::text, "crop", "--crop"},
+            whole("frame", "--frame", frame_range),
+            whole("samples", "--spp", samples_range),
+            number("noise_threshold", "--noise-threshold", noise_threshold_range),
+            {SceneKnob::text, "filter", "--filter", 0, 0, words_of(filter_words)},
+            number("filter_radius", "--filter-radius", filter_radius_range),
+            whole("light_samples", "--light-samples", shadow_samples_range),
+            whole("light_choices", "--light-choices", light_choices_range),
+            whole("sky_samples", "--sky-samples", shadow_samples_range),
+            whole("bounces", "--bounces", bounces_range),
+            whole("diffuse_bounces", "--diffuse-bounces", bounces_range),
+            number("edge_pixels", "--edge-pixels", edge_pixels_range),
+            {SceneKnob::text, "shading", "--shading", 0, 0, words_of(shading_words)},
+            {SceneKnob::text, "lod", "--lod", 0, 0, words_of(lod_words)},
+            {SceneKnob::text, "scheme", "--scheme", 0, 0, words_of(scheme_words)},
+            {SceneKnob::text, "up", "--up", 0, 0, {"y", "z"}},
+            {SceneKnob::flag, "no_floor", "--no-floor"},
+            {SceneKnob::flag, "everything", "--everything"}};
+}
+
+const SceneKnob* find_knob(std::string_view key) {
+    const auto& all = scene_knobs();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const SceneKnob& knob) { return knob.key == key; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+/// Of files that name nothing else.
+std::string bytes_digest(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) > 0
+               ? analysis::point_name(read_text_file(file, "a file of a scene"))
+               : "-";
+}
+
+} // namespace
+
+const std::vector<SceneKnob>& scene_knobs() {
+    static const std::vector<SceneKnob> all = make_knobs();
+    return all;
+}
+
+std::string wrong_word(std::string_view key, const Value& value, const std::vector<std::string_view>& words) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text == nullptr)
+        return fmt::format("{} is no text; write it in quotes", key);
+    if (words.empty() || std::find(words.begin(), words.end(), *text) != words.end())
+        return "";
+    return fmt::format("{} = {} is not possible; write one of {}", key, toml_text(value),
+                       fmt::join(words, ", "));
+}
+
+std::string wrong_whole(std::string_view key, const Value& value, double least, double most) {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    const bool right =
+        number != nullptr && static_cast<double>(*number) >= least && static_cast<double>(*number) <= most;
+    return right ? ""
+                 : fmt::format("{} = {} is not possible; write a whole number from {} to {}", key,
+                               toml_text(value), least, most);
+}
+
+std::optional<std::string> wrong_scene_setting(std::string_view key, Value& value) {
+    const SceneKnob* const knob = find_knob(key);
+    if (knob == nullptr)
+        return {};
+    switch (knob->kind) {
+    case SceneKnob::whole:
+        return wrong_whole(key, value, knob->least, knob->most);
+    case SceneKnob::number: {
+        if (const auto* const integer = std::get_if<std::int64_t>(&value))
+            value = static_cast<double>(*integer);
+        const auto* const real = std::get_if<double>(&value);
+        const bool right = real != nullptr && *real >= knob->least && *real <= knob->most;
+        return right ? ""
+                     : fmt::format("{} = {} is not possible; write a number from {} to {}", key,
+                                   toml_text(value), knob->least, knob->most);
+    }
+    case SceneKnob::flag:
+        return std::holds_alternative<bool>(value) ? ""
+                                                   : fmt::format("{} is no flag; write true or false", key);
+    case SceneKnob::text:
+        break;
+    }
+    return wrong_word(key, value, knob->words);
+}
+
+std::string unknown_setting(std::string_view key, const std::vector<std::string_view>& others) {
+    std::vector<std::string_view> known = others;
+    for (const SceneKnob& knob : scene_knobs())
+        known.push_back(knob.key);
+    return fmt::format("unknown setting {}; did you mean {}?", printable(key), nearest(key, known));
+}
+
+SceneDescription describe_scene(const analysis::Settings& settings, const fs::path& folder) {
+    SceneOptions options;
+    CLI::App app;
+    options.add_to(app, "scene");
+    std::vector<std::string> words;
+    for (const SceneKnob& knob : scene_knobs()) {
+        const auto found = settings.find(std::string(knob.key));
+        if (found == settings.end() || found->second == Value(false))
+            continue;
+        if (knob.key == "scene") {
+            words.push_back((folder / plain_text(found->second)).string());
+            continue;
+        }
+        words.emplace_back(knob.option);
+        if (knob.kind != SceneKnob::flag)
+            words.push_back(plain_text(found->second));
+    }
+    std::reverse(words.begin(), words.end()); // as CLI11 takes them
+    app.parse(words);
+    return options.describe();
+}
+
+analysis::Settings with_defaults(analysis::Settings settings, const SceneDescription& scene) {
+    const razor::Settings& s = scene.settings;
+    const analysis::Settings own{{"size", fmt::format("{}x{}", s.width, s.height)},
+                                 {"samples", std::int64_t{s.samples}},
+                                 {"noise_threshold", s.noise_threshold},
+                                 {"light_samples", std::int64_t{s.light_samples}},
+                                 {"light_choices", std::int64_t{s.light_choices}},
+                                 {"sky_samples", std::int64_t{s.sky_samples}},
+                                 {"bounces", std::int64_t{s.bounces}},
+                                 {"diffuse_bounces", std::int64_t{s.diffuse_bounces}},
+                                 {"edge_pixels", s.edge_pixels},
+                                 {"shading", std::string(word_of(shading_words, s.shading))},
+                                 {"lod", std::string(word_of(lod_words, s.lod))},
+                                 {"filter", std::string(word_of(filter_words, s.filter.kind))}};
+    return analysis::overlaid(own, settings);
+}
+
+std::string scene_digest(const analysis::Settings& settings, const fs::path& folder,
+                         const SceneDescription& scene) {
+    std::set<std::string> files; // each once, in an order that places on a machine do not change
+    for (const MeshDescription& mesh : scene.meshes)
+        files.insert(mesh.file);
+    for (const Texture& texture : scene.textures)
+        files.insert(texture.file);
+    std::vector<const std::vector<ObjectDescription>*> lists{&scene.objects};
+    for (const GroupDescription& group : scene.groups)
+        lists.push_back(&group.objects);
+    for (const auto* list : lists)
+        for (const ObjectDescription& object : *list)
+            files.insert(object.instances);
+    std::string all;
+    if (const auto found = settings.find("scene"); found != settings.end())
+        all += bytes_digest(folder / plain_text(found->second));
+    else
+        all += analysis::point_name(to_toml(scene)); // the built-in scene, which names no files
+    std::set<std::string> contents;
+    for (const std::string& file : files)
+        if (!file.empty())
+            contents.insert(fmt::format("{} {}", fs::path(file).filename().string(), bytes_digest(file)));
+    for (const std::string& one : contents)
+        all += "\n" + one;
+    return analysis::point_name(all);
+}
+
+} // namespace razor
