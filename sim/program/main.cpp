@@ -10,6 +10,7 @@
 #include "sim/program/explain_command.h"
 #include "sim/program/provenance.h"
 #include "sim/program/run_command.h"
+#include "sim/program/study_command.h"
 #include "sim/program/validate_command.h"
 #include "traces/error.h"
 
@@ -55,6 +56,8 @@ int main(int argc, char** argv) {
     validate.add_to(app);
     sim::CompareCommand compare;
     compare.add_to(app);
+    sim::StudyCommand study;
+    study.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
             return print.parsed()               ? print_config(machine)
@@ -62,6 +65,7 @@ int main(int argc, char** argv) {
                    : explain.parsed()           ? explain.run()
                    : validate.parsed()          ? validate.run()
                    : compare.parsed()           ? compare.run()
+                   : study.parsed()             ? study.run()
                    : app.got_subcommand("dram") ? dram.run()
                                                 : run.run();
         } catch (const sim::ConfigError& e) {

@@ -87,17 +87,17 @@ StudyProgram image_study_program() {
     StudyProgram out;
     out.name = fmt::format("razor {}", version());
     out.figures = {{"seconds", "a frame after the first, s"},
-                   {"processor_seconds", "a frame after the first, processor seconds of all threads"},
-                   {"first_seconds", "the first frame, topology's pages made on the way, s"},
-                   {"first_processor_seconds", "the first frame, processor seconds of all threads"},
+                   {"processor_seconds", "a frame after the first, processor seconds"},
+                   {"first_seconds", "the first frame, pages of topology included, s"},
+                   {"first_processor_seconds", "the first frame, processor seconds"},
                    {"load_seconds", "analysis of the scene before the first frame, s"},
                    {"rmse", "RMSE"},
                    {"relative_mse", "relative MSE"},
                    {"mape", "MAPE"},
                    {"flip", "mean HDR-FLIP"},
-                   {"noise", "noise: root of the variance from seed to seed"},
-                   {"bias", "bias: root of the squared error of the mean of ever more seeds"},
-                   {"level_bias", "bias by levels of detail: the same beside the reference's levels"},
+                   {"noise", "noise (standard deviation)"},
+                   {"bias", "bias (of the mean of many seeds)"},
+                   {"level_bias", "bias by levels of detail"},
                    {"wrong_hits", "pixels whose middle sees another instance, part of all"},
                    {"distance_error", "error of hit distances, mean, relative"},
                    {"median_distance_error", "error of hit distances, median, relative"},
@@ -128,6 +128,16 @@ ImageStudy::ImageStudy(const analysis::Study& study, std::filesystem::path folde
                        const std::atomic<bool>& cancel)
     : study_(study), folder_(std::move(folder)), cancel_(cancel) {}
 
+const ImageStudy::Described& ImageStudy::described(const analysis::Settings& settings) const {
+    const std::string text = toml_text(settings);
+    if (const auto found = described_.find(text); found != described_.end())
+        return found->second;
+    const SceneDescription scene = describe_scene(settings, folder_);
+    return described_
+        .emplace(text, Described{scene_digest(settings, folder_, scene), with_defaults(settings, scene)})
+        .first->second;
+}
+
 analysis::Settings ImageStudy::reference_settings(const Point& point) const {
     return analysis::overlaid(without_host(known_only(point.settings)), without_host(study_.reference));
 }
@@ -146,12 +156,11 @@ analysis::Settings ImageStudy::paired_settings(const Point& point) const {
 }
 
 std::string ImageStudy::body(const Point& point) const {
-    const analysis::Settings known = known_only(point.settings);
-    const SceneDescription scene = describe_scene(known, folder_);
+    const Described& scene = described(known_only(point.settings));
     std::string out = fmt::format("# A point of razor study.\nkind = \"image\"\nprogram = {}\nlanes = "
                                   "{}\nscene_digest = {}\nseeds = {}\n",
                                   toml_text(Value(image_study_program().name)), ISA_WIDTH,
-                                  toml_text(Value(scene_digest(known, folder_, scene))), study_.seeds);
+                                  toml_text(Value(scene.digest)), study_.seeds);
     out += fmt::format("repeats = {}\n", study_.repeats);
     std::string names;
     for (const Point& reference : references_of(point))
@@ -165,7 +174,7 @@ std::string ImageStudy::body(const Point& point) const {
         for (const auto& [figure, pointer] : rival.figures)
             out += fmt::format("figure_{} = {}\n", figure, toml_text(Value(pointer)));
     }
-    out += fmt::format("\n[settings]\n{}", toml_text(with_defaults(point.settings, scene)));
+    out += fmt::format("\n[settings]\n{}", toml_text(analysis::overlaid(scene.settings, point.settings)));
     if (!point.rival.empty())
         return out;
     // What is paired does not change the point's own picture, but what is said of it.
@@ -176,16 +185,15 @@ std::string ImageStudy::body(const Point& point) const {
 }
 
 Point ImageStudy::picture(analysis::Settings settings, int seed) const {
-    const SceneDescription scene = describe_scene(settings, folder_);
+    const Described& scene = described(settings);
     Point out;
     out.settings = std::move(settings);
     out.settings.insert_or_assign("seed", std::int64_t{seed});
     out.body = fmt::format("# A picture that points of razor study are compared with.\nkind = \"image "
                            "reference\"\nprogram = {}\n"
                            "scene_digest = {}\n\n[settings]\n{}",
-                           toml_text(Value(image_study_program().name)),
-                           toml_text(Value(scene_digest(out.settings, folder_, scene))),
-                           toml_text(with_defaults(out.settings, scene)));
+                           toml_text(Value(image_study_program().name)), toml_text(Value(scene.digest)),
+                           toml_text(analysis::overlaid(scene.settings, out.settings)));
     out.name = analysis::point_name(out.body);
     return out;
 }
@@ -243,25 +251,25 @@ Result ImageStudy::measure(const Point& point, const analysis::Store& store) con
             pictures.push_back(image_of(made.film, planes));
             add_times(out.host, made.statistics);
             const double taken = made.statistics.times.back().passes.mean_samples;
-            const SceneDescription scene = describe_scene(point.settings, folder_);
-            out.values["samples_taken"].push_back(taken > 0 ? taken : scene.settings.samples);
+            const Value& asked = described(known_only(point.settings)).settings.at("samples");
+            out.values["samples_taken"].push_back(
+                taken > 0 ? taken : static_cast<double>(std::get<std::int64_t>(asked)));
             continue;
         }
         std::map<std::string, std::string> words;
-        for (const auto& [key, value] :
-             with_defaults(point.settings, describe_scene(known_only(point.settings), folder_)))
+        const analysis::Settings all =
+            analysis::overlaid(described(known_only(point.settings)).settings, point.settings);
+        for (const auto& [key, value] : all)
             words[key] = plain_text(value);
         words["scene"] = (folder_ / words["scene"]).string();
         words["seed"] = fmt::format("{}", seed);
         words["repeats"] = fmt::format("{}", study_.repeats);
         words.try_emplace("frame", "0");
         words.try_emplace("threads", "2");
-        RivalRun run = run_rival(*analysis::find_rival(study_, point.rival), words);
+        RivalRun run = run_rival(*analysis::find_rival(study_, point.rival), words, cancel_);
         pictures.push_back(std::move(run.picture));
         for (const auto& [figure, numbers] : run.figures)
             out.host[figure].insert(out.host[figure].end(), numbers.begin(), numbers.end());
-        if (cancel_)
-            throw analysis::Stopped{};
     }
     add_errors(out.values, pictures, references);
     if (point.rival.empty())

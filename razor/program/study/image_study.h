@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,12 @@ public:
     analysis::Result measure(const analysis::Point& point, const analysis::Store& store) const;
 
 private:
+    /// What is known of a scene of these settings.
+    struct Described {
+        std::string digest;
+        analysis::Settings settings; // all of them
+    };
+    const Described& described(const analysis::Settings& settings) const;
     analysis::Settings reference_settings(const analysis::Point& point) const;
     /// The point at the reference's levels of detail, all else as it is.
     analysis::Settings paired_settings(const analysis::Point& point) const;
@@ -44,6 +51,7 @@ private:
     const analysis::Study& study_;
     std::filesystem::path folder_;
     const std::atomic<bool>& cancel_;
+    mutable std::map<std::string, Described> described_; // by the settings' text: scenes take long to read
 };
 
 } // namespace razor
