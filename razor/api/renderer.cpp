@@ -7,6 +7,7 @@
 #include "razor/native/render.h"
 #include "razor/native/targets.h"
 #include "razor/scene/animation/moving_scene.h"
+#include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
 #include "razor/survey/layers.h"
 
@@ -41,11 +42,17 @@ RenderOptions native_options(const Options& options) {
     all.memory_bytes = options.memory_bytes;
     all.passes.samples = options.pass_samples;
     all.passes.seconds = options.pass_seconds;
+    if (options.target_error != 0 && !(options.target_error >= target_error_range.least &&
+                                       options.target_error <= target_error_range.most))
+        throw UserError(
+            fmt::format("Options::target_error is {:g}; it must be 0, or lie between {:g} and {:g}",
+                        options.target_error, target_error_range.least, target_error_range.most));
+    all.passes.target_error = options.target_error;
     native_target(all.isa);
     if (!options.layers.empty())
         all.layers = parse_layers("Options::layers", options.layers, false);
-    if (!all.layers.empty() && all.passes.samples > 0)
-        throw UserError("Options::layers are of whole frames; leave out pass_samples");
+    if (!all.layers.empty() && (all.passes.samples > 0 || all.passes.target_error > 0))
+        throw UserError("Options::layers are of whole frames; leave out pass_samples and target_error");
     return all;
 }
 

@@ -43,6 +43,10 @@ struct Options {
     /// Samples are taken in passes of so many; 0: in one go. For a time: see PassOptions::seconds.
     int pass_samples = 0;
     double pass_seconds = 0;
+    /// Not 0: samples are taken in passes until the picture's relative error, by noise alone, is estimated to
+    /// be no more (razor/native/target_sampling.h), or pass_seconds are over. Levels of detail are the
+    /// scene's.
+    double target_error = 0;
 };
 
 /// Of the last picture. All there is: Renderer::statistics_json().

@@ -6,16 +6,6 @@
 namespace razor {
 namespace {
 
-/// The next of 8, 16, 24, 32, 48, 64, 96, ...: parts of the sample sequence that begin there are whole ones.
-int next_step(int samples) {
-    int whole = pilot_samples / 2;
-    while (2 * whole <= samples)
-        whole *= 2;
-    if (samples < pilot_samples)
-        return samples + pilot_samples / 2;
-    return samples == whole ? whole + whole / 2 : 2 * whole;
-}
-
 double squared(double x) {
     return x * x;
 }
@@ -23,27 +13,16 @@ double squared(double x) {
 } // namespace
 
 AdaptiveSampling::AdaptiveSampling(std::vector<TilePlace> tiles, const Crop& part, double threshold, int most)
-    : part_(part), threshold_(threshold), most_(most), samples_(tiles.size()),
-      mean_(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
+    : SamplePlan(tiles.size()), noise_(tiles.size()), neighbours_(tiles), part_(part), threshold_(threshold),
+      most_(most), mean_(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
     for (const TilePlace& place : tiles) {
-        numbers_[{place.column, place.row}] = tiles_.size();
         tiles_.push_back({.place = place});
         each_pixel(place, part, [&](std::size_t) { ++tiles_.back().pixels; });
     }
 }
 
 double AdaptiveSampling::deciding(std::size_t tile) const {
-    const TilePlace& middle = tiles_[tile].place;
-    double sum = 0;
-    int known = 0;
-    for (int row = -1; row <= 1; ++row)
-        for (int column = -1; column <= 1; ++column)
-            if (const auto found = numbers_.find({middle.column + column, middle.row + row});
-                found != numbers_.end()) {
-                sum += tiles_[found->second].noise;
-                ++known;
-            }
-    return std::max(tiles_[tile].noise, sum / known);
+    return std::max(noise_[tile], neighbours_.mean(tiles_[tile].place, noise_));
 }
 
 bool AdaptiveSampling::next() {
@@ -62,9 +41,7 @@ bool AdaptiveSampling::next() {
         after += samples_[t] * pixels;
         in_all += (had < pilot_samples ? most_ : std::clamp<double>(needed, samples_[t], most_)) * pixels;
     }
-    // It may turn out to be more than it seemed: what was shown is not taken back.
-    done_before_ = done_after_;
-    done_after_ = std::max(done_before_, after / std::max(in_all, 1.0));
+    tell_progress(after, in_all);
     return added_ > 0;
 }
 
@@ -79,8 +56,7 @@ void AdaptiveSampling::add(const Film& film) {
         const double share = static_cast<double>(had) / have;
         double variance = 0, luminance = 0;
         each_pixel(tile.place, part_, [&](std::size_t i) {
-            const double mean =
-                0.2126 * double{red[i]} + 0.7152 * double{green[i]} + 0.0722 * double{blue[i]};
+            const double mean = razor::luminance(double{red[i]}, double{green[i]}, double{blue[i]});
             // batch - before = (mean - before) / (1 - share)
             const double off = had == 0 ? 0 : share / (1 - share) * squared(mean - mean_[i]);
             mean_[i] = mean;
@@ -91,7 +67,7 @@ void AdaptiveSampling::add(const Film& film) {
         });
         const auto pixels = static_cast<double>(std::max<std::size_t>(tile.pixels, 1));
         constexpr double black = 1e-12; // there is noise of nothing else
-        tile.noise = variance / std::max(luminance, black * pixels);
+        noise_[t] = variance / std::max(luminance, black * pixels);
         tile.variance = variance;
         tile.luminance = luminance;
         tile.samples = have;

@@ -19,39 +19,21 @@
 // mean where the distribution of samples is symmetric. What none of all these samples met, nobody can know.
 #pragma once
 
-#include "razor/frame/tile_place.h"
-#include "razor/image/image.h"
-#include "razor/native/pass_figures.h"
+#include "razor/native/sample_plan.h"
 
-#include <map>
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace razor {
 
-/// What every pixel has at least, in two batches.
-inline constexpr int pilot_samples = 16;
-
-class AdaptiveSampling {
+class AdaptiveSampling : public SamplePlan {
 public:
     /// Of the tiles of a film of that part of the picture; `most`: of a pixel's samples, more than
     /// pilot_samples.
     AdaptiveSampling(std::vector<TilePlace> tiles, const Crop& part, double threshold, int most);
 
-    /// How many samples each tile is to have after the next pass; false: all rest, or have the most.
-    bool next();
-    /// As next() said, by the tiles' numbers.
-    std::span<const int> samples() const { return samples_; }
-    /// How many samples, of pixels in the part, next() added.
-    std::int64_t added() const { return added_; }
-    /// The film with those samples. What is no finite number is left out.
-    void add(const Film& film);
-    /// All but times; samples are the most that a pixel has.
-    PassFigures figures() const;
-    /// Of all that will be taken, as far as noise tells, what next() counted has been taken before and with
-    /// it.
-    std::pair<double, double> progress() const { return {done_before_, done_after_}; }
+    bool next() override;
+    void add(const Film& film) override;
+    PassFigures figures() const override;
 
 private:
     struct Tile {
@@ -60,20 +42,17 @@ private:
         int samples = 0;     // those of the estimate
         double variance = 0; // of the pixels' means, summed over them; likewise:
         double luminance = 0;
-        double noise = 0; // squared
     };
     /// The noise that decides, squared.
     double deciding(std::size_t tile) const;
 
     std::vector<Tile> tiles_;
-    std::map<std::pair<int, int>, std::size_t> numbers_; // by column and row
+    std::vector<double> noise_; // of each tile, squared
+    TileNeighbours neighbours_;
     Crop part_;
     double threshold_;
     int most_;
-    std::vector<int> samples_;
     std::vector<double> mean_; // of each pixel
-    std::int64_t added_ = 0;
-    double done_before_ = 0, done_after_ = 0;
 };
 
 } // namespace razor

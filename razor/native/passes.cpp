@@ -1,6 +1,7 @@
 #include "razor/native/passes.h"
 
 #include "razor/native/adaptive_sampling.h"
+#include "razor/native/target_sampling.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,7 +16,7 @@ void ErrorEstimate::add(const Film& so_far, int samples) {
     mean_.resize(so_far.pixel_count());
     squares_.resize(so_far.pixel_count());
     for (std::size_t i = 0; i < mean_.size(); ++i) {
-        const double mean = 0.2126 * double{red[i]} + 0.7152 * double{green[i]} + 0.0722 * double{blue[i]};
+        const double mean = luminance(double{red[i]}, double{green[i]}, double{blue[i]});
         const double batch = (mean * samples - mean_[i] * samples_) / (samples - samples_);
         squares_[i] += batch * batch * (samples - samples_);
         mean_[i] = mean;
@@ -86,14 +87,14 @@ PassFigures take_passes(Frame& frame, const PassOptions& options, int samples, c
     return figures;
 }
 
-PassFigures take_adaptive_passes(Frame& frame, const KernelTable& kernels, const Settings& settings,
-                                 const PassOptions& options, const RunWorkers& run,
-                                 const std::function<void(double)>& progress) {
+namespace {
+
+PassFigures take_planned_passes(Frame& frame, const KernelTable& kernels, SamplePlan& sampling,
+                                const PassOptions& options, const RunWorkers& run,
+                                const std::function<void(double)>& progress) {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     const auto now = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-    AdaptiveSampling sampling(frame.tile_places(kernels), shown_part(settings), settings.noise_threshold,
-                              settings.samples);
     PassFigures figures;
     double seconds_a_sample = 0;
     while (sampling.next()) {
@@ -120,6 +121,24 @@ PassFigures take_adaptive_passes(Frame& frame, const KernelTable& kernels, const
         seconds_a_sample = (figures.seconds - before) / added;
     }
     return figures;
+}
+
+} // namespace
+
+PassFigures take_adaptive_passes(Frame& frame, const KernelTable& kernels, const Settings& settings,
+                                 const PassOptions& options, const RunWorkers& run,
+                                 const std::function<void(double)>& progress) {
+    AdaptiveSampling sampling(frame.tile_places(kernels), shown_part(settings), settings.noise_threshold,
+                              settings.samples);
+    return take_planned_passes(frame, kernels, sampling, options, run, progress);
+}
+
+PassFigures take_passes_to_error(Frame& frame, const KernelTable& kernels, const Settings& settings,
+                                 const PassOptions& options, const RunWorkers& run,
+                                 const std::function<void(double)>& progress) {
+    TargetSampling sampling(frame.tile_places(kernels), shown_part(settings), settings.filter,
+                            options.target_error, most_target_samples);
+    return take_planned_passes(frame, kernels, sampling, options, run, progress);
 }
 
 } // namespace razor

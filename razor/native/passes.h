@@ -42,4 +42,10 @@ PassFigures take_adaptive_passes(Frame& frame, const KernelTable& kernels, const
                                  const PassOptions& options, const RunWorkers& run,
                                  const std::function<void(double)>& progress);
 
+/// Passes by error (razor/native/target_sampling.h): as many samples as options.target_error needs, and with
+/// options.seconds no more than there is time for. Levels of detail are those of the settings' samples.
+PassFigures take_passes_to_error(Frame& frame, const KernelTable& kernels, const Settings& settings,
+                                 const PassOptions& options, const RunWorkers& run,
+                                 const std::function<void(double)>& progress);
+
 } // namespace razor

@@ -96,6 +96,8 @@ FrameTime render_frame(Frame& frame, const KernelTable& kernels, const RenderOpt
     };
     if (settings.noise_threshold > 0)
         time.passes = take_adaptive_passes(frame, kernels, settings, options.passes, run, progress);
+    else if (options.passes.target_error > 0)
+        time.passes = take_passes_to_error(frame, kernels, settings, options.passes, run, progress);
     else if (options.passes.samples > 0)
         time.passes = take_passes(frame, options.passes, settings.samples, run, progress);
     else
@@ -141,10 +143,26 @@ void check_noise_threshold(const Scene& scene, const RenderOptions& options) {
         throw UserError("a noise threshold is of one frame, all of it, rendered once; set it to 0");
 }
 
+/// Throws UserError where samples cannot be taken by error.
+void check_target_error(const Scene& scene, const RenderOptions& options) {
+    if (options.passes.target_error <= 0)
+        return;
+    if (scene.settings.noise_threshold > 0)
+        throw UserError(
+            fmt::format("{}: a noise threshold and a target error both say how many samples there "
+                        "are; leave out one",
+                        scene.name));
+    if (!options.layers.empty())
+        throw UserError("layers are of whole frames; leave them out, or the target error");
+    if (options.frames > 1 || options.tiles > 0 || options.run)
+        throw UserError("a target error is of one frame, all of it, rendered once; set it to 0");
+}
+
 } // namespace
 
 void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
     check_noise_threshold(scene, options_);
+    check_target_error(scene, options_);
     camera_ = scene.camera;
     settings_ = scene.settings;
     const auto begin = Clock::now();
@@ -153,6 +171,7 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
     };
     if (!frame_ || !pose()) {
         frame_.reset(); // its memory goes before the next one's comes
+        const bool by_tiles = settings_.noise_threshold > 0 || options_.passes.target_error > 0;
         frame_ = std::make_unique<Frame>(
             scene, FrameOptions{.workers = options_.threads,
                                 .tree_of_worker = tree_groups(options_.threads, options_.share),
@@ -160,8 +179,8 @@ void NativeRenderer::load(const Scene& scene, const SceneChanges* changes) {
                                 .memory_bytes = options_.memory_bytes,
                                 .apart = options_.layers.has(LayerSource::touch),
                                 .moves = moves_,
-                                .passes = options_.passes.samples > 0 || settings_.noise_threshold > 0,
-                                .tile_passes = settings_.noise_threshold > 0,
+                                .passes = options_.passes.samples > 0 || by_tiles,
+                                .tile_passes = by_tiles,
                                 .tile_costs = options_.layers.has(LayerSource::tile)});
     }
     load_seconds_ = seconds_since(begin);

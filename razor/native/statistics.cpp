@@ -128,7 +128,10 @@ void to_json(nlohmann::ordered_json& json, const RenderStatistics& s) {
                           {"error", passes.error},
                           {"relative_error", passes.relative_error},
                           {"noise_threshold", passes.threshold},
-                          {"within_threshold", passes.within_threshold}};
+                          {"within_threshold", passes.within_threshold},
+                          {"target_error", passes.target},
+                          {"reached_error", passes.target_error},
+                          {"reached_error_uncertainty", passes.target_error_uncertainty}};
 }
 
 } // namespace razor

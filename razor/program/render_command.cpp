@@ -6,6 +6,7 @@
 #include "razor/program/explain.h"
 #include "razor/program/frame_trace.h"
 #include "razor/program/interrupt.h"
+#include "razor/program/passes_report.h"
 #include "razor/program/sequence.h"
 #include "razor/scene/error.h"
 #include "razor/scene/numbered_name.h"
@@ -43,19 +44,6 @@ std::string memory_text(const BudgetStatistics& s) {
     return fmt::format(", at most {:.1f} MB at a time: {:.1f} % of blocks and {:.1f} % of nodes made again",
                        static_cast<double>(s.peak_bytes) / 1e6, percent(s.regenerated_blocks, s.made_blocks),
                        percent(s.regenerated_nodes, s.made_nodes));
-}
-
-std::string passes_text(const PassFigures& p) {
-    std::string text = fmt::format("{:.6g} samples a pixel", p.mean_samples);
-    if (p.threshold > 0)
-        text += fmt::format(", at most {},", p.samples);
-    text += fmt::format(" in {} passes, {:.2f} s", p.passes, p.seconds);
-    if (p.threshold > 0)
-        text += fmt::format("; {:.1f} % of pixels within noise {:g}", 100 * p.within_threshold, p.threshold);
-    if (p.passes > 1)
-        text += fmt::format("; estimated error of luminance {:.2g}, {:.2g} % of its mean", p.error,
-                            100 * p.relative_error);
-    return text;
 }
 
 constexpr Range threads_range{1, 1024};
@@ -107,6 +95,19 @@ void RenderCommand::add_to(CLI::App& app) {
             "take samples in passes as long as another ends by then, such as 10s, and tell how many "
             "that were and how far the picture may be off; levels of detail are those of --spp samples")
         ->type_name("TIME");
+    render
+        .add_option(
+            "--target-error", target_error_,
+            "take samples, where they help most, until the picture's noise is estimated to be no more than "
+            "E: the "
+            "root mean square over pixels and channels of (v - r) / (r + 0.01), the root of what compare "
+            "calls relative MSE, such as 0.05; from 16 to 65536 samples a pixel, or as --time ends; without "
+            "--edge-pixels, also choose these so that levels of detail differ less than that from ones half "
+            "as "
+            "long; light that --bounces and --diffuse-bounces leave out is no part of it; levels are those "
+            "of "
+            "--spp samples")
+        ->type_name("E");
     render.add_option("--exposure", exposure_, "of PNG files, in stops; without it, 0")->type_name("X");
     render
         .add_option("--tone", tone_,
@@ -167,8 +168,8 @@ RenderOptions RenderCommand::options() const {
     options.passes = passes();
     if (options.passes.samples > 0 && (options.frames > 1 || !trace_.empty())) {
         throw UserError(
-            "--progressive and --time take passes of one frame, rendered once; leave out --repeat "
-            "and --trace");
+            "--progressive, --time and --target-error take passes of one frame, rendered once; leave out "
+            "--repeat and --trace");
     }
     if (progressive_ && (sequence || outputs_.empty())) {
         throw UserError(
@@ -176,8 +177,8 @@ RenderOptions RenderCommand::options() const {
             "--frames");
     }
     if (options.passes.samples > 0 && !options.layers.empty()) {
-        throw UserError("layers are of whole frames; leave out --progressive and --time, or --layers and "
-                        "--false-colour");
+        throw UserError("layers are of whole frames; leave out --progressive, --time and --target-error, or "
+                        "--layers and --false-colour");
     }
     return options;
 }
@@ -191,15 +192,20 @@ int RenderCommand::run() const {
         fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
         return 0;
     }
-    const SceneDescription description = sequence ? scene_.describe_moving() : scene_.describe();
+    SceneDescription description = sequence ? scene_.describe_moving() : scene_.describe();
     for (const std::string& note : notes_of(description)) {
         if (!quiet_) {
             fmt::print(stderr, "razor: {}\n", note);
         }
     }
-    api::Scene scene(description);
-    if (layers_.shows_samples() && scene.settings().noise_threshold <= 0) {
-        throw UserError("--false-colour samples is of samples taken by noise; add --noise-threshold X");
+    if (layers_.shows_samples() && description.settings.noise_threshold <= 0 &&
+        options.passes.target_error <= 0) {
+        throw UserError("--false-colour samples is of samples taken by noise; add --noise-threshold X or "
+                        "--target-error E");
+    }
+    if (options.passes.target_error > 0 && description.settings.noise_threshold > 0) {
+        throw UserError("a noise threshold and --target-error both say how many samples there are; leave out "
+                        "one (--noise-threshold 0)");
     }
     for (const std::string& output : outputs_) {
         check_numbered("-o", output, frames);
@@ -209,6 +215,19 @@ int RenderCommand::run() const {
         check_numbered("--stats", statistics_, frames);
         check_writable(numbered(statistics_, frames.first));
     }
+    std::optional<EdgeChoice> levels;
+    if (options.passes.target_error > 0) {
+        levels = choose_edges(description, frames.first, options, scene_.edge_pixels_given());
+        if (levels && !quiet_) {
+            fmt::print("{}\n", text_of(*levels));
+            std::fflush(stdout);
+        }
+        if (!levels) {
+            fmt::print(stderr, "razor: interrupted; nothing written\n");
+            return interrupted_exit;
+        }
+    }
+    api::Scene scene(std::move(description));
     std::optional<FrameTrace> trace;
     if (!trace_.empty()) {
         check_writable(trace_);
@@ -240,7 +259,7 @@ int RenderCommand::run() const {
         if (progressive_) {
             calls.passed = write_passes(renderer, frame, written);
         }
-        if (!render(renderer, frame, calls, progress)) {
+        if (!render(renderer, frame, calls, progress, levels)) {
             fmt::print(stderr, "{}razor: interrupted; {}\n", progress.shown() ? "\r\x1b[K" : "",
                        sequence ? fmt::format(
                                       "frame {} and what follows are not written; go on with --resume", frame)
@@ -272,7 +291,9 @@ Tone RenderCommand::tone() const {
 PassOptions RenderCommand::passes() const {
     constexpr int samples_a_pass = 4; // as in a packet of 32 lanes that sees eight pixels
     PassOptions passes;
-    passes.samples = progressive_ || !time_.empty() ? samples_a_pass : 0;
+    passes.target_error =
+        target_error_.empty() ? 0 : parse_number("--target-error", target_error_, target_error_range);
+    passes.samples = progressive_ || !time_.empty() || passes.target_error > 0 ? samples_a_pass : 0;
     passes.seconds = time_.empty() ? 0 : parse_seconds("--time", time_);
     return passes;
 }
@@ -305,7 +326,7 @@ Passed RenderCommand::write_passes(const api::Renderer& renderer, int frame, dou
 }
 
 bool RenderCommand::render(api::Renderer& renderer, int frame, const RenderCalls& calls,
-                           const Progress& progress) const {
+                           const Progress& progress, const std::optional<EdgeChoice>& levels) const {
     const auto start = std::chrono::steady_clock::now();
     const Film* film = nullptr;
     try {
@@ -323,28 +344,32 @@ bool RenderCommand::render(api::Renderer& renderer, int frame, const RenderCalls
     const OutputGuard guard;
     write_pictures(renderer, frame, *film, renderer.statistics().passes);
     if (!statistics_.empty()) {
-        write_statistics(renderer, frame, seconds);
+        write_statistics(renderer, frame, seconds, levels);
     }
     tell(renderer, frame, seconds, *film, progress);
     return true;
 }
 
-void RenderCommand::write_statistics(const api::Renderer& renderer, int frame, double seconds) const {
+void RenderCommand::write_statistics(const api::Renderer& renderer, int frame, double seconds,
+                                     const std::optional<EdgeChoice>& levels) const {
     const RenderStatistics& figures = renderer.figures();
     const RenderOptions& asked = renderer.options();
-    const nlohmann::ordered_json report{{"program", "razor"},
-                                        {"version", version()},
-                                        {"options",
-                                         {{"threads", figures.threads},
-                                          {"isa", figures.isa},
-                                          {"workers_a_tree", asked.share},
-                                          {"eager", asked.eager},
-                                          {"memory_bytes", asked.memory_bytes},
-                                          {"repeat", asked.frames},
-                                          {"frame", frame}}},
-                                        {"scene", renderer.scene_text()},
-                                        {"seconds", seconds},
-                                        {"statistics", nlohmann::ordered_json(figures)}};
+    nlohmann::ordered_json report{{"program", "razor"},
+                                  {"version", version()},
+                                  {"options",
+                                   {{"threads", figures.threads},
+                                    {"isa", figures.isa},
+                                    {"workers_a_tree", asked.share},
+                                    {"eager", asked.eager},
+                                    {"memory_bytes", asked.memory_bytes},
+                                    {"repeat", asked.frames},
+                                    {"frame", frame}}},
+                                  {"scene", renderer.scene_text()},
+                                  {"seconds", seconds},
+                                  {"statistics", nlohmann::ordered_json(figures)}};
+    if (levels) {
+        report["levels"] = json_of(*levels);
+    }
     write_text_file(numbered(statistics_, frame), report.dump(2) + "\n");
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/api/renderer.h"
+#include "razor/native/edge_choice.h"
 #include "razor/native/render.h"
 #include "razor/program/layer_options.h"
 #include "razor/program/progress.h"
@@ -9,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +28,11 @@ private:
     /// What the options ask for. Throws UserError where they contradict each other.
     RenderOptions options() const;
     /// One frame to its files; false: interrupted, none is written.
-    bool render(api::Renderer& renderer, int frame, const RenderCalls& calls, const Progress& progress) const;
+    bool render(api::Renderer& renderer, int frame, const RenderCalls& calls, const Progress& progress,
+                const std::optional<EdgeChoice>& levels) const;
     /// Of a frame that took so long, loading included.
-    void write_statistics(const api::Renderer& renderer, int frame, double seconds) const;
+    void write_statistics(const api::Renderer& renderer, int frame, double seconds,
+                          const std::optional<EdgeChoice>& levels) const;
     void tell(const api::Renderer& renderer, int frame, double seconds, const Film& film,
               const Progress& progress) const;
 
@@ -45,7 +49,7 @@ private:
     LayerOptions layers_;
     std::vector<std::string> outputs_;
     std::string threads_, isa_ = "auto", share_ = "chip", memory_, repeat_ = "1", frames_, statistics_,
-                          trace_, exposure_, tone_ = "srgb", time_;
+                          trace_, exposure_, tone_ = "srgb", time_, target_error_;
     bool print_config_ = false, explain_ = false, quiet_ = false, eager_ = false, resume_ = false,
          progressive_ = false;
 };

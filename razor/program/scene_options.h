@@ -25,6 +25,8 @@ public:
     bool frame_given() const { return !frame_.empty(); }
     /// Whether --lod was.
     bool lod_given() const { return !lod_.empty(); }
+    /// Whether --edge-pixels was.
+    bool edge_pixels_given() const { return !edge_pixels_.empty(); }
 
 private:
     std::string scene_, size_, crop_, samples_, noise_threshold_, filter_, filter_radius_, light_samples_,

@@ -12,6 +12,7 @@ inline constexpr Range crop_range{0, 32768};          // pixels
 inline constexpr Range filter_radius_range{0.01, 32}; // pixels
 inline constexpr Range samples_range{1, 65536};       // a pixel
 inline constexpr Range noise_threshold_range{0, 1e3}; // 0: all take as many
+inline constexpr Range target_error_range{1e-4, 10};  // relative
 inline constexpr Range shadow_samples_range{0, 4096}; // a hit, to the light or the sky
 inline constexpr Range light_choices_range{0, 64};    // a hit, to lights that are chosen
 inline constexpr Range stops_range{-64, 64};          // stops

@@ -82,6 +82,21 @@ TEST(Renders, TellOfPasses) {
     EXPECT_THROW(Renderer(scene, {.layers = "pick", .pass_samples = 2}), UserError);
 }
 
+TEST(Renders, TakeSamplesForAnError) {
+    Scene scene = Scene::parse(small_scene);
+    make_fast(scene);
+    Renderer renderer(scene, {.threads = 1, .target_error = 0.05});
+    const Film first = renderer.render();
+    const PassFigures figures = renderer.statistics().passes;
+    EXPECT_EQ(figures.target, 0.05);
+    EXPECT_GT(figures.target_error, 0);
+    EXPECT_LE(figures.target_error, 0.05);
+    expect_same_bits(renderer.render(), first, "again");
+    EXPECT_THROW(Renderer(scene, {.layers = "pick", .target_error = 0.05}), UserError);
+    for (const double wrong : {-1.0, 1e-9, 1e9, std::nan("")})
+        EXPECT_THROW(Renderer(scene, {.target_error = wrong}), UserError);
+}
+
 TEST(Renders, AreIndependentOfEachOther) {
     const Scene scene = Scene::parse(small_scene);
     Renderer alone(scene, {.threads = 1});
