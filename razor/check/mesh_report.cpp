@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace razor::check {
@@ -32,16 +33,41 @@ glm::dvec3 point_of(const Mesh& mesh, const Adjacency& a, int corner) {
     return mesh.points[static_cast<std::size_t>(a.point(corner))];
 }
 
-bool is_degenerate(const Mesh& mesh, const Adjacency& a, int face) {
+/// The area over the square of the longest edge.
+double slenderness(const Mesh& mesh, const Adjacency& a, int face) {
     const glm::dvec3 first = point_of(mesh, a, a.first(face));
     glm::dvec3 area(0);
     double longest = 0;
     for (int c = a.first(face); c < a.first(face) + a.size(face); ++c) {
         const glm::dvec3 p = point_of(mesh, a, c), q = point_of(mesh, a, a.next_corner(c));
-        area += glm::cross(p - first, q - first);
+        area += 0.5 * glm::cross(p - first, q - first);
         longest = std::max(longest, glm::length(q - p));
     }
-    return !(glm::length(area) > 1e-12 * longest * longest);
+    return longest > 0 ? glm::length(area) / (longest * longest) : 0;
+}
+
+constexpr double no_area = 0.5e-12, sliver = 1e-4;
+constexpr int high_valence = 64;
+
+void find_repeated_faces(const Mesh& mesh, const Adjacency& a, MeshReport& r) {
+    std::set<std::vector<int>> seen;
+    for (int f = 0; f < r.faces; ++f) {
+        const auto first = mesh.face_vertices.begin() + a.first(f);
+        std::vector<int> points(first, first + a.size(f));
+        std::sort(points.begin(), points.end());
+        if (!seen.insert(std::move(points)).second)
+            r.repeated_faces.add(f);
+    }
+}
+
+void find_semi_sharp(const Mesh& mesh, MeshReport& r) {
+    const auto is_semi = [](float sharpness) { return sharpness > 0 && sharpness < infinite_sharpness; };
+    for (const Crease& c : mesh.creases)
+        if (is_semi(c.sharpness))
+            r.semi_sharp.add(c.v0, c.v1);
+    for (const Corner& c : mesh.corners)
+        if (is_semi(c.sharpness))
+            r.semi_sharp.add(c.vertex, c.vertex);
 }
 
 /// Fans of faces about a point that are joined by edges.
@@ -92,8 +118,11 @@ MeshReport examine(const Mesh& mesh) {
     r.faces = a.face_count();
     for (int f = 0; f < r.faces; ++f) {
         ++(a.size(f) == 3 ? r.triangles : a.size(f) == 4 ? r.quads : r.larger);
-        if (is_degenerate(mesh, a, f))
+        const double area = slenderness(mesh, a, f);
+        if (!(area > no_area))
             r.degenerate_faces.add(f);
+        else if (area < sliver)
+            r.slivers.add(f);
     }
     for (int e = 0; e < a.edge_count(); ++e) {
         const auto [p, q] = a.edge_points[static_cast<std::size_t>(e)];
@@ -110,11 +139,15 @@ MeshReport examine(const Mesh& mesh) {
         r.largest_valence = std::max(r.largest_valence, valence);
         if (valence == 0)
             r.isolated_points.add(p);
-        else if (fans(a, p) > 1)
+        if (valence > high_valence)
+            r.high_valence_points.add(p);
+        if (valence > 0 && fans(a, p) > 1)
             r.pinched_points.add(p);
     }
     for (const int face : mesh.holes)
         r.hole_faces.add(face);
+    find_repeated_faces(mesh, a, r);
+    find_semi_sharp(mesh, r);
     find_bodies(mesh, a, r);
     return r;
 }

@@ -25,13 +25,17 @@ struct MeshReport {
     std::string name;
     int points = 0, faces = 0;
     int triangles = 0, quads = 0, larger = 0;
-    int largest_valence = 0;    // faces at one point
-    Finding open_edges;         // with one face
-    Finding non_manifold_edges; // with more than two
-    Finding opposed_edges;      // whose two faces run the same way along it: opposite windings
-    Finding pinched_points;     // whose faces form more than one fan
-    Finding isolated_points;    // of no face
-    Finding degenerate_faces;   // whose area is less than 1e-12 of the square of its longest edge
+    int largest_valence = 0;     // faces at one point
+    Finding open_edges;          // with one face
+    Finding non_manifold_edges;  // with more than two
+    Finding opposed_edges;       // whose two faces run the same way along it: opposite windings
+    Finding pinched_points;      // whose faces form more than one fan
+    Finding isolated_points;     // of no face
+    Finding degenerate_faces;    // whose area is less than 1e-12 of the square of its longest edge
+    Finding slivers;             // faces more than 10,000 times as long as wide, and not degenerate
+    Finding repeated_faces;      // with the points of an earlier one, in whichever order
+    Finding high_valence_points; // of more than 64 faces
+    Finding semi_sharp; // creases and corners of sharpness above 0 and below 10; the points of the first
     Finding hole_faces;
     int bodies = 0; // parts that share no point
     int closed_bodies = 0;

@@ -15,22 +15,38 @@ struct Kind {
     const char* what; // {} is the number
     const char* where;
     const char* means;
+    const char* mend;
+    bool is_warning;
 };
 constexpr const char* at_edge = "first between points {} and {}";
 constexpr const char* at_point = "first point {}";
 constexpr const char* at_face = "first face {}";
 constexpr Kind kinds[] = {
-    {"open_edges", &MeshReport::open_edges, "open edges", at_edge, "rays pass beside them"},
+    {"open_edges", &MeshReport::open_edges, "open edges", at_edge, "rays pass beside them",
+     "close the surface if it is meant to be a body", false},
     {"non_manifold_edges", &MeshReport::non_manifold_edges, "edges of more than two faces", at_edge,
-     "each is an infinitely sharp crease"},
+     "each is an infinitely sharp crease", "take one of the faces away, or part them", true},
     {"opposed_edges", &MeshReport::opposed_edges, "edges between faces of opposite windings", at_edge,
-     "each is an infinitely sharp crease"},
+     "each is an infinitely sharp crease, and normals turn over there", "turn one of the faces over", true},
     {"pinched_points", &MeshReport::pinched_points, "points where separate fans of faces touch", at_point,
-     "each is an infinitely sharp corner"},
+     "each is an infinitely sharp corner", "give each fan a point of its own", true},
     {"degenerate_faces", &MeshReport::degenerate_faces, "faces without area", at_face,
-     "their normals are those of what is about them, or none"},
-    {"isolated_points", &MeshReport::isolated_points, "points of no face", at_point, "they are not drawn"},
-    {"hole_faces", &MeshReport::hole_faces, "faces tagged as holes", at_face, "they are not drawn"},
+     "their normals are those of what is about them, or none", "take them out", true},
+    {"slivers", &MeshReport::slivers, "faces more than 10,000 times as long as wide", at_face,
+     "their edges take many parts along one side and hardly any along the other", "cut them, or merge them",
+     true},
+    {"repeated_faces", &MeshReport::repeated_faces, "faces with the points of an earlier one", at_face,
+     "of what lies at the same place the first is seen, and shadows fall on the other", "take one out", true},
+    {"high_valence_points", &MeshReport::high_valence_points, "points of more than 64 faces", at_point,
+     "time and memory of the limit surface there grow as the square of their number",
+     "cut the faces in rings", false},
+    {"semi_sharp", &MeshReport::semi_sharp, "creases and corners of sharpness between 0 and 10", at_edge,
+     "as many levels of subdivision as it says are made apart about each",
+     "none is needed; 10 is infinitely sharp", false},
+    {"isolated_points", &MeshReport::isolated_points, "points of no face", at_point, "they are not drawn",
+     "take them out", false},
+    {"hole_faces", &MeshReport::hole_faces, "faces tagged as holes", at_face, "they are not drawn",
+     "none is needed if they are meant to be", false},
 };
 
 std::string text_of(const BadRay& b) {
@@ -67,11 +83,20 @@ std::string text_of(const std::vector<MeshReport>& meshes) {
         for (const Kind& kind : kinds) {
             const Finding& f = m.*kind.finding;
             if (f.count > 0)
-                text += fmt::format("  {} {} ({}): {}\n", f.count, kind.what,
-                                    fmt::format(fmt::runtime(kind.where), f.first, f.second), kind.means);
+                text += fmt::format(
+                    "  {}: {} {} ({}): {}; {}\n", kind.is_warning ? "warning" : "note", f.count, kind.what,
+                    fmt::format(fmt::runtime(kind.where), f.first, f.second), kind.means, kind.mend);
         }
     }
     return text;
+}
+
+int warnings_of(const std::vector<MeshReport>& meshes) {
+    int n = 0;
+    for (const MeshReport& m : meshes)
+        for (const Kind& kind : kinds)
+            n += kind.is_warning && (m.*kind.finding).count > 0 ? 1 : 0;
+    return n;
 }
 
 std::string text_of(const EscapeReport& r) {

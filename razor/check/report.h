@@ -13,6 +13,8 @@ namespace razor::check {
 
 /// A line a mesh, and one for each kind of finding.
 std::string text_of(const std::vector<MeshReport>& meshes);
+/// How many kinds of findings there are that most likely are mistakes, summed over meshes.
+int warnings_of(const std::vector<MeshReport>& meshes);
 std::string text_of(const EscapeReport& report);
 std::string text_of(const ConvergenceReport& report);
 

@@ -1,9 +1,11 @@
 #include "razor/program/check_command.h"
 
 #include "razor/check/report.h"
+#include "razor/check/scene_report.h"
 #include "razor/image/output_file.h"
 #include "razor/native/targets.h"
 #include "razor/program/arguments.h"
+#include "razor/program/explain.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
 #include "razor/scene/error.h"
@@ -59,10 +61,26 @@ void CheckCommand::add_to(CLI::App& app) {
         ->type_name("N");
     check.add_option("--isa", isa_, "instruction set: auto, plain, sse4, avx2 or avx512")->type_name("NAME");
     check.add_option("--json", json_, "write all findings for programs")->type_name("FILE.json");
+    check.add_flag("--strict", strict_, "end with 1 where there is any warning");
     check.add_flag("--quiet", quiet_, "show no progress");
     check.footer(
         "Exit code 0: no ray escaped, and no hit differs from the surface by definition by more than "
-        "single precision rounds; 1: some did; 2: the model cannot be used.");
+        "single precision rounds; 1: some did, or with --strict there are warnings; 2: the model cannot be "
+        "used.\n\n"
+        "Told are, of meshes: open edges, edges of more than two faces, opposite windings, points where fans "
+        "touch, "
+        "faces without area, slivers, repeated faces, points of more than 64 faces, sharpness between 0 and "
+        "10, "
+        "points of no face, holes; of the scene: how exactly hits can be told where each mesh lies, levels "
+        "of "
+        "detail that cannot be given, lights and materials that do nothing or too much, the "
+        "features in "
+        "use, and the memory a frame takes, estimated from two small pictures.\n\n"
+        "The JSON has meshes (each kind of finding with its count and first place), findings (severity: "
+        "warning or "
+        "note, kind, object, what, means, mend), precision (by mesh, lengths in world units), features (by "
+        "name, "
+        "whether in use), memory (bytes, and estimated_from).");
 }
 
 int CheckCommand::run() const {
@@ -97,6 +115,9 @@ int CheckCommand::run() const {
     }
     Scene scene = build_scene(description);
     const std::vector<check::MeshReport> meshes = examine(scene);
+    const std::vector<check::SceneFinding> findings = check::findings_of(scene);
+    const std::vector<check::PrecisionBudget> precision = check::precision_of(scene);
+    const check::MemoryEstimate memory = check::estimate_memory(scene, kernels);
     std::optional<check::EscapeReport> escapes;
     if (shoots) {
         Scene closed = check::closed_part(scene, meshes);
@@ -139,6 +160,12 @@ int CheckCommand::run() const {
         for (const check::MeshReport& m : meshes) {
             report["meshes"].push_back(check::json_of(m));
         }
+        report["findings"] = check::json_of(findings);
+        report["precision"] = check::json_of(scene, precision);
+        for (const auto& [feature, used] : features_in_use(scene, memory.frame)) {
+            report["features"][feature] = used;
+        }
+        report["memory"] = check::json_of(memory);
         if (escapes) {
             report["escape"] = {{"lod", word_of(lod_words, description.settings.lod)},
                                 {"isa", kernels.name},
@@ -151,16 +178,22 @@ int CheckCommand::run() const {
         // Names need not be UTF-8.
         write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
-    fmt::print("{}", check::text_of(meshes));
+    fmt::print("{}{}{}{}{}", check::text_of(meshes), check::text_of(findings),
+               check::text_of(scene, precision), features_text(scene, memory.frame), check::text_of(memory));
     if (convergence) {
         fmt::print("{}", check::text_of(*convergence));
     }
+    const bool warned = check::warnings_of(meshes) > 0 ||
+                        std::any_of(findings.begin(), findings.end(), [](const check::SceneFinding& f) {
+                            return f.severity == check::Severity::warning;
+                        });
+    const int calm = strict_ && warned ? 1 : 0;
     if (!escapes) {
-        return 0;
+        return calm;
     }
     fmt::print("{} on {}: {}", word_of(lod_words, description.settings.lod), kernels.name,
                check::text_of(*escapes));
-    return escapes->escapes + escapes->different > 0 ? 1 : 0;
+    return escapes->escapes + escapes->different > 0 ? 1 : calm;
 }
 
 } // namespace razor

@@ -24,7 +24,7 @@ private:
     CLI::App* command_ = nullptr;
     SceneOptions scene_;
     std::string escape_, compare_, per_origin_, converge_, isa_ = "auto", json_;
-    bool quiet_ = false;
+    bool quiet_ = false, strict_ = false;
 };
 
 } // namespace razor

@@ -56,18 +56,31 @@ double percent(std::int64_t part, std::int64_t whole) {
 
 } // namespace
 
-std::string explain(const Scene& scene, const RenderStatistics& statistics) {
-    const FrameStatistics& f = statistics.frame;
-    std::string text = fmt::format("plan: {}\n", f.plan);
-    const auto out = std::back_inserter(text);
-    const std::vector<Feature> features = features_of(scene, f);
+std::vector<std::pair<std::string, bool>> features_in_use(const Scene& scene, const FrameStatistics& frame) {
+    std::vector<std::pair<std::string, bool>> features;
+    for (const Feature& f : features_of(scene, frame))
+        features.emplace_back(f.name, f.present);
+    return features;
+}
+
+std::string features_text(const Scene& scene, const FrameStatistics& frame) {
+    std::string text;
+    const std::vector<Feature> features = features_of(scene, frame);
     for (const bool present : {true, false}) {
         std::vector<const char*> names;
         for (const Feature& feature : features)
             if (feature.present == present)
                 names.push_back(feature.name);
-        fmt::format_to(out, "{}: {}\n", present ? "in use" : "left out", fmt::join(names, ", "));
+        text += fmt::format("{}: {}\n", present ? "in use" : "left out", fmt::join(names, ", "));
     }
+    return text;
+}
+
+std::string explain(const Scene& scene, const RenderStatistics& statistics) {
+    const FrameStatistics& f = statistics.frame;
+    std::string text = fmt::format("plan: {}\n", f.plan);
+    const auto out = std::back_inserter(text);
+    text += features_text(scene, f);
     fmt::format_to(out, "tables: materials {}, texture coordinates {}, textures {:.1f} MiB\n",
                    f.material_records > 0 ? fmt::format("{}", f.material_records) : "none",
                    f.textured_meshes > 0 ? fmt::format("of {} meshes", f.textured_meshes) : "none",
