@@ -41,7 +41,8 @@ private:
                                    std::uint64_t{c.phase} << 8U | std::uint64_t{c.work} << 4U |
                                    static_cast<std::uint64_t>(c.kind) |
                                    static_cast<std::uint64_t>(c.part) << 62U;
-        std::uint64_t h = (c.site + rest * 0x9E3779B97F4A7C15U) * 0xD6E8FEB86659FD93U;
+        std::uint64_t h =
+            (c.site + (rest ^ std::uint64_t{c.detail} << 20U) * 0x9E3779B97F4A7C15U) * 0xD6E8FEB86659FD93U;
         return h ^ h >> 32U;
     }
     std::uint32_t number(const Class& c) {

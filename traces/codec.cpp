@@ -1,6 +1,7 @@
 #include "traces/codec.h"
 
 #include "traces/error.h"
+#include "traces/evictions.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -14,8 +15,11 @@
 namespace traces {
 namespace {
 
-constexpr std::size_t columns = 5; // table, classes, addresses, times, order
-constexpr unsigned part_shift = 4; // above the kind
+constexpr std::size_t columns = 5;     // table, classes, addresses, times, order
+constexpr unsigned part_shift = 4;     // above the kind
+constexpr unsigned set_bits_shift = 8; // above the addresses' shift
+/// Of what caches pass on there is less than of what cores ask for, and hardly anything repeats itself.
+constexpr int level_for_caches = 19;
 
 /// Of windows there are hardly more than references.
 std::size_t most_turns(std::size_t references) {
@@ -71,6 +75,7 @@ void put_table(const Block& block, const std::vector<std::uint32_t>& order, std:
         append_varint(out, c.phase);
         append_varint(out, c.work);
         append_varint(out, zigzag(c.site - site));
+        append_varint(out, c.detail);
         site = c.site;
     }
 }
@@ -79,7 +84,7 @@ void put_table(const Block& block, const std::vector<std::uint32_t>& order, std:
 template <class ClassOf> std::vector<std::uint32_t> without_parts(std::size_t classes, ClassOf class_of) {
     const auto key = [&](std::uint32_t number) {
         const Class& c = class_of(number);
-        return std::tuple(c.site, c.size, c.structure, c.phase, c.work, c.kind);
+        return std::tuple(c.site, c.size, c.structure, c.phase, c.work, c.kind, c.detail);
     };
     std::vector<std::uint32_t> sorted(classes), first(classes);
     std::iota(sorted.begin(), sorted.end(), 0U);
@@ -125,6 +130,13 @@ void put_order(const Block& block, std::string& out) {
     out += windows;
 }
 
+std::uint32_t largest(const std::uint8_t* bytes, std::size_t n) {
+    std::uint8_t most = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        most = std::max(most, bytes[i]);
+    return most;
+}
+
 [[noreturn]] void refuse(const std::string& place, const char* what) {
     throw Error(fmt::format("{}: {}; the file is damaged, record or copy it again", place, what));
 }
@@ -138,11 +150,11 @@ void Encoder::Free::operator()(ZSTD_CCtx_s* c) const {
 Encoder::Encoder(int zstd_level) : context_(ZSTD_createCCtx()), level_(zstd_level) {}
 Encoder::~Encoder() = default;
 
-void Encoder::compress(const std::string& column, std::string& out) {
+void Encoder::compress(const std::string& column, int level, std::string& out) {
     const std::size_t begin = out.size();
     out.resize(begin + ZSTD_compressBound(column.size()));
     const std::size_t n = ZSTD_compressCCtx(context_.get(), out.data() + begin, out.size() - begin,
-                                            column.data(), column.size(), level_);
+                                            column.data(), column.size(), level);
     if (ZSTD_isError(n) != 0)
         throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(n)));
     out.resize(begin + n);
@@ -169,11 +181,36 @@ void Encoder::encode(const Block& block, std::string& out) {
     std::vector<std::uint64_t> last(order.size(), 0);
     addresses_.resize(n * longest_varint);
     char* to = addresses_.data();
-    for (std::size_t i = 0; i < n; ++i) {
+    const unsigned set_bits = Evictions::set_bits(block, shift);
+    const auto put = [&](std::size_t i) {
         const std::uint64_t a = block.addresses[i] >> shift;
         std::uint64_t& before = last[place[rank[block.classes[i]]]];
         to = put_varint(to, zigzag(a - before));
         before = a;
+    };
+    for (std::size_t i = 0; i < n; ++i)
+        if (set_bits == 0 || !Evictions::leaves(block.what(i)))
+            put(i);
+    if (set_bits != 0) { // and of each of these a byte more, in the worst case
+        const auto used = to - addresses_.data();
+        addresses_.resize(addresses_.size() + n);
+        to = addresses_.data() + used;
+        Evictions evictions(set_bits);
+        for (const Segment& s : block.segments) {
+            evictions.clear();
+            for (std::size_t i = s.begin; i < s.end; ++i) {
+                const std::uint64_t a = block.addresses[i] >> shift;
+                if (Evictions::leaves(block.what(i))) {
+                    const bool room = i + 1 != s.end && Evictions::comes(block.what(i + 1));
+                    const std::uint64_t at = room ? evictions.leave(a, block.addresses[i + 1] >> shift) : 0;
+                    to = put_varint(to, at);
+                    if (at == 0)
+                        put(i);
+                } else if (Evictions::comes(block.what(i))) {
+                    evictions.come(a);
+                }
+            }
+        }
     }
     addresses_.resize(static_cast<std::size_t>(to - addresses_.data()));
     times_.resize(n * longest_varint);
@@ -195,13 +232,13 @@ void Encoder::encode(const Block& block, std::string& out) {
     append_fixed(out, static_cast<std::uint32_t>(n));
     append_fixed(out, static_cast<std::uint32_t>(block.segments.size()));
     append_fixed(out, static_cast<std::uint32_t>(order.size()));
-    append_fixed(out, static_cast<std::uint32_t>(shift));
+    append_fixed(out, static_cast<std::uint32_t>(shift | set_bits << set_bits_shift));
     append_fixed(out, first_time);
     out.resize(begin + header_bytes(columns));
     std::string sizes;
     for (const std::string* column : {&table_, &classes_, &addresses_, &times_, &order_}) {
         const std::size_t before = out.size();
-        compress(*column, out);
+        compress(*column, set_bits == 0 ? level_ : std::max(level_, level_for_caches), out);
         append_fixed(sizes, static_cast<std::uint32_t>(column->size()));
         append_fixed(sizes, static_cast<std::uint32_t>(out.size() - before));
     }
@@ -223,14 +260,16 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     const std::size_t n = fixed_at<std::uint32_t>(bytes.data());
     const std::size_t segments = fixed_at<std::uint32_t>(bytes.data() + 4);
     const std::size_t classes = fixed_at<std::uint32_t>(bytes.data() + 8);
-    const std::uint32_t shift = fixed_at<std::uint32_t>(bytes.data() + 12);
+    const std::uint32_t shifts = fixed_at<std::uint32_t>(bytes.data() + 12);
+    const std::uint32_t set_bits = version < 3 ? 0 : shifts >> set_bits_shift;
+    const std::uint32_t shift = shifts - (set_bits << set_bits_shift);
     const std::uint64_t first_time = fixed_at<std::uint64_t>(bytes.data() + 16);
     if (n == 0 || n > most_references || segments == 0 || segments > n || classes == 0 || classes > n ||
-        shift > 63)
+        shift > 63 || set_bits > Evictions::most_set_bits)
         refuse(place, "a block claims impossible counts");
     const std::uint32_t id_bytes = bytes_for(classes);
-    const std::array<std::size_t, columns> most = {(segments * 2 + classes * 6) * longest_varint,
-                                                   n * id_bytes, n * longest_varint, n * longest_varint,
+    const std::array<std::size_t, columns> most = {(segments * 2 + classes * 7) * longest_varint,
+                                                   n * id_bytes, n * (longest_varint + 1), n * longest_varint,
                                                    most_turns(n) * 4 * longest_varint};
     std::size_t at = header, column = 0;
     order_.clear();
@@ -252,7 +291,10 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
         refuse(place, "a block's columns do not fill it");
 
     VarintReader table(table_.data(), table_.data() + table_.size());
-    block.clear();
+    // The columns keep their room, and what is there until it is overwritten.
+    block.segments.clear();
+    block.table.clear();
+    block.order.clear();
     std::uint64_t stream = 0, site = 0;
     std::size_t end = 0;
     for (std::size_t i = 0; i < segments; ++i) {
@@ -267,14 +309,16 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
         const std::uint64_t first = table.next(), size = table.next(), structure = table.next(),
                             phase = table.next(), work = table.next();
         site += unzigzag(table.next());
+        const std::uint64_t detail = version < 3 ? 0 : table.next();
         const std::uint64_t kind = first & ((1U << part_shift) - 1), part = first >> part_shift;
         if (kind >= kind_names.size() || part >= parts || size > ~std::uint32_t{0} ||
-            structure >= limits.structures || phase >= limits.phases || work >= limits.work ||
-            site > limits.sites)
+            detail > ~std::uint32_t{0} || structure >= limits.structures || phase >= limits.phases ||
+            work >= limits.work || site > limits.sites)
             refuse(place, "a block names what the description does not");
         block.table.push_back({site, static_cast<std::uint32_t>(size), static_cast<std::uint16_t>(structure),
                                static_cast<std::uint16_t>(phase), static_cast<std::uint16_t>(work),
-                               static_cast<Kind>(kind), static_cast<Part>(part)});
+                               static_cast<Kind>(kind), static_cast<Part>(part),
+                               static_cast<std::uint32_t>(detail)});
     }
     if (table.bad() || !table.ended() || end != n)
         refuse(place, "a block's table does not fit its counts");
@@ -286,7 +330,10 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     for (std::uint32_t plane = 1; plane < id_bytes; ++plane)
         for (std::size_t i = 0; i < n; ++i)
             block.classes[i] |= std::uint32_t{planes[plane * n + i]} << (8 * plane);
-    if (*std::max_element(block.classes.begin(), block.classes.end()) >= classes)
+    const bool one_plane = id_bytes == 1; // of bytes, which processors compare many at once
+    const std::uint32_t most_class =
+        one_plane ? largest(planes, n) : *std::max_element(block.classes.begin(), block.classes.end());
+    if (most_class >= classes)
         refuse(place, "a reference is of a class that its block does not have");
 
     block.addresses.resize(n);
@@ -294,8 +341,36 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
         without_parts(classes, [&](std::uint32_t c) -> const Class& { return block.table[c]; });
     last_.assign(classes, 0);
     VarintReader addresses(addresses_.data(), addresses_.data() + addresses_.size());
-    for (std::size_t i = 0; i < n; ++i)
-        block.addresses[i] = (last_[place_of[block.classes[i]]] += unzigzag(addresses.next())) << shift;
+    const auto get = [&](std::size_t i) {
+        return last_[place_of[block.classes[i]]] += unzigzag(addresses.next());
+    };
+    if (set_bits == 0) {
+        for (std::size_t i = 0; i < n; ++i)
+            block.addresses[i] = get(i) << shift;
+    } else {
+        for (std::size_t i = 0; i < n; ++i)
+            if (!Evictions::leaves(block.what(i)))
+                block.addresses[i] = get(i) << shift;
+        Evictions evictions(set_bits);
+        for (const Segment& s : block.segments) {
+            evictions.clear();
+            for (std::size_t i = s.begin; i < s.end; ++i) {
+                if (!Evictions::leaves(block.what(i))) {
+                    if (Evictions::comes(block.what(i)))
+                        evictions.come(block.addresses[i] >> shift);
+                    continue;
+                }
+                const std::uint64_t at = addresses.next();
+                std::uint64_t line = 0;
+                if (at == 0)
+                    line = get(i);
+                else if (i + 1 == s.end || !Evictions::comes(block.what(i + 1)) ||
+                         !evictions.leave_place(at, block.addresses[i + 1] >> shift, line))
+                    refuse(place, "a line that leaves a cache is none that came");
+                block.addresses[i] = line << shift;
+            }
+        }
+    }
     block.times.resize(n);
     VarintReader times(times_.data(), times_.data() + times_.size());
     std::vector<char> piece;

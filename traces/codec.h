@@ -22,7 +22,7 @@ private:
     struct Free {
         void operator()(ZSTD_CCtx_s* c) const;
     };
-    void compress(const std::string& column, std::string& out);
+    void compress(const std::string& column, int level, std::string& out);
 
     std::unique_ptr<ZSTD_CCtx_s, Free> context_;
     int level_;

@@ -11,7 +11,10 @@ namespace traces {
 /// What a reference is. `modify` reads and writes; `write_back` is a dirty line that leaves a cache,
 /// `write_through` a write that a cache passes on, `flush` says that a line's contents need not be kept,
 /// `invalidate` that copies of a line in caches of who is near go, as a word in it is written; with
-/// `invalidate_all` those everywhere go.
+/// `invalidate_all` those everywhere go. Of what a level of caches passes on besides: `upgrade` asks for the
+/// right to write a line that is there, `clean_back` gives a clean line to an exclusive level, `word` is of a
+/// shared word that the level below holds, `claim` tells a directory that one was written, and `recall` says
+/// what a level above had when one below asked it for a line.
 enum class Kind : std::uint8_t {
     read,
     write,
@@ -22,11 +25,17 @@ enum class Kind : std::uint8_t {
     write_through,
     flush,
     invalidate,
-    invalidate_all
+    invalidate_all,
+    upgrade,
+    clean_back,
+    word,
+    claim,
+    recall
 };
-inline constexpr std::array<const char*, 10> kind_names = {
+inline constexpr std::array<const char*, 15> kind_names = {
     "read",       "write",         "modify", "fetch",      "prefetch",
-    "write_back", "write_through", "flush",  "invalidate", "invalidate_all"};
+    "write_back", "write_through", "flush",  "invalidate", "invalidate_all",
+    "upgrade",    "clean_back",    "word",   "claim",      "recall"};
 
 /// How a reference belongs to the one before it in its stream: it begins an operation of the program; or is a
 /// further access of the same operation; or a further piece of the same access, of one line at one time. What
@@ -41,6 +50,8 @@ struct Class {
     std::uint16_t structure = 0, phase = 0, work = 0; // numbers in the tables of the description
     Kind kind = Kind::read;
     Part part = Part::operation;
+    /// How it goes on to the level below, in the words of the recorder (sim/trace/passing.h); 0: unknown.
+    std::uint32_t detail = 0;
     friend bool operator==(const Class&, const Class&) = default;
 };
 

@@ -13,9 +13,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 namespace traces {
 namespace {
@@ -138,6 +140,98 @@ TEST(TraceFormat, FilesOfVersionOneAreRead) {
     EXPECT_EQ(reader.description().structures, (std::vector<std::string>{"nodes", "lists"}));
     EXPECT_TRUE(reader.description().regions.empty());
     EXPECT_EQ(reader.description().window, 0U);
+}
+
+/// Likewise version 2.
+constexpr std::string_view of_version_2 =
+    "iVJaVA0KGgoCAAAASEVBRFX4dVA5AQAAAAAAAHsKICJwcm9ncmFtIjogInVua25vd24iLAogImxldmVsIjogIiIsCiAidGlt"
+    "ZSI6ICJjeWNsZXMiLAogImxpbmVfYnl0ZXMiOiAwLAogInNpdGVzIjogIm5hbWVzIiwKICJzYW1wbGUiOiAxLjAsCiAid2lu"
+    "ZG93IjogMCwKICJmaWx0ZXJzIjogIiIsCiAic3RydWN0dXJlcyI6IFsKICAibm9kZXMiLAogICJsaXN0cyIKIF0sCiAicGhh"
+    "c2VzIjogWwogICJnbyIsCiAgInN0b3AiCiBdLAogIndvcmsiOiBbCiAgInVua25vd24iCiBdLAogInN0cmVhbXMiOiBbCiAg"
+    "InRocmVhZCAwIgogXSwKICJyZWdpb25zIjogW10sCiAiY29uZmlndXJhdGlvbiI6ICIiCn1OQU1FXAjA2A0AAAAAAAAAWyJh"
+    "OjEiLCJiOjIiXUJMQ0v1AuSDowAAAAAAAAAEAAAAAgAAAAQAAAACAAAAAQAAAAAAAAAcAAAAJQAAAAQAAAANAAAACAAAABEA"
+    "AAAEAAAADQAAAAoAAAATAAAAKLUv/SAc4QAAAAIBAgAEAAAAAgEIAAAAAgIEAAEAAQhAAQEAASi1L/0gBCEAAAACAQMotS/9"
+    "IAhBAAAICqD/AaD/ASi1L/0gBCEAAAAEAgIotS/9IApRAAAEBAIDAgMBAQEBSU5EWGC3NMtZAAAAAAAAACi1L/0gXYUCAMLE"
+    "EBeQtTroImRv2YcmT+ZL/+cAt+1Be2PXlAO1kMk3ZuEFrOermuPPy2AQSj+mEiT5Wo7liNJGW4wIJP+k36q2bo91FgQDAMkZ"
+    "HtStwDkBVEFJTOuQJtEIAAAAAAAAACUCAAAAAAAA";
+
+TEST(TraceFormat, FilesOfVersionTwoAreRead) {
+    Reader reader(memory_source(decoded(of_version_2), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    const Description& d = reader.description();
+    const std::vector<Reference> all = references_of(block);
+    ASSERT_EQ(all.size(), 4U);
+    const auto is = [&](const Reference& r, std::uint64_t time, std::uint64_t address, Kind kind,
+                        std::uint32_t size, const char* structure, const char* phase) {
+        return r.time == time && r.address == address && r.what.kind == kind && r.what.size == size &&
+               d.structures[r.what.structure] == structure && d.phases[r.what.phase] == phase &&
+               r.what.detail == 0;
+    };
+    EXPECT_TRUE(is(all[0], 1, 0x10, Kind::read, 4, "nodes", "go"));
+    EXPECT_TRUE(is(all[1], 3, 0x14, Kind::modify, 4, "nodes", "stop"));
+    EXPECT_TRUE(is(all[2], 2, 0xff40, Kind::write, 8, "nodes", "go"));
+    EXPECT_TRUE(is(all[3], 3, 0xff40, Kind::invalidate, 64, "lists", "stop"));
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+}
+
+/// What two caches of 32 sets pass on: a line that comes, and mostly one before it that makes room; now and
+/// then one of another set, one that never came, or two that leave at once.
+TEST(TraceFormat, LinesThatLeaveCachesTakeLittle) {
+    std::mt19937_64 random(3);
+    std::array<std::vector<std::vector<std::uint64_t>>, 2> sets;
+    for (auto& cache : sets)
+        cache.resize(32);
+    std::vector<Reference> all;
+    std::size_t left = 0;
+    for (std::uint64_t time = 0; all.size() < 30000; ++time) {
+        const auto stream = static_cast<std::uint32_t>(random() % 2);
+        const std::uint64_t line = random() % (std::uint64_t{1} << 30U);
+        std::vector<std::uint64_t>& set = sets[stream][line % 32];
+        Reference r{time, 0, stream, {}};
+        r.what.size = 64;
+        if (set.size() == 8) {
+            const std::size_t at = random() % 3;
+            r.what.kind = random() % 4 == 0 ? Kind::clean_back : Kind::write_back;
+            r.address = (random() % 50 == 0 ? random() >> 6U : set[at]) * 64;
+            set.erase(set.begin() + static_cast<std::ptrdiff_t>(at));
+            all.push_back(r);
+            if (random() % 50 == 0)
+                all.push_back(r);
+            ++left;
+        }
+        r.what.kind = random() % 3 == 0 ? Kind::write : Kind::read;
+        r.address = line * 64;
+        set.push_back(line);
+        all.push_back(r);
+    }
+    BlockBuilder builder;
+    for (const Reference& r : all)
+        builder.add(r);
+    Block block, back;
+    builder.take(block);
+    std::string bytes, shuffled;
+    Encoder().encode(block, bytes);
+    Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "here", back);
+    EXPECT_EQ(back.addresses, block.addresses);
+    EXPECT_EQ(back.times, block.times);
+    // As lines that come, which are of any set, they would take some four bytes each.
+    for (Class& c : block.table)
+        c.kind = c.kind == Kind::write_back   ? Kind::write_through
+                 : c.kind == Kind::clean_back ? Kind::word
+                                              : c.kind;
+    Encoder().encode(block, shuffled);
+    EXPECT_GT(left, 10000U);
+    EXPECT_LT(bytes.size() + 2 * left, shuffled.size());
+    for (std::size_t at = 0; at < bytes.size(); at += 397) { // whatever the bytes are
+        std::string bad = bytes;
+        bad[at] = static_cast<char>(bad[at] ^ 0x41);
+        try {
+            Decoder().decode(bad, {3, 2, 3, 9}, format_version, "here", back);
+        } catch (const Error&) {
+        }
+    }
 }
 
 TEST(TraceFormat, TheOrderOfAllStreamsIsKept) {
@@ -303,8 +397,8 @@ TEST(TraceFormat, WhatIsNoTraceIsSaidToBe) {
     EXPECT_NE(read_all("").error.find("is empty"), std::string::npos);
     EXPECT_NE(read_all("0 1234\n").error.find("--from"), std::string::npos);
     std::string later = write_sample(1, 1).bytes;
-    later[8] = 3;
-    EXPECT_NE(read_all(later).error.find("version 3"), std::string::npos);
+    later[8] = 4;
+    EXPECT_NE(read_all(later).error.find("version 4"), std::string::npos);
     std::string endless(magic); // a description of 2^60 bytes
     append_fixed(endless, format_version);
     endless += "HEAD";

@@ -46,6 +46,7 @@ inline std::vector<Reference> mixed_references(std::size_t count, std::uint32_t 
         r.what.phase = static_cast<std::uint16_t>(random() % 2);
         r.what.work = static_cast<std::uint16_t>(random() % 3);
         r.what.site = sites == 0 ? 0 : random() % (sites + 1);
+        r.what.detail = random() % 3 == 0 ? static_cast<std::uint32_t>(random()) & 0x30101U : 0;
         out.push_back(r);
     }
     return out;

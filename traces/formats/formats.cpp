@@ -10,8 +10,12 @@ namespace traces {
 namespace {
 
 // Kinds:                                               read  write modif fetch prefe w.bac w.thr flush
-constexpr std::array<bool, kind_names.size()> all = {true, true, true, true, true,
-                                                     true, true, true, true, true},
+constexpr std::array<bool, kind_names.size()> all =
+                                                  [] {
+                                                      std::array<bool, kind_names.size()> a{};
+                                                      a.fill(true);
+                                                      return a;
+                                                  }(),
                                               din = {true, true, false, true},
                                               lackey = {true, true, true, true}, plain = {true, true},
                                               requests = {true}, drmemtrace = {true, true, false, true, true};
