@@ -16,6 +16,8 @@ struct Asker {
     TileExit& exit(unsigned tile_levels) const { return tile.exits[core / tile.sharing[tile_levels - 1]]; }
 };
 
+/// Notes, for a trace of what lies above, word to a level (1: the L2) that is not the next one's own doing.
+void note_word(const Asker& who, unsigned level, traces::Kind kind, const Access& a, std::uint32_t detail);
 /// Copies of the line go, but for those in the caches below the L1 that the core uses: in its tile, or in all
 /// `everywhere`; also in other caches beyond the tiles, if there are several.
 void drop_copies(const Config& config, std::deque<Tile>& tiles, const Asker& who, std::uint64_t address,

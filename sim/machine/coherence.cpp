@@ -103,7 +103,7 @@ void Coherence::plan_recall(Asking& a, std::uint64_t line) {
     const auto take = [&](std::uint32_t holder) {
         Cache& at = cache(holder);
         ++counters_.recalls;
-        Told told{holder, line, holder == l.owner ? l.since : 0, at.holds(line), false};
+        Told told{holder, line, holder == l.owner ? l.since : 0, at.says_it_holds(line, a.r.at), false};
         if (told.holds) {
             ++counters_.recalls_received;
             // A sharer's too: who writes a shared word has changed the line before the directory hears of it.
@@ -123,7 +123,8 @@ void Coherence::plan_recall(Asking& a, std::uint64_t line) {
 /// Caches that hear of a request say what they have then: what they dropped without a word is known now.
 void Coherence::forget_dropped(const Request& r, Directory::Line& l) {
     const auto dropped = [&](std::uint32_t number) {
-        return number != number_of(r) && !cache(number).holds(r.read) && !under_way(number).asks(r.read);
+        return number != number_of(r) && !cache(number).says_it_holds(r.read, r.at) &&
+               !under_way(number).asks(r.read);
     };
     if (l.owner != Directory::nobody && dropped(l.owner))
         l.owner = Directory::nobody;
@@ -136,7 +137,8 @@ void Coherence::plan_forward(Asking& a, Directory::Line& l) {
     const std::uint32_t owner = std::exchange(l.owner, Directory::nobody);
     Cache& from = cache(owner);
     ++counters_.forwards;
-    Told told{owner, r.read, l.since, from.holds(r.read) && !under_way(owner).asks_line(r.read), false};
+    Told told{owner, r.read, l.since, from.says_it_holds(r.read, r.at) && !under_way(owner).asks_line(r.read),
+              false};
     if (!told.holds) {
         ++counters_.forwards_stale;
     } else {
@@ -162,7 +164,7 @@ void Coherence::plan_invalidation(Asking& a, const Directory::Line& l) {
             continue;
         Cache& at = cache(sharer);
         ++counters_.invalidations;
-        const bool holds = at.holds(a.r.read) && !under_way(sharer).asks(a.r.read);
+        const bool holds = at.says_it_holds(a.r.read, a.r.at) && !under_way(sharer).asks(a.r.read);
         ++(holds ? counters_.invalidations_received : counters_.invalidations_stale);
         if (holds)
             at.lose(a.r.read, line_bytes_);
@@ -188,7 +190,7 @@ bool Coherence::give(const Request& r, Directory::Line& l) {
         if (!l.shared_by(who))
             l.sharers.push_back(who);
         ++counters_.shared;
-        return cache(who).owns(r.read) && cache(who).share(r.read, line_bytes_, r.at, r.column);
+        return cache(who).says_it_owns(r.read, r.at) && cache(who).share(r.read, line_bytes_, r.at, r.column);
     }
     cache(who).grant(r.read, line_bytes_);
     return false;

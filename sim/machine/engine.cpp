@@ -298,7 +298,7 @@ void Engine::perform_deeds() {
             running_hart = d.hart;
             scheduler.step(d.hart->number);
             if (recorder_ != nullptr)
-                recorder_->collect(d.hart->tile->number);
+                recorder_->collect(); // others' caches too have dropped copies
             if (scheduler.failure()) {
                 fail(scheduler.failure());
                 return;

@@ -141,7 +141,11 @@ void Engine::finish_frame() {
         return all || (r != nullptr && !r->transient);
     };
     std::size_t frame_end = labels_.phases.size() - 1; // of the first kind
-    write_back_all(tiles_, *beyond_, cycles_, frame_end, lasting, [this] { serve_all(); });
+    write_back_all(tiles_, *beyond_, cycles_, frame_end, lasting, [this] {
+        serve_all();
+        if (recorder_ != nullptr)
+            recorder_->settled();
+    });
 }
 
 } // namespace sim

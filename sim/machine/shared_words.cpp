@@ -1,6 +1,7 @@
 // Words shared between workers (rule 5), waiting for them, and what workers ask of the host; with the timing
 // port's functions (isa/simulated/port.h).
 #include "sim/machine/issue.h"
+#include "sim/trace/passing.h"
 
 #include <fmt/core.h>
 
@@ -67,6 +68,7 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
                 line = h.core->words.read(change);
             }
         note_core(h, traces::Kind::modify, a, 4, change.at - l1_latency_, traces::Part::aside);
+        note_word(asker(h), 1, traces::Kind::word, change, Passing::of(change, {}));
         if (h.tile->events && is_ticket(line.ready)) { // its place in the queue is that of the L2's answer
             const Answered there = await(h, line.ready);
             line.ready = there.last;
@@ -169,6 +171,7 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
             release.forced = release.owned = true;
             release.asker = h.core->l1.number();
             h.core->words.write(release);
+            note_word(asker(h), 1, traces::Kind::word, release, Passing::of(release, {}));
             ready = Due(t, Cause::synchronise);
             if (chip)
                 move_line(h, a, t, 0); // others wait for it, not the writer

@@ -22,12 +22,12 @@ Traffic* Attribution::make_cells(LineKind kind) {
 }
 
 void Attribution::note_always(traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
-                              std::size_t column, std::uint32_t stream, std::uint32_t site,
-                              traces::Part part) {
+                              std::size_t column, std::uint32_t stream, std::uint32_t site, traces::Part part,
+                              std::uint32_t detail) {
     const LineMap::Line* line = map_.line(address);
     const LineKind what = line == nullptr ? map_.spill() : line->kind(tile_);
     tap_->note({t, address, stream, bytes, site, static_cast<std::uint16_t>(LineMap::structure_of(what)),
-                static_cast<std::uint16_t>(column), kind, part});
+                static_cast<std::uint16_t>(column), kind, part, detail});
 }
 
 std::vector<TrafficRow> Attribution::traffic(const std::vector<const Attribution*>& tiles) {

@@ -47,13 +47,15 @@ public:
     void trace(TraceTap& tap) { tap_ = &tap; }
     /// What happens at a level is noted for a trace of that level.
     void note(unsigned level, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
-              std::size_t column, std::uint32_t stream) {
-        if (tap_ != nullptr && tap_->is_at(level)) [[unlikely]]
+              std::size_t column, std::uint32_t stream, std::uint32_t detail = 0) {
+        if (notes(level)) [[unlikely]]
             note_always(kind, address, bytes, t, column, stream, level == 1 ? tap_->site : 0,
-                        traces::Part::operation);
+                        traces::Part::operation, detail);
     }
+    bool notes(unsigned level) const { return tap_ != nullptr && tap_->is_at(level); }
     void note_always(traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
-                     std::size_t column, std::uint32_t stream, std::uint32_t site, traces::Part part);
+                     std::size_t column, std::uint32_t stream, std::uint32_t site, traces::Part part,
+                     std::uint32_t detail = 0);
     std::uint32_t tile() const { return tile_; }
     std::uint64_t spill_begin() const { return map_.spill_begin(); }
     /// Between windows.

@@ -1,4 +1,5 @@
 #include "sim/memory/cache.h"
+#include "sim/trace/passing.h"
 
 #include <algorithm>
 #include <utility>
@@ -92,10 +93,10 @@ cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_
     Answer accepted = below_.write(written);
     if (accepted.refused)
         return accepted.ready;
+    note_passed(dirty ? traces::Kind::write_back : traces::Kind::clean_back, written);
     if (dirty) {
         ++counters_.write_backs;
         ++(attribution_->cell(address, column).*traffic_.write_backs);
-        note(traces::Kind::write_back, address, t, column);
     } else {
         ++counters_.clean_victims;
     }
@@ -131,12 +132,15 @@ bool Cache::back_invalidate(std::uint64_t address, std::uint64_t bytes) {
         count_useless(entry);
         array_.drop(entry);
     }
+    if (dirty)
+        note_held(address, bytes, 0, Passing::held | Passing::changed);
     return dirty;
 }
 
 /// Reads the line from below, which is asked at `down`. Whoever was there is written back if it is dirty. To
 /// an exclusive level it goes after the read, into the room that this has left.
-Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced, bool to_write) {
+Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced, bool to_write,
+                   traces::Kind why) {
     CacheArray::Entry entry = array_.victim(line);
     cycle retry = 0;
     if (!last_ && !forced && (retry = mshrs_.take(t)) != t)
@@ -160,6 +164,7 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, 
     Answer below = below_.read(wanted);
     if (below.refused)
         return below;
+    note_passed(why, wanted);
     if (sends_clean_ && array_.line(entry) != CacheArray::no_line) [[unlikely]]
         write_back(entry, down, down, column, false, true);
     ++counters_.fills;
@@ -178,12 +183,11 @@ void Cache::prefetch(std::uint64_t address, cycle t, std::size_t column) {
     std::uint64_t line = address >> line_shift_;
     if (array_.find(line) != CacheArray::none)
         return;
-    if (fill(line, t, t + latency_, column).refused) {
+    if (fill(line, t, t + latency_, column, false, false, traces::Kind::prefetch).refused) {
         ++counters_.prefetches_dropped;
         return;
     }
     ++counters_.prefetches;
-    note(traces::Kind::prefetch, address, t, column);
     if (causes_)
         causes_->use(line, true);
 }
@@ -213,12 +217,13 @@ Answer Cache::waiting_access(CacheArray::Entry entry, std::uint64_t line, bool w
         array_.touch(entry);
         answer = in_flight(entry, line, answer);
     } else {
-        answer = fill(line, t, t + latency_, column);
+        answer = fill(line, t, t + latency_, column, false, false,
+                      write ? traces::Kind::write : traces::Kind::read);
         if (answer.refused)
             return answer;
         entry = array_.find(line);
         counters_.hits += accesses - 1;
-        count_miss({line << line_shift_, 0, t, column}, write);
+        count_miss({line << line_shift_, 0, t, column});
     }
     if (write)
         array_.set_dirty(entry, true);
@@ -297,9 +302,9 @@ void Cache::send_back(std::uint64_t address, cycle t, std::size_t column) {
     written.by = this;
     written.asker = number_;
     below_.write(written);
+    note_passed(traces::Kind::write_back, written);
     ++counters_.write_backs;
     ++(attribution_->cell(address, column).*traffic_.write_backs);
-    note(traces::Kind::write_back, address, t, column);
 }
 
 /// A read of an exclusive cache.
@@ -321,9 +326,10 @@ Answer Cache::move_up(const Access& a, CacheArray::Entry entry, std::uint64_t li
         answer = below_.read(wanted);
         if (answer.refused)
             return answer;
+        note_passed(traces::Kind::read, wanted);
         ++counters_.fills;
         mshrs_.hold({line, a.at, answer.ready, answer.from});
-        count_miss(a, false);
+        count_miss(a);
         count_cause(line);
     }
     if (causes_)
@@ -371,7 +377,9 @@ Answer Cache::perform(const Access& a, std::uint64_t line, bool write, cycle don
         answer = write ? accepted : answer;
     }
     if (!hit) {
-        count_miss(a, write);
+        count_miss(a);
+        if (!brings)
+            note(kind_of_miss(a, write), a.address, a.at, a.column);
         counters_.written_around += brings ? 0 : 1;
         count_cause(line);
     }
@@ -397,8 +405,10 @@ Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle do
                 return Answer::later(retry);
         count_useless(entry);
         array_.fill(entry, line);
+        note(kind_of_miss(a, write), a.address, a.at, a.column); // nobody below is asked
     } else {
-        answer = fill(line, a.at, done, a.column, a.forced, coherent_ && (a.exclusive || write || a.modify));
+        answer = fill(line, a.at, done, a.column, a.forced, coherent_ && (a.exclusive || write || a.modify),
+                      kind_of_miss(a, write));
         if (answer.refused)
             return answer;
     }
@@ -415,20 +425,59 @@ Answer Cache::send_on(const Access& a, cycle down) {
     on.asker = number_;
     Answer accepted = below_.write(on);
     ++counters_.written_through;
-    attribution_->note(level_ + 1, traces::Kind::write_through, a.address, a.bytes, a.at, a.column,
-                       beyond_ ? attribution_->tile() : stream_);
+    note_passed(traces::Kind::write_through, on);
     if (!last_)
         write_backs_.hold({a.address >> line_shift_, a.at, accepted.ready, Cause::mshrs});
     return accepted;
 }
 
-void Cache::count_miss(const Access& a, bool write) {
+void Cache::count_miss(const Access& a) {
     ++counters_.misses;
     ++(attribution_->cell(a.address, a.column).*traffic_.misses);
-    note(a.modify ? traces::Kind::modify
-         : write  ? traces::Kind::write
-                  : traces::Kind::read,
-         a.address, a.at, a.column);
+}
+
+/// What has been asked below, for a trace of this level.
+void Cache::note_passed(traces::Kind kind, const Access& a) {
+    if (attribution_->notes(level_ + 1)) [[unlikely]]
+        attribution_->note(level_ + 1, kind, a.address, a.bytes, a.at, a.column,
+                           beyond_ ? attribution_->tile() : stream_, Passing::of(a, site_));
+}
+
+/// ... and what was here when those below asked.
+void Cache::note_held(std::uint64_t address, std::uint64_t bytes, cycle t, std::uint32_t what) {
+    if (attribution_->notes(level_ + 1)) [[unlikely]]
+        attribution_->note(level_ + 1, traces::Kind::recall, address, static_cast<std::uint32_t>(bytes), t, 0,
+                           beyond_ ? attribution_->tile() : stream_,
+                           Passing::of(static_cast<Passing::Held>(what)));
+}
+
+bool Cache::says_it_holds(std::uint64_t address, cycle t) {
+    const bool held = holds(address);
+    if (held)
+        note_held(address, line_bytes(), t, Passing::held);
+    return held;
+}
+
+bool Cache::says_it_owns(std::uint64_t address, cycle t) {
+    const bool owned = owns(address);
+    if (owned)
+        note_held(address, line_bytes(), t, Passing::held | Passing::owned);
+    return owned;
+}
+
+void Cache::stand_in(std::uint64_t address, bool dirty, bool shared) {
+    const std::uint64_t line = address >> line_shift_;
+    CacheArray::Entry entry = array_.find(line);
+    if (entry == CacheArray::none) {
+        entry = array_.victim(line);
+        array_.fill(entry, line);
+        if (coherent_)
+            array_.set_shared(entry, shared);
+    } else if (coherent_ && !shared) {
+        array_.set_shared(entry, false);
+    }
+    if (dirty)
+        array_.set_dirty(entry, true);
 }
 
 void Cache::count_cause(std::uint64_t line) {
@@ -460,13 +509,13 @@ void Cache::prefetch_after(const Access& a, std::uint64_t line, bool first, cycl
             return;
         // The line at hand is not yet in the caches above, from where it could be recalled.
         const bool takes_its_place = inclusive_ && array_.line(array_.victim(wanted)) == line;
-        if (takes_its_place || fill(wanted, a.at, down, a.column).refused) {
+        if (takes_its_place ||
+            fill(wanted, a.at, down, a.column, false, false, traces::Kind::prefetch).refused) {
             ++counters_.prefetches_dropped;
             return;
         }
         array_.set_prefetched(array_.find(wanted), true);
         ++counters_.hardware_prefetches;
-        note(traces::Kind::prefetch, wanted << line_shift_, a.at, a.column);
         if (causes_)
             causes_->use(wanted, true);
     });

@@ -53,8 +53,21 @@ public:
     }
     /// Among those above the same cache.
     std::uint32_t number() const { return number_; }
-    /// Its stream in a trace of what it misses.
+    /// Its stream in a trace of what it passes on.
     void trace_as(std::uint32_t stream) { stream_ = stream; }
+    /// Its stands for one that is not simulated, of which levels below find what is put here.
+    void stand_in(std::uint64_t address, bool dirty, bool shared);
+    /// ... until here: visit(address, dirty) is called for what is left.
+    template <class Visit> void stand_down(Visit visit) {
+        array_.for_each([&](CacheArray::Entry e) {
+            const std::uint64_t address = array_.line(e) << line_shift_;
+            const bool dirty = array_.dirty(e);
+            array_.drop(e);
+            visit(address, dirty);
+        });
+    }
+    Below& below() const { return below_; }
+    std::uint32_t line_bytes() const { return std::uint32_t{1} << line_shift_; }
     /// This one acts in order of time, on what comes that way.
     void act_on(Coming& coming) { coming_ = &coming; }
     /// Whose traffic follows: of a cache that several tiles share.
@@ -93,6 +106,9 @@ public:
     /// Somebody else reads them: they are shared and clean from now on, likewise. One that was dirty in a
     /// last cache counts as written back.
     bool share(std::uint64_t address, std::uint64_t bytes, cycle t, std::size_t column);
+    /// For the directory: as below, and a trace says so.
+    bool says_it_holds(std::uint64_t address, cycle t);
+    bool says_it_owns(std::uint64_t address, cycle t);
     bool holds(std::uint64_t address) const {
         return array_.find(address >> line_shift_) != CacheArray::none;
     }
@@ -157,8 +173,8 @@ private:
     Answer waiting_access(CacheArray::Entry entry, std::uint64_t line, bool write, std::uint32_t accesses,
                           cycle t, std::size_t column);
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
-    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced = false,
-                bool to_write = false);
+    Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced, bool to_write,
+                traces::Kind why);
     void recall(CacheArray::Entry leaving);
     bool back_invalidate(std::uint64_t address, std::uint64_t bytes);
     template <class Visit> void each_line(Visit visit) const { // and of those above
@@ -192,12 +208,18 @@ private:
     void prefetch_after(const Access& a, std::uint64_t line, bool first, cycle down);
     void count_cause(std::uint64_t line);
     /// A line that goes to or comes from below, for a trace of this level.
-    void note(traces::Kind kind, std::uint64_t address, cycle t, std::size_t column) {
+    void note(traces::Kind kind, std::uint64_t address, cycle t, std::size_t column,
+              std::uint32_t detail = 0) {
         attribution_->note(level_ + 1, kind, address >> line_shift_ << line_shift_,
                            std::uint32_t{1} << line_shift_, t, column,
-                           beyond_ ? attribution_->tile() : stream_);
+                           beyond_ ? attribution_->tile() : stream_, detail);
     }
-    void count_miss(const Access& a, bool write);
+    void note_passed(traces::Kind kind, const Access& a);
+    void note_held(std::uint64_t address, std::uint64_t bytes, cycle t, std::uint32_t what);
+    static traces::Kind kind_of_miss(const Access& a, bool write) {
+        return a.modify ? traces::Kind::modify : write ? traces::Kind::write : traces::Kind::read;
+    }
+    void count_miss(const Access& a);
     void count_useless(CacheArray::Entry leaving) {
         counters_.prefetches_useless += array_.prefetched(leaving) ? 1 : 0;
     }

@@ -9,6 +9,7 @@
 // modelled: ports and banks of what others ask for; that the right takes longer where other caches of the
 // tile have to give the line up.
 #include "sim/memory/cache.h"
+#include "sim/trace/passing.h"
 
 #include <algorithm>
 #include <array>
@@ -47,6 +48,7 @@ Answer Cache::ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t 
     const Answer answer = below_.own(right);
     if (answer.refused)
         return answer;
+    note_passed(traces::Kind::upgrade, right);
     ++counters_.upgrades;
     mshrs_.hold({line, a.at, answer.ready, answer.from, Pool::What::right});
     if (!answer.shared)
@@ -162,6 +164,8 @@ bool Cache::lose(std::uint64_t address, std::uint64_t bytes) {
         count_useless(entry);
         array_.drop(entry);
     }
+    if (dirty)
+        note_held(address, bytes, 0, Passing::held | Passing::changed);
     return dirty;
 }
 
@@ -187,6 +191,8 @@ bool Cache::share(std::uint64_t address, std::uint64_t bytes, cycle t, std::size
         counters_.downgrades += changed ? 1 : 0;
         dirty |= changed;
     }
+    if (dirty)
+        note_held(address, bytes, t, Passing::held | Passing::changed);
     return dirty;
 }
 

@@ -21,27 +21,57 @@ Replay::Replay(const Config& config, const traces::Description& about, const Rep
                ReplayListener* listener)
     : vocabulary_(about, options), machine_(config, about, vocabulary_.labels()), listener_(listener),
       clocked_(about.time == "cycles" || about.time == "instructions"),
-      following_(about.window == machine_.window_cycles()) {
-    if (!about.level.empty() && about.level != "core")
-        throw traces::Error(
-            fmt::format("the trace is of what passes level {}; only what cores ask for can be "
-                        "replayed: record it at level core",
-                        about.level));
-}
+      following_(about.window == machine_.window_cycles()), eventful_(config.sim.mode == "reference") {}
 
 void Replay::check(const traces::Block& block) const {
     const std::uint32_t last = block.segments.back().stream;
-    if (last >= machine_.threads())
+    if (last < machine_.streams())
+        return;
+    if (machine_.first_level() == 0)
         throw traces::Error(
             fmt::format("the trace has a stream {}, but the machine {} threads, numbered from 0; "
                         "give a machine with more (-g chip.threads=..., chip.cores or "
                         "chip.tiles)",
-                        last, machine_.threads()));
+                        last, machine_.streams()));
+    throw traces::Error(fmt::format("the trace is of an L{} with number {}, but the machine has {} of them, "
+                                    "numbered from 0; give a machine with more (chip.cores, chip.tiles)",
+                                    machine_.first_level(), last, machine_.streams()));
+}
+
+/// Of the reference mode: until when each reference's tile had gone on by itself when it was made. Threads
+/// act in order of time, but an operation's accesses have the cycles at which ports and banks took them,
+/// which may be later: no later than any that follow in the window.
+void Replay::find_acts(const traces::Block& block) {
+    acts_.assign(block.times.begin(), block.times.end());
+    std::vector<std::size_t> next;
+    for (const traces::Segment& s : block.segments)
+        next.push_back(s.begin);
+    cycle begin = 0; // what a thread that waited does is later than that
+    for (const traces::Turn& turn : block.order) {
+        if (turn.what != traces::Turn::What::references)
+            begin = turn.begin;
+        for (std::uint32_t i = 0; i < turn.count; ++i) {
+            cycle& act = acts_[next[turn.segment]++];
+            act = std::max(machine_.begin_of(act), begin);
+        }
+    }
+    std::vector<cycle> least(machine_.tiles(), ~cycle{0});
+    for (auto turn = block.order.rbegin(); turn != block.order.rend(); ++turn) {
+        if (turn->what != traces::Turn::What::references)
+            std::fill(least.begin(), least.end(), ~cycle{0});
+        for (std::uint32_t i = 0; i < turn->count; ++i) {
+            cycle& l = least[machine_.tile_of(block.segments[turn->segment].stream)];
+            cycle& act = acts_[--next[turn->segment]];
+            act = l = std::min(l, act);
+        }
+    }
 }
 
 void Replay::add(const traces::Block& block) {
     check(block);
     learn(block.table);
+    if (eventful_)
+        find_acts(block);
     following_ = following_ && !block.order.empty();
     if (!begun_) {
         begun_ = true;
@@ -66,12 +96,16 @@ void Replay::add(const traces::Block& block) {
 /// A window or the end, as the trace has it.
 void Replay::mark(const traces::Turn& turn) {
     if (turn.what == traces::Turn::What::end) {
+        if (result_.ended) // and of a level above those that are driven, what it wrote back then
+            return machine_.settle_level();
         machine_.settle(following_ ? turn.begin : machine_.window_end());
         const cycle end = std::max(turn.until, origin_) - origin_ + offset_;
         if (listener_ != nullptr)
             listener_->ended(end);
-        machine_.end_frame(end);
         result_.ended = true;
+        end_ = end;
+        if (machine_.first_level() == 0)
+            machine_.end_frame(end_);
         return;
     }
     const bool fits = turn.until > machine_.window_end() - machine_.window_cycles() &&
@@ -133,6 +167,8 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         const ReplayAction& a = actions_[number];
         const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];
         const cycle t = arrive(block.times[i]);
+        if (eventful_ && a.kind != traces::Kind::recall) [[unlikely]] // which is found by what follows
+            machine_.let_events_happen(stream, acts_[i] + offset_);
         std::size_t n = 1;
         while (i + n < end && goes_on_[block.classes[i + n]] == leads_[number])
             ++n;
@@ -144,6 +180,8 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         const auto accesses = static_cast<std::uint32_t>(n);
         if (a.what > ReplayAction::What::write || a.modifies || low >> shift != high >> shift) [[unlikely]] {
             if (a.what == ReplayAction::What::nothing) {
+                if (machine_.first_level() != 0) // it asked nothing of the levels below
+                    continue;
                 result_.left_out[static_cast<std::size_t>(a.kind)] += n;
                 continue;
             }
@@ -205,8 +243,10 @@ void Replay::touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint6
 void Replay::insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
                     std::uint32_t accesses, cycle t, const Answer& refused) {
     ++result_.waits;
-    following_ = false;
     Answer answer = refused;
+    if (eventful_) // in the run it heard of room at that cycle, and no other reference waited
+        answer = wait_for_room(a, stream, address, bytes, accesses, t);
+    following_ = following_ && eventful_;
     while (answer.refused) {
         const cycle next =
             std::max(answer.ready == Answer::unknown ? machine_.window_end() : answer.ready, t + 1);
@@ -221,9 +261,23 @@ void Replay::insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t a
         tell(a, stream, address, bytes, accesses, t, answer);
 }
 
+Answer Replay::wait_for_room(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
+                             std::uint32_t bytes, std::uint32_t accesses, cycle& t) {
+    for (;;) {
+        if (!machine_.let_one_event_happen(stream) && ++t >= machine_.window_end())
+            come_to(t);
+        const Answer answer = machine_.perform(a, stream, address, bytes, accesses, t);
+        if (!answer.refused)
+            return answer;
+    }
+}
+
 ReplayResult Replay::finish(const traces::Description& about) {
     if (!result_.ended)
         machine_.settle(machine_.window_end());
+    else if (machine_.first_level() != 0)
+        machine_.end_frame(end_);
+    result_.first_level = machine_.first_level();
     result_.windows = following_ && begun_;
     result_.report = machine_.finish();
     vocabulary_.name(about, result_.report);

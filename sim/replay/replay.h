@@ -1,8 +1,11 @@
 // A trace on a machine, reference by reference in the order in which they were made: that which a trace says
 // (traces::Turn), else that of its times. Each comes at the cycle at which it was recorded, whatever earlier
 // ones have brought; where the machine has no room for one (an MSHR), it and all that follow come so much
-// later. On the machine that a trace of its cores was recorded on, in its fast mode and from cold caches,
-// nothing has to wait, and all that the memory system counts is what the run counted.
+// later. On the machine that a trace of its cores, or of what a level of caches in its tiles passed on, was
+// recorded on, in its fast mode and from cold caches, nothing has to wait, and all that the memory system
+// counts is what the run counted. In the reference mode a trace does not tell what happened within a tile
+// between two accesses of one operation, and when a reference waited for room in an L1: that is what counts
+// may be off by.
 //
 // Times that are no cycles or instructions do not count: references come one a cycle.
 #pragma once
@@ -29,6 +32,7 @@ struct ReplayResult {
     std::uint64_t waits = 0, delay = 0; // references that found no room, and cycles that all was delayed by
     bool windows = false;               // the run's own windows of time were followed to the end
     bool timed = false;                 // each came when what it waited for was there (timed_replay.h)
+    unsigned first_level = 0;           // of caches that is driven, 0 for the L1; those above are in no trace
     bool ended = false; // the trace says when it was over, and what lasts was written back then
 };
 
@@ -44,7 +48,8 @@ public:
 
 private:
     ReplayOptions options_;
-    bool by_work_; // else by phases alone
+    std::string level_; // that the trace is of, where that is one of caches
+    bool by_work_;      // else by phases alone
     std::size_t phases_;
     Labels labels_;
 };
@@ -84,6 +89,7 @@ public:
 
 private:
     void check(const traces::Block& block) const;
+    void find_acts(const traces::Block& block);
     void learn(const std::vector<traces::Class>& table);
     void run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end);
     void touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
@@ -94,6 +100,8 @@ private:
                         std::uint32_t bytes, std::uint32_t accesses, cycle t);
     void insist(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,
                 std::uint32_t accesses, cycle t, const Answer& refused);
+    Answer wait_for_room(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
+                         std::uint32_t bytes, std::uint32_t accesses, cycle& t);
     cycle arrive(std::uint64_t time);
     void pass_window(cycle t, std::uint64_t time);
     void come_to(cycle t);
@@ -106,9 +114,12 @@ private:
     ReplayListener* listener_; // or null
     CompactAddresses compact_;
     std::vector<ReplayAction> actions_;         // of the block at hand, by class
+    std::vector<cycle> acts_;                   // likewise, by reference
     std::vector<std::uint8_t> goes_on_, leads_; // likewise: equal where one goes on with the other
     bool clocked_, following_;                  // times are cycles; the run's windows are followed
+    bool eventful_;                             // the machine is in the reference mode
     bool begun_ = false;
+    cycle end_ = 0;
     std::uint64_t origin_ = 0, offset_ = 0;
     ReplayResult result_;
 };

@@ -24,6 +24,20 @@ bool uses_strides(const Config& config) {
     return false;
 }
 
+/// The first level that a trace of this one drives.
+unsigned level_of(const traces::Description& about, const Config& config) {
+    if (about.level.empty() || about.level == "core")
+        return 0;
+    for (unsigned level = 1; level <= config.tile_levels(); ++level)
+        if (about.level == fmt::format("l{}", level))
+            return level;
+    throw traces::Error(fmt::format(
+        "the trace is of what passes level {}, which is beyond this machine's tiles: only what cores ask "
+        "for, "
+        "or what passes a level of a tile, can be replayed; record it at level core, or l1 to l{}",
+        about.level, config.tile_levels()));
+}
+
 /// The most memory that regions may take, which tables are made for.
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40U;
 
@@ -36,11 +50,8 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
       tile_levels_(config.tile_levels()), window_cycles_(sim::window_cycles(config)),
       reach_(reach_cycles(config)), shortest_answer_(shortest_answer(config)),
       shortest_line_(shortest_line(config)), l1_latency_(wide(config.l1.latency)) {
-    if (config.sim.mode != "fast")
-        throw ConfigError(
-            fmt::format("sim.mode = {}: traces are replayed in the fast mode, as what caches within "
-                        "tiles ask each other is in no trace; give -g sim.mode=fast",
-                        config.sim.mode));
+    level_ = level_of(about, config);
+    passing_latency_ = level_ == 0 ? 0 : wide(config.cache(level_ - 1).latency);
     std::vector<std::string> names = about.structures;
     std::vector<LineMap::Extent> extents;
     std::uint64_t end = CompactAddresses::end;
@@ -65,28 +76,65 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
                                          labels_.columns());
         for (integer c = 0; c < config.chip.cores; ++c) {
             Core& core = tile.add_core(config, 0);
-            for (integer i = 0; i < config.chip.threads; ++i)
-                seats_.push_back({&tile, &core, static_cast<std::size_t>(c)});
+            if (level_ == 0)
+                for (integer i = 0; i < config.chip.threads; ++i)
+                    seats_.push_back({&tile, &core, static_cast<std::size_t>(c), &core.l1});
         }
+        if (tile.events)
+            tile.events->tell([](cycle, const Cache*) {});
+        if (level_ == 0)
+            continue;
+        const std::size_t sharing = level_ == 1 ? 1 : tile.sharing[level_ - 1];
+        for (std::size_t c = 0; c < tile.cores.size(); c += sharing)
+            seats_.push_back(
+                {&tile, &tile.cores[c], c, level_ == 1 ? &tile.cores[c].l1 : &tile.cache_of(level_ - 1, c)});
     }
     sites_.resize(tiles_.size());
     beyond_->connect(tiles_);
     open_window(window_cycles_, 0);
 }
 
+void ReplayMachine::set_floors(cycle served) {
+    const Floors floors{served + shortest_answer_, served + shortest_line_}; // what follows comes later
+    for (Tile& tile : tiles_)
+        if (tile.events)
+            tile.events->set_floors(floors);
+        else
+            tile.tickets.set_floors(floors);
+}
+
 void ReplayMachine::open_window(cycle until, cycle served) {
+    if (tiles_.front().events)
+        finish_windows(served);
     if (served != 0)
         serve(served);
+    settle_stand_ins();
     window_end_ = until;
     const cycle begin = until - std::min(until, window_cycles_);
     earliest_ = begin > reach_ ? begin - reach_ : 0;
-    const Floors floors{served + shortest_answer_, served + shortest_line_}; // what follows comes later
+    set_floors(served);
     for (Tile& tile : tiles_) {
-        tile.tickets.set_floors(floors);
+        if (tile.events)
+            tile.events->try_again();
         tile.earliest = earliest_;
         if (tile.tickets.size() >= 4096)
             tile.tickets.forget(earliest_);
     }
+}
+
+/// What levels below have not asked for by the end of a window: in the reference mode they may do so later;
+/// else this is another machine than the trace's, which did not ask, and what was changed goes down.
+void ReplayMachine::settle_stand_ins() {
+    std::vector<std::pair<Cache*, std::uint64_t>> changed;
+    each_stand_in([&](const Seat& s, std::uint64_t address, bool dirty) {
+        if (dirty)
+            changed.emplace_back(s.cache, address);
+    });
+    for (const auto& [cache, address] : changed)
+        if (tiles_.front().events)
+            cache->stand_in(address, true, true);
+        else
+            cache->send_back(address, earliest_, 0);
 }
 
 void ReplayMachine::come_to(cycle t) {
@@ -103,6 +151,8 @@ void ReplayMachine::serve(cycle end) {
 }
 
 void ReplayMachine::serve_all() {
+    if (tiles_.front().events)
+        finish_windows(Beyond::everything);
     serve(Beyond::everything);
 }
 
@@ -119,6 +169,8 @@ void ReplayMachine::note_site(Tile& tile, const ReplayAction& a) {
 Answer ReplayMachine::perform_other(const ReplayAction& a, const Seat& s, std::uint64_t address,
                                     std::uint32_t bytes, cycle t) {
     using What = ReplayAction::What;
+    if (a.what == What::pass)
+        return pass(a, s, address, bytes, t);
     const Asker who{*s.tile, s.number, a.column};
     const auto line_bytes = static_cast<std::uint32_t>(config_.l1.line_bytes);
     switch (a.what) {
@@ -167,6 +219,8 @@ void ReplayMachine::discard(const ReplayAction& a, const Seat& s, std::uint64_t 
 }
 
 void ReplayMachine::settle(cycle served) {
+    if (tiles_.front().events)
+        finish_windows(served);
     serve(served);
     serve_all();
     end_ = std::max(end_, served);
@@ -189,9 +243,14 @@ bool ReplayMachine::lasts(std::uint64_t address) const {
 void ReplayMachine::end_frame(cycle t) {
     end_ = t;
     const bool all = config_.sim.frame_end == "write";
+    each_stand_in([](const Seat&, std::uint64_t, bool) {});
     write_back_all(
         tiles_, *beyond_, t, labels_.phases.size() - 1,
         [this, all](std::uint64_t address) { return all || lasts(address); }, [this] { serve_all(); });
+}
+
+void ReplayMachine::settle_level() {
+    serve_all();
 }
 
 Report ReplayMachine::finish() {
@@ -211,7 +270,7 @@ Report ReplayMachine::finish() {
     r.memory_by_rank = beyond_->rank_counters();
     for (const Tile& tile : tiles_) {
         for (const Core& core : tile.cores)
-            r.l1.push_back(core.l1.counters());
+            r.l1.push_back(level_ == 0 ? core.l1.counters() : CacheCounters{});
         for (unsigned level = 1; level < tile_levels_; ++level)
             for (const Cache& cache : tile.caches[level])
                 r.caches(level).push_back(cache.counters());

@@ -1,7 +1,14 @@
 // The memory system of a machine without the cores that run programs: its caches, network and memory, driven
 // by references that come from elsewhere. All of it is the machine's own code (sim/memory, sim/machine,
-// sim/network), in its fast mode. Not modelled: translation of addresses (a trace has the walks that were
-// made) and the L1s' ports (a trace has the cycles at which they were granted).
+// sim/network). Not modelled: translation of addresses (a trace has the walks that were made) and the L1s'
+// ports (a trace has the cycles at which they were granted).
+//
+// A trace of what a level of caches passes on drives what lies below that level. The caches of the level are
+// there, but only stand in for those of the run: levels below find in them what a trace says that they found
+// (traces::Kind::recall).
+//
+// In the reference mode what happens within a tile by itself happens when let_events_happen() says so, and in
+// the windows of the run, as far as a trace and these events tell them.
 #pragma once
 
 #include "sim/machine/asides.h"
@@ -30,6 +37,7 @@ struct ReplayAction {
         discard,
         invalidate,
         invalidate_all,
+        pass,   // of what a level passes on
         nothing // the machine has no such thing
     };
     What what = What::nothing;
@@ -40,6 +48,7 @@ struct ReplayAction {
     std::uint32_t size = 0;
     std::size_t column = 0;
     std::uint64_t site = 0;
+    std::uint32_t detail = 0; // sim/trace/passing.h
 };
 
 /// Of traces that do not say what lies where: names may still come.
@@ -50,7 +59,10 @@ public:
     /// `labels`: of columns. Throws ConfigError where the machine cannot be replayed on.
     ReplayMachine(const Config& config, const traces::Description& about, Labels labels);
 
-    std::size_t threads() const { return seats_.size(); }
+    /// That references may be of: threads, or caches of the trace's level.
+    std::size_t streams() const { return seats_.size(); }
+    /// The first level of caches that is driven, 0 for the L1.
+    unsigned first_level() const { return level_; }
     std::uint64_t window_cycles() const { return window_cycles_; }
     cycle window_end() const { return window_end_; }
     /// No reference comes before this cycle any more.
@@ -78,12 +90,24 @@ public:
         }
         return perform_other(a, s, address, bytes, t);
     }
+    std::size_t tiles() const { return tiles_.size(); }
+    std::size_t tile_of(std::uint32_t stream) const { return seats_[stream].tile->number; }
+    /// From when on a reference of this cycle may have been under way: a cache's came that much before.
+    cycle begin_of(cycle t) const { return t - std::min(t, passing_latency_); }
+    /// Of the reference mode: those of a stream's tile as far as cycle `t`, before what a thread does then.
+    void let_events_happen(std::uint32_t stream, cycle t) {
+        finish_events(*seats_[stream].tile, std::min(t + 1, window_end_));
+    }
+    /// Of the reference mode: the next of a stream's tile in the window at hand; false: there is none.
+    bool let_one_event_happen(std::uint32_t stream);
     /// When a ticket that perform() gave is answered; false: not yet.
     bool find(std::uint32_t thread, cycle ticket, Answered& out) {
         return seats_[thread].tile->tickets.find(ticket, out);
     }
     /// All is served; caches stay as they are.
     void settle(cycle served);
+    /// What a level that is not driven has written back at the end is served.
+    void settle_level();
     /// After settle(): what lasts is written back from caches, at cycle `t`.
     void end_frame(cycle t);
     /// Nothing follows.
@@ -94,6 +118,7 @@ private:
         Tile* tile;
         Core* core;
         std::size_t number; // of the core in its tile
+        Cache* cache;       // whose stream it is
     };
     using SiteNumbers = std::unordered_map<std::uint64_t, std::uint32_t>; // by the trace's
 
@@ -104,6 +129,19 @@ private:
     void note_site(Tile& tile, const ReplayAction& a);
     Answer perform_other(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
                          cycle t);
+    Answer pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
+    void settle_stand_ins();
+    void pass_word(const ReplayAction& a, const Seat& s, std::uint64_t address, cycle t);
+    /// What is left in caches that stand in for others, which are empty then.
+    template <class Visit> void each_stand_in(Visit visit) {
+        if (level_ == 0)
+            return;
+        for (const Seat& s : seats_)
+            s.cache->stand_down([&](std::uint64_t address, bool dirty) { visit(s, address, dirty); });
+    }
+    void finish_events(Tile& tile, cycle end);
+    void finish_windows(cycle served);
+    void set_floors(cycle served);
     void discard(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
     void serve(cycle end);
     void serve_all();
@@ -113,6 +151,8 @@ private:
     Labels labels_;
     std::vector<traces::Description::Region> regions_;
     bool by_reference_, strides_;
+    unsigned level_ = 0;
+    std::uint64_t passing_latency_ = 0; // of the level that a trace is of, if that is one of caches
     unsigned line_shift_, tile_levels_;
     std::uint64_t window_cycles_, reach_, shortest_answer_, shortest_line_, l1_latency_;
     std::optional<LineMap> lines_;

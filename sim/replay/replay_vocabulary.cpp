@@ -42,7 +42,7 @@ What what_of(const traces::Class& c, const ReplayOptions& options) {
 
 /// Tables of a trace without regions may grow while it is read.
 ReplayVocabulary::ReplayVocabulary(const traces::Description& about, const ReplayOptions& options)
-    : options_(options),
+    : options_(options), level_(about.level == "core" ? "" : about.level),
       by_work_(!about.regions.empty() && about.phases.size() * about.work.size() <= max_columns),
       phases_(by_work_ ? about.phases.size() : max_columns) {
     labels_.phases = about.phases;
@@ -66,8 +66,14 @@ void ReplayVocabulary::learn(const std::vector<traces::Class>& table,
                             "told apart; leave some out",
                             max_columns, most_replayed_structures));
         ReplayAction a;
-        a.what = what_of(c, options_);
+        a.what = level_.empty() ? what_of(c, options_) : c.detail != 0 ? What::pass : What::nothing;
         a.kind = c.kind;
+        a.detail = c.detail;
+        if (!level_.empty() && c.kind == traces::Kind::read && c.detail == 0)
+            throw traces::Error(
+                fmt::format("the trace does not say how its references pass level {}: an earlier "
+                            "version recorded it; record it again",
+                            level_));
         a.part = c.part;
         a.modifies = c.kind == traces::Kind::modify && a.what == What::read;
         a.size = std::max(c.size, 1U);

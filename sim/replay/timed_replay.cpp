@@ -1,5 +1,6 @@
 #include "sim/replay/timed_replay.h"
 
+#include "sim/config/error.h"
 #include "sim/machine/windows.h"
 #include "traces/error.h"
 
@@ -22,7 +23,13 @@ TimedReplay::TimedReplay(const Config& config, const Config* recorded_on, const 
     : knows_machine_(recorded_on != nullptr),
       recorded_(knows_machine_ ? *recorded_on : config, about, options, this), vocabulary_(about, options),
       machine_(config, about, vocabulary_.labels()),
-      streams_(std::min(machine_.threads(), recorded_.machine().threads())) {}
+      streams_(std::min(machine_.streams(), recorded_.machine().streams())) {
+    if (machine_.first_level() != 0)
+        throw traces::Error("--timed: which reference waited for which is known of those of cores alone; "
+                            "leave it out, or record the trace at level core");
+    if (config.sim.mode != "fast")
+        throw ConfigError("--timed: references move in the fast mode alone; give -g sim.mode=fast");
+}
 
 void TimedReplay::performed(const Performed& p) {
     if (p.stream >= streams_.size())

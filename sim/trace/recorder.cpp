@@ -141,8 +141,8 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
     for (std::size_t tile = 0; tile < wide(config_.chip.tiles); ++tile)
         taps_.emplace_back(filter_);
     names_.resize(taps_.size());
-    // What a cache passes on is not replayed, for want of what cores say of lines besides.
-    writer_.emplace(std::move(sink_), d, block_references, filter_.level == TraceLevel::core);
+    // What is asked for beyond the tiles is in no order of its own.
+    writer_.emplace(std::move(sink_), d, block_references, is_of_tiles());
 }
 
 void Recorder::start(std::uint64_t cycle) {
@@ -197,13 +197,21 @@ void Recorder::collect(std::size_t tile) {
                       n.address,
                       n.stream,
                       {site[n.site], n.size, n.structure, static_cast<std::uint16_t>(n.column % phases_),
-                       static_cast<std::uint16_t>(n.column / phases_), n.kind, n.part}});
+                       static_cast<std::uint16_t>(n.column / phases_), n.kind, n.part, n.detail}});
     noted.clear();
 }
 
 void Recorder::end(std::uint64_t until, std::uint64_t begin) {
     collect();
-    writer_->mark({traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_});
+    end_ = traces::Turn{traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_};
+    writer_->mark(*end_);
+}
+
+void Recorder::settled() {
+    if (!end_ || filter_.level == TraceLevel::core || !is_of_tiles())
+        return;
+    collect();
+    writer_->mark(*end_);
 }
 
 void Recorder::finish() {

@@ -48,6 +48,8 @@ public:
     void collect(std::size_t tile);
     /// The workers have returned by cycle `until`, memory is served as far as `begin`.
     void end(std::uint64_t until, std::uint64_t begin);
+    /// After that, a level of caches has written back what it had, and all of it is served.
+    void settled();
     /// The run has ended well: ends the file, which gets its name. Throws traces::Error.
     void finish();
 
@@ -58,6 +60,8 @@ private:
     struct Names { // of a tile's sites: ours, by its numbers
         std::vector<std::uint32_t> number{0};
     };
+    /// Whether tiles by themselves make what is recorded.
+    bool is_of_tiles() const { return filter_.level <= config_.tile_levels(); }
     std::vector<std::string> stream_names() const;
     std::string filters_text() const;
     void learn_sites(std::size_t tile);
@@ -70,6 +74,7 @@ private:
     std::deque<TraceTap> taps_;          // by tile
     std::vector<Names> names_;           // likewise
     std::optional<traces::Turn> window_; // at hand, of which nothing is noted yet
+    std::optional<traces::Turn> end_;    // when that is over
     std::uint64_t origin_ = 0;           // the cycle from which on the run counts
     std::map<std::string, std::uint32_t> sites_;
     std::optional<traces::BackgroundWriter> writer_;

@@ -34,18 +34,26 @@ public:
         std::uint16_t structure, column;
         traces::Kind kind;
         traces::Part part;
+        std::uint32_t detail; // passing.h
     };
 
     explicit TraceTap(const Filter& filter) : filter_(&filter) {}
 
     bool is_at(unsigned level) const { return filter_->level == level && on_; }
+    /// Whether it is of what caches pass on, of which level `level` (1: the L2) is asked by itself.
+    bool is_above(unsigned level) const {
+        return filter_->level != TraceLevel::core && filter_->level <= level && on_;
+    }
+    unsigned level() const { return filter_->level; }
     /// From this cycle on references are noted.
     void start(std::uint64_t cycle) {
         on_ = true;
+        latest_ = 0;
         origin_ = cycle;
     }
     void note(const Noted& n) {
-        const std::uint64_t time = n.time - origin_;
+        // What others ask for has no time of its own.
+        const std::uint64_t time = n.kind == traces::Kind::recall ? latest_ : n.time - origin_;
         const Filter& f = *filter_;
         if (time < f.begin || time >= f.end || !f.structures[n.structure] || !f.columns[n.column] ||
             !f.streams[n.stream])
@@ -53,7 +61,7 @@ public:
         if (f.sample < 1 && traces::hash_of_line(n.address >> f.line_shift) >= f.sample)
             return;
         noted_.push_back(n);
-        noted_.back().time = time;
+        noted_.back().time = latest_ = time;
     }
 
     /// The number of a place in the source, for this tile; 0 is none.
@@ -66,7 +74,7 @@ public:
 private:
     const Filter* filter_;
     bool on_ = false;
-    std::uint64_t origin_ = 0;
+    std::uint64_t origin_ = 0, latest_ = 0;
     Sites sites_;
     std::vector<Noted> noted_;
 };

@@ -47,7 +47,10 @@ void add_rows(const sim::ReplayResult& result, const std::vector<Table::Cell>& h
         cells.insert(cells.begin(), head.begin(), head.end());
         table.rows.push_back(std::move(cells));
     };
-    for (unsigned level = 0; level < r.config.cache_levels(); ++level) {
+    for (unsigned level = 0; level < result.first_level; ++level)
+        row({fmt::format("L{} (not driven)", level + 1), none, none, none, none, none, none, none, none,
+             none});
+    for (unsigned level = result.first_level; level < r.config.cache_levels(); ++level) {
         const sim::TrafficOfLevel& of = sim::traffic_of_level[level];
         const std::uint64_t reads = t.*of.reads, writes = t.*of.writes, misses = t.*of.misses;
         const sim::CacheCounters c = r.cache_total(level);
@@ -68,7 +71,9 @@ std::optional<sim::Config> recorded_on(const Description& about) {
         return std::nullopt;
     const std::string text = about.configuration.substr(0, about.configuration.find("\n# scene\n"));
     try {
-        return sim::parse_machine(text, "the trace's machine");
+        sim::Config config = sim::parse_machine(text, "the trace's machine");
+        config.sim.mode = "fast"; // which says when data came as well, for who waits for them
+        return config;
     } catch (const sim::ConfigError&) {
         return std::nullopt; // of another program
     }
@@ -78,7 +83,10 @@ std::optional<sim::Config> recorded_on(const Description& about) {
 
 void ReplayCommand::add_to(CLI::App& app) {
     app_ = app.add_subcommand("replay", "what the memory systems of machines make of a trace");
-    app_->add_option("TRACE", file_, "a trace of any format, of what cores ask for, or -")->required();
+    app_->add_option(
+            "TRACE", file_,
+            "a trace of any format, of what cores ask for or a level of caches in tiles passes on, or -")
+        ->required();
     app_->add_option("--from", from_, "its format; without it, as it begins or is named")
         ->type_name("FORMAT");
     app_->add_option(

@@ -2,7 +2,7 @@
 // streams made here and of a real program's trace.
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
-#include "sim/replay/replay.h"
+#include "sim/replay/timed_replay.h"
 #include "tests/sim/hierarchy_oracle.h"
 #include "traces/block_builder.h"
 #include "traces/error.h"
@@ -220,7 +220,21 @@ TEST(IndependentReplay, WhatCannotBeReplayedIsSaid) {
     EXPECT_NE(mistake([&] { Replay(config, dram, {}); }).find("level core"), std::string::npos);
     Config reference = config;
     reference.sim.mode = "reference";
-    EXPECT_NE(mistake([&] { Replay(reference, description("order"), {}); }).find("sim.mode=fast"),
+    EXPECT_NE(
+        mistake([&] { TimedReplay(reference, nullptr, description("order"), {}); }).find("sim.mode=fast"),
+        std::string::npos);
+    // What an L1 passes on says how; else nobody knows what the levels below were asked.
+    traces::Description passed = description("cycles");
+    passed.level = "l1";
+    builder.add({0, 0, 0, {}});
+    builder.take(block);
+    EXPECT_NE(mistake([&] { Replay(config, passed, {}).add(block); }).find("record it again"),
+              std::string::npos);
+    EXPECT_NE(mistake([&] { TimedReplay(config, nullptr, passed, {}); }).find("level core"),
+              std::string::npos);
+    builder.add({0, 0, 2, {}});
+    builder.take(block);
+    EXPECT_NE(mistake([&] { Replay(config, passed, {}).add(block); }).find("of an L1 with number 2"),
               std::string::npos);
     for (std::uint64_t i = 0; i < 1100; ++i)
         builder.add({i, i << 40U, 0, {}});
