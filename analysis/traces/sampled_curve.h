@@ -5,6 +5,7 @@
 #include "analysis/traces/short_reuse.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace analysis {
@@ -19,6 +20,13 @@ public:
         shards_.touch(line, group);
         for (ShortReuse& s : stretches_)
             s.touch(line, group);
+    }
+
+    /// All of these, as touch() of each.
+    void touch(std::span<const std::uint64_t> lines, std::size_t group) {
+        shards_.touch(lines, group);
+        for (ShortReuse& s : stretches_)
+            s.touch(lines, group);
     }
 
     const Shards& lines() const { return shards_; }

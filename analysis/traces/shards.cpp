@@ -1,6 +1,7 @@
 #include "analysis/traces/shards.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace analysis {
@@ -65,6 +66,44 @@ void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
         limit_ = sample_.limit();
         for (const LineSample& p : part_samples_)
             limit_ = std::max(limit_, p.limit());
+    }
+}
+
+/// Touches of one line that follow each other, if it is in the sample.
+void Shards::take_run(std::uint64_t line, std::size_t count, std::size_t group) {
+    const std::uint64_t hash = traces::hash_bits_of_line(line);
+    for (; count != 0 && hash < limit_; --count)
+        take(line, group, hash);
+}
+
+// Most touches are of the line of the touch before, and of the others most lines are not in the sample: what
+// there is to do for these goes without branches that a processor would guess wrong.
+void Shards::touch(std::span<const std::uint64_t> lines, std::size_t group) {
+    if (group >= seen_.size())
+        seen_.resize(group + 1, 0);
+    seen_[group] += lines.size();
+    constexpr std::size_t most = 256;
+    std::array<std::uint64_t, most> line;      // NOLINT: of a run of touches; filled as far as used
+    std::array<std::uint32_t, most + 1> begin; // NOLINT: likewise, where it begins
+    while (!lines.empty()) {
+        const std::size_t n = std::min(most, lines.size());
+        std::size_t runs = 0;
+        std::uint64_t before = ~lines.front();
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint64_t at = lines[i];
+            line[runs] = at;
+            begin[runs] = static_cast<std::uint32_t>(i);
+            runs += at != before ? 1 : 0;
+            // The first of a run stays, as the next of the same line is written behind it.
+            before = at;
+        }
+        begin[runs] = static_cast<std::uint32_t>(n);
+        // A hash below the limit has top bits that are not above those of the limit.
+        const std::uint64_t top = traces::top_bits_of_hash(limit_);
+        for (std::size_t r = 0; r < runs; ++r)
+            if (traces::top_bits_of_line(line[r]) <= top) [[unlikely]]
+                take_run(line[r], begin[r + 1] - begin[r], group);
+        lines = lines.subspan(n);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -64,6 +65,9 @@ public:
             take(line, group, hash);
     }
 
+    /// All of these, one after the other, as touch() of each: several times as fast.
+    void touch(std::span<const std::uint64_t> lines, std::size_t group);
+
     std::uint64_t references(std::size_t group) const { return group < seen_.size() ? seen_[group] : 0; }
     std::uint64_t sampled() const { return sampled_; }
     /// In the sample.
@@ -79,6 +83,7 @@ public:
 
 private:
     void take(std::uint64_t line, std::size_t group, std::uint64_t hash);
+    void take_run(std::uint64_t line, std::size_t count, std::size_t group);
     double ratio(const LineSample& sample, std::size_t group, std::size_t size) const;
 
     double of_;

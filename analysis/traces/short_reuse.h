@@ -6,8 +6,10 @@
 
 #include "analysis/traces/stack_distance.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace analysis {
@@ -24,6 +26,20 @@ public:
         if (now_ >= begin_)
             look(line, group);
         ++now_;
+    }
+    /// All of these, as touch() of each.
+    void touch(std::span<const std::uint64_t> lines, std::size_t group) {
+        while (!lines.empty()) {
+            if (now_ >= begin_) {
+                touch(lines.front(), group);
+                lines = lines.subspan(1);
+                continue;
+            }
+            const auto skipped =
+                static_cast<std::size_t>(std::min<std::uint64_t>(lines.size(), begin_ - now_));
+            now_ += skipped;
+            lines = lines.subspan(skipped);
+        }
     }
 
     /// Misses a reference of a group, of a cache of sizes[size] lines; half of the interval that has them in

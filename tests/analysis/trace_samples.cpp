@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <span>
 
 namespace analysis {
 namespace {
@@ -220,6 +221,37 @@ TEST(SampledCurve, IsNearForCachesOfAllSizes) {
 }
 
 /// A trace that holds a tenth of all lines says what the whole one would.
+/// Runs of touches of one line among others, together and one by one, in pieces of all lengths.
+TEST(SampledCurve, TouchesTogetherAreThoseOneByOne) {
+    const std::vector<std::uint64_t> sizes = {16, 64, 256, 1024, 8192};
+    std::vector<std::uint64_t> touches;
+    std::mt19937_64 random(9);
+    for (const std::uint64_t line : random_lines(60000, 3000, 5, true))
+        touches.insert(touches.end(), random() % 3 == 0 ? 1 + random() % 40 : 1, line);
+    for (const std::uint64_t most : {0U, 400U}) {
+        const double rate = most == 0 ? 0.05 : 1;
+        SampledCurve single(sizes, rate, 1, most), together(sizes, rate, 1, most);
+        for (std::size_t i = 0; i < touches.size();) {
+            const std::size_t group = random() % 2;
+            const std::size_t n = std::min<std::size_t>(touches.size() - i, random() % 700);
+            const std::span<const std::uint64_t> piece(touches.data() + i, n);
+            for (const std::uint64_t line : piece)
+                single.touch(line, group);
+            together.touch(piece, group);
+            i += n;
+        }
+        EXPECT_GT(single.lines().sampled(), 1000U);
+        EXPECT_EQ(together.lines().sampled(), single.lines().sampled());
+        EXPECT_EQ(together.lines().lines(), single.lines().lines());
+        for (std::size_t group = 0; group < 2; ++group)
+            for (std::size_t s = 0; s < sizes.size(); ++s) {
+                EXPECT_EQ(together.lines().references(group), single.lines().references(group));
+                EXPECT_EQ(together.estimate(group, s).ratio, single.estimate(group, s).ratio);
+                EXPECT_EQ(together.estimate(group, s).of_lines, single.estimate(group, s).of_lines);
+            }
+    }
+}
+
 TEST(Shards, OfASampledTrace) {
     const std::vector<std::uint64_t> sizes = {16, 64, 256, 1024};
     const std::vector<std::uint64_t> touches = random_lines(200000, 2000, 9, false);

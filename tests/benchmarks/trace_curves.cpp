@@ -1,5 +1,5 @@
 // How fast curves of misses are made of a trace, from memory, and how near those of a sample come to the
-// exact one.
+// exact one; and how fast with the trace read meanwhile, bytes, checksums, decoding and merging by time.
 //   trace_curves FILE [--rate R] [--sample-lines N] [--millions N] [--runs N]
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/optimum.h"
@@ -19,14 +19,26 @@
 
 namespace {
 
-std::vector<std::uint64_t> lines_of(const std::string& file, std::size_t most) {
+/// visit(lines) for the touches of each block.
+template <class Visit> void each_block(const std::string& file, std::size_t most, Visit visit) {
     auto source = traces::open_source(file);
     const traces::Format& format = traces::format_of_input("", file, *source);
     const auto input = format.read(std::move(source));
     analysis::Touches touches(6, analysis::Touches::demand, analysis::By::all);
+    std::vector<std::uint64_t> lines;
+    std::size_t all = 0;
+    for (traces::Block block; all < most && input->next(block); all += lines.size()) {
+        lines.clear();
+        touches.each(block, [&](const analysis::Touch& t) { lines.push_back(t.line); });
+        visit(lines);
+    }
+}
+
+std::vector<std::uint64_t> lines_of(const std::string& file, std::size_t most) {
     std::vector<std::uint64_t> out;
-    for (traces::Block block; out.size() < most && input->next(block);)
-        touches.each(block, [&](const analysis::Touch& t) { out.push_back(t.line); });
+    each_block(file, most, [&](const std::vector<std::uint64_t>& lines) {
+        out.insert(out.end(), lines.begin(), lines.end());
+    });
     return out;
 }
 
@@ -73,8 +85,7 @@ int run(const std::string& file, double rate, std::uint64_t sample_lines, std::s
     const auto sampled = [&](Sampled& out, double part, std::uint64_t most_lines) {
         out.speed = speed(lines.size(), runs, [&] {
             analysis::SampledCurve curve(sizes, part, 1, most_lines);
-            for (const std::uint64_t line : lines)
-                curve.touch(line, 0);
+            curve.touch(lines, 0);
             out = {0, 0, 0, 0, curve.lines().lines()};
             for (out.sizes = 0; out.sizes < sizes.size();) {
                 const double error = std::abs(curve.estimate(0, out.sizes).ratio - truth[out.sizes]);
@@ -88,6 +99,17 @@ int run(const std::string& file, double rate, std::uint64_t sample_lines, std::s
     };
     sampled(fixed_rate, rate, 0);
     sampled(fixed_size, 1, sample_lines);
+    const double exact_read = speed(lines.size(), runs, [&] {
+        analysis::LruCurve curve(sizes);
+        each_block(file, most, [&](const std::vector<std::uint64_t>& some) {
+            for (const std::uint64_t line : some)
+                curve.touch(line, 0);
+        });
+    });
+    const double rate_read = speed(lines.size(), runs, [&] {
+        analysis::SampledCurve curve(sizes, rate, 1, 0);
+        each_block(file, most, [&](const std::vector<std::uint64_t>& some) { curve.touch(some, 0); });
+    });
     const double sets = speed(lines.size(), runs, [&] {
         analysis::SetCurve curve(64, {8});
         for (const std::uint64_t line : lines)
@@ -109,6 +131,9 @@ int run(const std::string& file, double rate, std::uint64_t sample_lines, std::s
             "LRU of all sizes, {:<21}{:10.1f}, {:.1f} times as fast; {} lines, {} sizes, error {:.4f} in the "
             "mean, {:.4f} at most\n",
             text, s->speed, s->speed / exact, s->lines, s->sizes, s->mean, s->largest);
+    fmt::print("with reading, exact                    {:10.1f}\n", exact_read);
+    fmt::print("with reading, {:<25}{:10.1f}, {:.1f} times as fast\n", fmt::format("{:g} of all lines", rate),
+               rate_read, rate_read / exact_read);
     fmt::print("64 sets of 8 ways                      {:10.1f}\n", sets);
     fmt::print("Belady's optimum of 512 lines          {:10.1f}\n", optimum);
     return 0;

@@ -177,9 +177,20 @@ Table CurveCommand::sampled(double rate, std::uint64_t most) {
     analysis::SampledCurve curve(lines_of("--sizes", sizes, line_bytes), rate * of, of, most);
     const analysis::Shards& shards = curve.lines();
     analysis::Touches touches = options_.touches();
+    constexpr std::size_t most_together = 4096;
+    std::vector<std::uint64_t> lines; // of one group, that are still to be touched
+    std::uint32_t group = 0;
     options_.each_block([&](const Block& block) {
-        touches.each(block, [&](const Touch& t) { curve.touch(t.line, t.group); });
+        touches.each(block, [&](const Touch& t) {
+            if (t.group != group || lines.size() == most_together) {
+                curve.touch(lines, group);
+                lines.clear();
+                group = t.group;
+            }
+            lines.push_back(t.line);
+        });
     });
+    curve.touch(lines, group);
 
     std::uint64_t references = 0;
     for (std::size_t g = 0; g < touches.groups(); ++g)
