@@ -19,7 +19,7 @@ constexpr std::size_t columns = 5;     // table, classes, addresses, times, orde
 constexpr unsigned part_shift = 4;     // above the kind
 constexpr unsigned set_bits_shift = 8; // above the addresses' shift
 /// Of what caches pass on there is less than of what cores ask for, and hardly anything repeats itself.
-constexpr int level_for_caches = 19;
+constexpr int level_for_caches = 9;
 
 /// Of windows there are hardly more than references.
 std::size_t most_turns(std::size_t references) {

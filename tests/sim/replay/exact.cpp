@@ -124,8 +124,11 @@ TEST_P(ReferenceReplay, IsNearToTheRun) {
         const ReplayResult result = replay(run.trace, config);
         EXPECT_TRUE(result.ended);
         const std::vector<Comparison> all = compare_with_run(result, print_json(run.report), "run");
-        const std::set<std::string> lines = {"reads", "writes", "hits", "misses"};
-        EXPECT_LT(largest_error(all, lines), level == 0 ? 0.05 : 0.02) << differences(all);
+        EXPECT_LT(largest_error(all, {"reads", "hits", "misses"}), level == 0 ? 0.05 : 0.02)
+            << differences(all);
+        // What was changed above goes down with lines that an inclusive level recalls, a little sooner or
+        // later.
+        EXPECT_LT(largest_error(all, {"writes"}), 0.1) << differences(all);
         if (level == 0) {
             EXPECT_EQ(result.report.l1_total().reads, run.report.l1_total().reads);
             EXPECT_EQ(result.report.l1_total().writes, run.report.l1_total().writes);
