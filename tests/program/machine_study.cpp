@@ -1,0 +1,131 @@
+// razor-sim study: machines beside a reference; what goes on where it was stopped, and mistakes.
+#include "tests/program/simulator.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace razor {
+namespace {
+
+class MachineStudy : public Simulator {
+protected:
+    MachineStudy() {
+        folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+        std::filesystem::copy_file(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml", folder_ / "tiny.toml");
+        folder_.file("study.toml", R"(
+kind = "machine"
+[settings]
+machine = "tiny.toml"
+scene = "box.toml"
+size = "16x16"
+samples = 1
+workers = 2
+[knobs]
+sim.quantum = [1, 1000]
+l2.size_bytes = [8192, 16384]
+[reference]
+seeds = 1
+sim.mode = "reference"
+sim.quantum = 0
+[[plot]]
+x = "host_seconds"
+y = "cycles_error"
+)");
+    }
+    nlohmann::json points(const char* folder) const {
+        return nlohmann::json::parse(text(std::string(folder) + "/study.json"))["points"];
+    }
+};
+
+TEST_F(MachineStudy, ComparesWithRunsOfTheReference) {
+    const Outcome outcome = simulator("study study.toml -o s");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_NE(outcome.out.find("4 points: 4 measured, 0 failed"), std::string::npos) << outcome.out;
+    const nlohmann::json all = points("s");
+    // The figures are those of the runs.
+    const std::string run =
+        "run --quiet --no-native --machine tiny.toml --scene box.toml --size 16x16 --spp 1 --workers 2 "
+        "-g l2.size_bytes=16384 ";
+    ASSERT_EQ(simulator(run + "-g sim.quantum=1000 --json a.json").code, 0);
+    ASSERT_EQ(simulator(run + "-g sim.mode=reference -g sim.quantum=0 --json b.json").code, 0);
+    const nlohmann::json a = report("a.json"), b = report("b.json");
+    const nlohmann::json& last = all.at(3);
+    ASSERT_EQ(last["settings"]["sim.quantum"], 1000);
+    ASSERT_EQ(last["settings"]["l2.size_bytes"], 16384);
+    const auto figure = [&](const char* name) { return last["figures"][name]["median"].get<double>(); };
+    const double cycles = a["cycles"], truth = b["cycles"];
+    ASSERT_NE(cycles, truth);
+    EXPECT_EQ(figure("cycles"), cycles);
+    EXPECT_NEAR(figure("cycles_error"), std::abs(cycles / truth - 1), 1e-12);
+    EXPECT_NEAR(figure("cycles_deviation"), cycles / truth - 1, 1e-12);
+    const auto bytes = [](const nlohmann::json& r) {
+        return 64 * (r["memory"]["reads"].get<double>() + r["memory"]["writes"].get<double>());
+    };
+    EXPECT_EQ(figure("dram_bytes"), bytes(a));
+    EXPECT_NEAR(figure("dram_bytes_error"), std::abs(bytes(a) / bytes(b) - 1), 1e-12);
+    const auto rate = [](const nlohmann::json& r) {
+        return r["l1"]["misses"].get<double>() /
+               (r["l1"]["reads"].get<double>() + r["l1"]["writes"].get<double>());
+    };
+    EXPECT_NEAR(figure("l1_miss_rate"), rate(a), 1e-15);
+    EXPECT_NEAR(figure("l1_miss_rate_error"), std::abs(rate(a) - rate(b)), 1e-15);
+    EXPECT_GT(figure("instructions_per_second"), 1000);
+    EXPECT_GT(figure("host_seconds"), 0);
+    // Kept, and the same again elsewhere.
+    const auto results = [&](const char* folder) {
+        std::map<std::string, std::string> out;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / folder / "results")) {
+            const std::string whole =
+                text(std::string(folder) + "/results/" + entry.path().filename().string());
+            out[entry.path().filename().string()] = whole.substr(0, whole.find("\"host\""));
+        }
+        return out;
+    };
+    EXPECT_EQ(results("s").size(), 6U); // with two references
+    ASSERT_EQ(simulator("study study.toml -o t").code, 0);
+    EXPECT_EQ(results("t"), results("s"));
+}
+
+TEST_F(MachineStudy, SaysWhatIsImpossible) {
+    std::string content = text("study.toml");
+    content.replace(content.find("[8192, 16384]"), 13, "[8192, 500]");
+    folder_.file("odd.toml", content);
+    const Outcome odd = simulator("study odd.toml -o s --quiet");
+    EXPECT_EQ(odd.code, 0) << odd.err;
+    const nlohmann::json all = points("s");
+    EXPECT_EQ(all.at(0)["state"], "measured");
+    EXPECT_EQ(all.at(1)["state"], "failed");
+    EXPECT_NE(all.at(1)["failed"].get<std::string>().find("l2"), std::string::npos) << all.at(1);
+    const std::pair<const char*, const char*> cases[] = {
+        {"kind = \"machine\"\n[knobs]\nl2.size = [1]\n",
+         "bad.toml:3:12: unknown setting l2.size; did you mean l2.size_bytes?"},
+        {"kind = \"machine\"\n[knobs]\nsim.quantum = [-1]\n", "bad.toml:3:16: "},
+        {"kind = \"machine\"\n[knobs]\nworker = [1]\n", "unknown setting worker; did you mean workers?"},
+        {"kind = \"image\"\n[knobs]\nsamples = [1]\n", "use the program that measures others"},
+    };
+    for (const auto& [bad, says] : cases) {
+        SCOPED_TRACE(bad);
+        folder_.file("bad.toml", bad);
+        const Outcome result = simulator("study bad.toml -o b");
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "b"));
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(RAZOR_SOURCE_DIR "/configs/studies")) {
+        std::ifstream in(entry.path());
+        const std::string shipped{std::istreambuf_iterator<char>(in), {}};
+        for (const char* size : {"", " --full"})
+            if (shipped.find("kind = \"machine\"") != std::string::npos) {
+                const Outcome plan =
+                    simulator("study " + quoted_argument(entry.path().string()) + " --plan -o p" + size);
+                EXPECT_EQ(plan.code, 0) << plan.err;
+                EXPECT_EQ(plan.out.find("impossible"), std::string::npos) << plan.out;
+            }
+    }
+}
+
+} // namespace
+} // namespace razor
