@@ -85,7 +85,7 @@ CollectedPlot plot_of(const Collection& all, const PlotRequest& request, const s
              out.standing[i] == Standing::front || out.standing[i] == Standing::tied,
              fmt::format("{}: {:.4g}, {:.4g}; {}", settings_text(point, all.knobs, all.knobs), t.x.median,
                          t.y.median, standing_text(out.standing[i]))});
-        if (out.standing[i] == Standing::front)
+        if (out.standing[i] == Standing::front && t.x.median > 0 && t.y.median > 0)
             out.chart.front.emplace_back(t.x.median, t.y.median);
     }
     for (ScatterChart::Series& one : out.chart.series)
