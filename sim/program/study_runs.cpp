@@ -152,7 +152,9 @@ std::vector<std::string> MachineStudy::command(const Settings& settings, int see
         out.emplace_back(option);
         out.push_back(std::move(value));
     };
-    for (const auto& [key, value] : settings) {
+    for (const auto& setting : settings) {
+        const std::string& key = setting.first; // lambdas of clang take no structured bindings
+        const Value& value = setting.second;
         const auto& knobs = razor::scene_knobs();
         const auto knob = std::find_if(knobs.begin(), knobs.end(),
                                        [&](const razor::SceneKnob& one) { return one.key == key; });
