@@ -70,6 +70,10 @@ Scene Scene::load(const std::filesystem::path& file, const Framing& framing) {
     options.up = framing.z_up ? Up::z : Up::y;
     options.floor = framing.floor;
     options.scheme = framing.scheme;
+    if (!(framing.crease_angle >= 0 && framing.crease_angle <= no_crease_angle))
+        throw UserError(fmt::format("framing: crease_angle is {:g}; it must lie between 0 and {:g}",
+                                    framing.crease_angle, no_crease_angle));
+    options.crease_angle = framing.crease_angle;
     options.settings.width = framing.width;
     options.settings.height = framing.height;
     check_settings("framing", options.settings);

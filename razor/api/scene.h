@@ -30,6 +30,9 @@ struct Framing {
     bool z_up = false; // else y
     bool floor = true;
     Scheme scheme = Scheme::catmull_clark;
+    /// Of MD3 and glTF models: where normals of the file differ between faces by more degrees, edges stay
+    /// hard.
+    double crease_angle = 180;
     int width = 512, height = 512; // of the picture, pixels: its shape says how far away the camera stands
 };
 

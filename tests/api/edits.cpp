@@ -293,6 +293,8 @@ TEST(Edits, ThatAreWrongAreRefused) {
     }
     EXPECT_EQ(scene.toml(), before) << "something was set";
     EXPECT_NE(wrong([&] { Scene::load("none.obj", {.width = 0}); }).find("framing"), std::string::npos);
+    EXPECT_EQ(wrong([&] { Scene::load("none.glb", {.crease_angle = -1}); }),
+              "framing: crease_angle is -1; it must lie between 0 and 180");
     EXPECT_EQ(wrong([&] { Scene::parse("size = 3", ".", "text"); }).substr(0, 7), "text:1:");
     EXPECT_NE(wrong([&] { Renderer(scene, {.isa = "mmx"}); }), "nothing");
     EXPECT_NE(wrong([&] { Renderer(scene, {.layers = "pik"}); }), "nothing");

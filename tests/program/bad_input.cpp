@@ -161,6 +161,10 @@ TEST_F(Razor, RefusesBadInput) {
     expect_refused("render good.obj", "no output; add -o");
     expect_refused("render good.obj -o picture.exr --spp", "--spp: 1 required");
     expect_refused("--sise", "--sise");
+    expect_refused("render good.obj -o picture.exr --crease-angle 30",
+                   "--crease-angle: only MD3 and glTF models have normals instead of creases; leave it out");
+    expect_refused("render none.glb -o picture.exr --crease-angle 200",
+                   "--crease-angle '200' is not possible; give a number from 0 to 180");
     expect_refused("export-mesh good.obj", "--output is required");
     expect_refused("export-mesh good.obj -o mesh.ply", "mesh.ply: the mesh is written as OBJ only");
     expect_refused("export-mesh good.obj -o none/mesh.obj", "no folder none");
