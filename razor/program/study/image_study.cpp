@@ -75,6 +75,14 @@ std::vector<analysis::ImageFile> read_references(const std::vector<Point>& refer
     return out;
 }
 
+/// A rival whose command names no seed draws the same picture again and again: one says nothing of noise.
+bool takes_no_seed(const analysis::Study& study, const Point& point) {
+    const analysis::Rival* const rival = analysis::find_rival(study, point.rival);
+    return rival != nullptr &&
+           std::none_of(rival->command.begin(), rival->command.end(),
+                        [](const std::string& word) { return word.find("{seed}") != std::string::npos; });
+}
+
 double process_megabytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -244,7 +252,8 @@ Result ImageStudy::measure(const Point& point, const analysis::Store& store) con
                                      read_references(pairs_of(point), store)};
     Result out;
     std::vector<analysis::ImageFile> pictures;
-    for (int seed = 1; seed <= study_.seeds; ++seed) {
+    const int seeds = takes_no_seed(study_, point) ? 1 : study_.seeds;
+    for (int seed = 1; seed <= seeds; ++seed) {
         if (point.rival.empty()) {
             const StudyPicture made =
                 render_study_picture(point.settings, folder_, seed, 1 + study_.repeats, seed == 1, cancel_);

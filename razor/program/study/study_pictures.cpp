@@ -172,9 +172,11 @@ void add_errors(analysis::Samples& values, const std::vector<ImageFile>& picture
             all.push_back(&pairs);
         const std::vector<bool> counted = finite_in_all(all);
         const analysis::ErrorParts parts = error_parts(seen, right, counted);
-        values["noise"] = root_of(parts.variance);
-        values["bias"] = root_of(parts.bias_squared);
-        if (!pairs.empty()) {
+        if (pictures.size() > 1) {
+            values["noise"] = root_of(parts.variance);
+            values["bias"] = root_of(parts.bias_squared);
+        }
+        if (pairs.size() > 1) {
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 for (std::size_t c = 0; c < 3; ++c)
                     for (std::size_t p = 0; p < pairs[i].planes[c].size(); ++p)
