@@ -57,6 +57,36 @@ TEST(KdTree, CoincidentQuads) {
     expect_bounded(mesh, 8, 10.0 / faces, {{{0.1F, 0.2F, 1}, {0, 0, -1}}, {{2, 0, 1}, {0, 0, -1}}}, {0, -1});
 }
 
+/// A hundred thousand quads of one box, no two the same, which no plane parts: what a list may hold is
+/// bounded by their number, and the nearest along each diagonal is hit.
+TEST(KdTree, EqualBoxes) {
+    constexpr int many = 100000;
+    Mesh mesh;
+    mesh.name = "equal boxes";
+    mesh.scheme = Scheme::bilinear;
+    for (int f = 0; f < many; ++f) {
+        const double middle = 0.1 + 0.8 * f / many; // of two corners' heights; the others are the box'
+        for (const glm::dvec3& p :
+             {glm::dvec3(0, 0, 0), glm::dvec3(1, 0, middle), glm::dvec3(1, 1, 1), glm::dvec3(0, 1, middle)}) {
+            mesh.face_vertices.push_back(static_cast<int>(mesh.points.size()));
+            mesh.points.push_back(p);
+        }
+        mesh.face_sizes.push_back(4);
+    }
+    Frame frame(scene_of(mesh, 1), {});
+    Tracer tracer(frame, 64);
+    const KernelTable& target = *native_targets().back();
+    frame.build_all(target);
+    const FrameStatistics s = frame.statistics();
+    EXPECT_LT(s.inner_nodes, 1000);
+    EXPECT_LT(static_cast<double>(s.list_bytes), 8.0 * many * 7 * 4);
+    std::vector<Ray> rays(1);
+    rays[0].origin = {static_cast<float>(1 - 1e-3 - frame.origin().x),
+                      static_cast<float>(1e-3 - frame.origin().y), static_cast<float>(5 - frame.origin().z)};
+    rays[0].direction = {0, 0, -1};
+    EXPECT_EQ(tracer.closest(target, rays)[0].patch, many - 1) << "the highest there";
+}
+
 TEST(KdTree, EverythingInOnePlane) {
     Mesh mesh = quads([](int face, int corner) {
         return unit_square(corner) + glm::dvec3(1.5 * (face % 200), 1.5 * (face / 200), 0);
