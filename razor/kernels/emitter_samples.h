@@ -3,7 +3,8 @@
 // Points lie on the surface by definition; the surface that a ray sees differs from it by as much as its
 // level of detail does. So a ray arrives if it meets nothing before the point, or only what must be the point
 // itself as it sees it: the same instance, from the same side, nearer by less than triangles of the emitter,
-// and those that the ray asks for, are off a surface that turns by an edge's length over an edge.
+// and those that the ray asks for, are off a surface that turns by an edge's length over an edge. Where maps
+// are looked up rays go on until just behind the point, so that they meet also what is flat.
 #pragma once
 
 #include "razor/frame/emitter_record.h"
@@ -13,6 +14,9 @@
 
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
+
+/// Hits no further before a point than so much of the way to it are behind it, or are it.
+inline constexpr float arrival_room = 2.0e-5F;
 
 struct EmitterRays : LightRays {
     vvec colour;   // radiance, without what maps show there, / (pi x density by area) x the ray's share
@@ -133,6 +137,9 @@ struct EmitterChoice {
         gather(field(materials, &MaterialRecord::one_sided), l.material * vint(material_stride), s.hit);
     vmask one_sided = sides != vint(0);
     l.distance = l.rays.t_max;
+    sint maps = load(field(c.frame, &FrameHeader::emitter_maps));
+    if (branch(maps != 0))
+        l.rays.t_max = l.distance * (1.0F + 2 * arrival_room);
     vfloat zero(0.0F);
     vvec normal = normalise(cross(edge_u, edge_v), {zero, zero, zero});
     vfloat cos_light = -dot(normal, l.rays.direction);
@@ -166,24 +173,30 @@ struct EmitterChoice {
     return front ^ (moved < vint(0));
 }
 
-/// Of these, which arrive.
-inline vmask arriving(const Context& c, const EmitterRays& l, const Hits& h) {
+/// Of these, which arrive, and which of them meet what must be the point.
+struct Arrivals {
+    vmask all, seen;
+};
+inline Arrivals arriving(const Context& c, const EmitterRays& l, const Hits& h) {
     vmask hit = l.rays.active & (h.patch >= vint(0));
     vmask open = l.rays.active & !hit;
     constexpr int instance_word = offsetof(BlockHeader, instance) / 4;
     vint block = h.block << 4;
     vint instance = gather(as<std::int32_t>(c.grids) + instance_word, block, hit);
-    vmask near = hit & (instance == l.instance);
+    vmask same = hit & (instance == l.instance);
+    vfloat room = l.distance * arrival_room;
+    open = open | (hit & (h.t + room >= l.distance));
     vvec way = madd(l.distance, l.rays.direction, l.rays.origin - l.rays.field_origin);
     vfloat facets = asked_at(l.rays, way) * 0.25F;
     vmask curved = l.margin > vfloat(0.0F);
     vfloat wider = l.margin + facets;
-    vfloat margin = select(curved, wider, vfloat(0.0F)); // flat ones are seen where they are
-    near = near & (h.t + margin >= l.distance);
+    vfloat margin = select(curved, wider, room); // flat ones are seen where they are
+    vmask near = same & (h.t + margin >= l.distance);
     if (branch(none(near)))
-        return open;
+        return {open, near};
     vmask other_side = hits_front(c, l.rays, h, near, instance) ^ l.front;
-    return open | (near & !other_side);
+    vmask seen = near & !other_side;
+    return {open | seen, seen};
 }
 
 struct EachDomain {
@@ -208,21 +221,22 @@ template <bool Mapped> struct TowardsEmitters {
     /// Of rays traced to their closest hits, which arrive; their colours multiplied by what maps show there,
     /// or the mean of them where what a ray sees is not quite there.
     vmask arrive(EmitterRays& l, const Hits& h) const {
-        vmask arrives = arriving(context, l, h);
+        Arrivals of = arriving(context, l, h);
+        vmask arrives = of.all;
         if constexpr (Mapped) {
             sint maps = load(field(context.frame, &FrameHeader::emitter_maps));
             if (branch(maps == 0))
                 return arrives;
-            vmask seen = arrives & (h.patch >= vint(0));
+            const vmask& seen = of.seen;
             if (branch(none(seen)))
                 return arrives;
             Hits found = h;
             found.patch = select(seen, h.patch, vint(-1));
             Beyond beyond;
             find_surface<look_mapped>(context, l.rays, found, false, beyond);
-            Materials of = materials_of(context, l.material, seen);
-            vvec map = of.mapped(context, map_emission, beyond.map, seen);
-            vvec shown = times(of.colour(&MaterialRecord::emission), map) * l.scale;
+            Materials emitting = materials_of(context, l.material, seen);
+            vvec map = emitting.mapped(context, map_emission, beyond.map, seen);
+            vvec shown = times(emitting.colour(&MaterialRecord::emission), map) * l.scale;
             l.colour = select(seen, shown, l.colour);
         }
         return arrives;

@@ -137,6 +137,8 @@ TEST(Emitters, WithMaps) {
     s.textures[0].wrap_u = s.textures[0].wrap_v = Wrap::clamp;
     s.materials[0].emission_map.texture = 0;
     expect_same_light(s, "with a map");
+    mesh.points[2].y = 0;
+    expect_same_light(s, "flat, with a map");
 }
 
 TEST(Emitters, InMetal) {

@@ -91,8 +91,28 @@ TEST(PathsOfLights, Directional) {
     }
 }
 
-/// All of them, more than one of some, beside a mapped sky and a lamp. (Of flat lamps with emission maps the
-/// renderer's shadow rays carry the mean of each triangle.)
+// Shadow rays to a flat lamp carry what its map shows where they end, not the mean of a triangle.
+TEST(PathsOfLights, LampWithAMap) {
+    Scene s = room_lit_by({});
+    s.name = "a flat lamp with a map";
+    s.lights.clear();
+    s.sky = {0, 0, 0};
+    s.textures.push_back(
+        sky_texture(16, 16, [](double u, double) { return glm::vec3(u < 0.25 || u > 0.75 ? 2.0F : 0.05F); }));
+    s.textures.back().wrap_u = s.textures.back().wrap_v = Wrap::clamp;
+    Mesh lamp = quad("lamp", {0.2, 0.05, -1.2}, {1.4, 0, 0.1}, {0, 0.8, 0.1}, 5);
+    lamp.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    lamp.face_texcoords = {0, 1, 2, 3};
+    s.meshes.push_back(lamp);
+    s.materials.push_back(named("lamp", {0.3F, 0.3F, 0.3F}));
+    s.materials.back().emission = {4, 3, 6};
+    s.materials.back().emission_map.texture = static_cast<int>(s.textures.size()) - 1;
+    s.materials.back().light = true;
+    s.settings.edge_pixels = 0.1;
+    expect_same_picture(s, 320);
+}
+
+/// All of them, more than one of some, beside a mapped sky and a lamp.
 TEST(PathsOfLights, AllAtOnce) {
     Scene s = room_lit_by({});
     s.name = "lights of all kinds";
