@@ -87,7 +87,7 @@ std::vector<double> ticks(double low, double high, bool logarithmic, Unit unit, 
     return out;
 }
 
-std::string LineChart::svg() const {
+Svg LineChart::drawing() const {
     constexpr double height = 340;
     double low = 0, high = 1, most = 0;
     bool any = false;
@@ -133,7 +133,7 @@ std::string LineChart::svg() const {
     out.line(left, y1, width - right, y1, ink);
     out.line(left, y0, left, y1, ink);
     legend(out, names, width - right + 14, top);
-    return out.str();
+    return out;
 }
 
 std::string BarChart::svg() const {

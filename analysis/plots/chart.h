@@ -34,7 +34,8 @@ struct LineChart {
     std::vector<Series> series; // in the order of colours
     bool steps = false;         // a point holds until the next one's x
     /// 860 pixels wide, 340 high.
-    std::string svg() const;
+    Svg drawing() const;
+    std::string svg() const { return drawing().str(); }
 };
 
 struct BarChart {

@@ -8,47 +8,47 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace analysis {
-namespace {
 
-constexpr timespec nap{0, 5'000'000}; // 5 ms
-
-} // namespace
-
-Ended run_isolated(const std::function<int()>& work, const std::atomic<bool>& stop) {
+Isolated::Isolated(const std::function<int()>& work) {
     std::fflush(nullptr); // or both would write what is waiting
-    const pid_t child = fork();
-    if (child < 0)
+    const pid_t parent = getpid();
+    child_ = fork();
+    if (child_ < 0)
         throw StudyError(fmt::format("no process can be made ({}); end others", std::strerror(errno)));
-    if (child == 0) {
-        const int code = work();
-        std::fflush(nullptr);
-        _exit(code);
-    }
+    if (child_ != 0)
+        return;
+    // Who kills the parent means the work too, and another may begin it anew.
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent)
+        _exit(128 + SIGTERM);
+    const int code = work();
+    std::fflush(nullptr);
+    _exit(code);
+}
+
+bool Isolated::has_ended(Ended& how) {
     int status = 0;
-    bool asked = false;
-    for (;;) {
-        const pid_t ended = waitpid(child, &status, WNOHANG);
-        if (ended == child)
-            break;
-        if (ended < 0 && errno != EINTR)
-            throw StudyError(fmt::format("a process cannot be waited for ({})", std::strerror(errno)));
-        if (stop.load() && !asked) {
-            asked = true;
-            kill(child, SIGTERM);
-        }
-        nanosleep(&nap, nullptr);
-    }
-    Ended out;
+    const pid_t ended = waitpid(child_, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR)
+        throw StudyError(fmt::format("a process cannot be waited for ({})", std::strerror(errno)));
+    if (ended != child_)
+        return false;
     if (WIFSIGNALED(status))
-        out.signal = strsignal(WTERMSIG(status));
+        how.signal = strsignal(WTERMSIG(status));
     else
-        out.code = WEXITSTATUS(status);
-    return out;
+        how.code = WEXITSTATUS(status);
+    return true;
+}
+
+void Isolated::ask_to_end() {
+    if (!asked_)
+        kill(child_, SIGTERM);
+    asked_ = true;
 }
 
 } // namespace analysis

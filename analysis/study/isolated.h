@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <sys/types.h>
 
 namespace analysis {
 
@@ -12,10 +13,22 @@ struct Ended {
     std::string signal; // that ended it: "Segmentation fault"; or empty
 };
 
-/// Runs `work` in a copy of this process, which must have no other threads, and waits for it. The copy ends
-/// with the number that `work` returns, without running destructors of what it copied. Where `stop` becomes
-/// true the copy is asked to end (SIGTERM), as by a terminal that has told both. Throws StudyError where no
-/// process can be made.
-Ended run_isolated(const std::function<int()>& work, const std::atomic<bool>& stop);
+/// Work that is done beside this process: several at a time make use of several processors.
+class Isolated {
+public:
+    /// Runs `work` in a copy of this process, which must have no other threads. The copy ends with the number
+    /// that `work` returns, without running destructors of what it copied; where this process ends first, the
+    /// copy is asked to end. Throws StudyError where no process can be made.
+    explicit Isolated(const std::function<int()>& work);
+    /// Whether the copy has ended, and then how. Does not wait; not to be asked again once it has. Throws
+    /// StudyError.
+    bool has_ended(Ended& how);
+    /// Asks the copy to end (SIGTERM), as by a terminal that has told both; only once.
+    void ask_to_end();
+
+private:
+    pid_t child_;
+    bool asked_ = false;
+};
 
 } // namespace analysis

@@ -1,14 +1,21 @@
 #include "analysis/study/run.h"
 
+#include "analysis/study/claim.h"
 #include "analysis/study/error.h"
 #include "analysis/study/isolated.h"
 
 #include <fmt/format.h>
 
+#include <ctime>
+#include <deque>
+#include <list>
+
 namespace analysis {
 namespace {
 
 constexpr int stopped_code = 130, unwritten_code = 3;
+constexpr timespec nap{0, 3'000'000};       // 3 ms, while processes of this one work
+constexpr timespec long_nap{0, 50'000'000}; // 50 ms, while others' do
 
 /// In the point's own process.
 int measure_and_write(const Point& point, const Store& store, const Measure& measure,
@@ -40,53 +47,141 @@ Result failure(std::string why) {
     return result;
 }
 
+/// The points of one call, some of them under way.
+class Queue {
+public:
+    Queue(const std::vector<Point>& points, const Store& store, const Measure& measure,
+          const RunOptions& options)
+        : points_(points), store_(store), measure_(measure), options_(options), claims_(store) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (i % static_cast<std::size_t>(options.parts) + 1 == static_cast<std::size_t>(options.part))
+                waiting_.push_back(i);
+    }
+
+    RunSummary run() {
+        static const std::atomic<bool> never{false};
+        const std::atomic<bool>& stop = options_.stop == nullptr ? never : *options_.stop;
+        for (;;) {
+            stopping_ = stopping_ || stop.load();
+            collect_ended();
+            if (!stopping_)
+                begin_some(stop);
+            if (running_.empty() && (stopping_ || waiting_.empty()))
+                break;
+            claims_.keep();
+            ::nanosleep(running_.empty() ? &long_nap : &nap, nullptr);
+        }
+        out_.stopped = stopping_ && (cut_off_ || !waiting_.empty());
+        return out_;
+    }
+
+private:
+    struct Running {
+        std::size_t point;
+        Isolated process;
+    };
+
+    /// Takes each waiting point once: what is done already falls out, what others have waits on.
+    void begin_some(const std::atomic<bool>& stop) {
+        for (std::size_t left = waiting_.size(); left > 0; --left) {
+            if (running_.size() >= static_cast<std::size_t>(options_.jobs))
+                return;
+            stopping_ = stopping_ || stop.load();
+            if (stopping_)
+                return;
+            const std::size_t i = waiting_.front();
+            waiting_.pop_front();
+            if (is_kept(points_[i])) {
+                ++out_.kept;
+                continue;
+            }
+            if (!claims_.take(points_[i])) {
+                waiting_.push_back(i);
+                continue;
+            }
+            if (is_kept(points_[i])) { // by who had it until now
+                claims_.release(points_[i]);
+                ++out_.kept;
+                continue;
+            }
+            begin(i);
+        }
+    }
+
+    bool is_kept(const Point& point) const {
+        return store_.is_done(point) &&
+               !(options_.again_failed && !store_.read_result(point)->failed.empty());
+    }
+
+    void begin(std::size_t i) {
+        const Point& point = points_[i];
+        if (options_.progress)
+            options_.progress(out_.kept + out_.measured + running_.size(), points_.size(), point);
+        store_.write_point(point);
+        if (!point.impossible.empty()) {
+            store_.write_result(point, failure(point.impossible), options_.program);
+            finish(i);
+            return;
+        }
+        running_.push_back(
+            {i, Isolated([&] { return measure_and_write(point, store_, measure_, options_.program); })});
+    }
+
+    void finish(std::size_t i) {
+        claims_.release(points_[i]);
+        ++out_.measured;
+        if (!store_.read_result(points_[i])->failed.empty())
+            ++out_.failed;
+    }
+
+    void collect_ended() {
+        for (auto one = running_.begin(); one != running_.end();) {
+            if (stopping_)
+                one->process.ask_to_end();
+            Ended ended;
+            if (!one->process.has_ended(ended)) {
+                ++one;
+                continue;
+            }
+            const std::size_t i = one->point;
+            one = running_.erase(one);
+            // Whoever was told to end has no result, however it ended.
+            if (stopping_ && (ended.code != 0 || !ended.signal.empty())) {
+                cut_off_ = true;
+                claims_.release(points_[i]);
+                continue;
+            }
+            if (ended.code == stopped_code) { // told by a terminal that has yet to tell this process
+                claims_.release(points_[i]);
+                cut_off_ = stopping_ = true;
+                continue;
+            }
+            if (!ended.signal.empty())
+                store_.write_result(points_[i], failure(fmt::format("ended by a signal: {}", ended.signal)),
+                                    options_.program);
+            else if (ended.code != 0)
+                throw StudyError(
+                    fmt::format("the result of {} cannot be written; check the disk", points_[i].name));
+            finish(i);
+        }
+    }
+
+    const std::vector<Point>& points_;
+    const Store& store_;
+    const Measure& measure_;
+    const RunOptions& options_;
+    Claims claims_;
+    std::deque<std::size_t> waiting_;
+    std::list<Running> running_;
+    RunSummary out_;
+    bool stopping_ = false, cut_off_ = false;
+};
+
 } // namespace
 
 RunSummary run_points(const std::vector<Point>& points, const Store& store, const Measure& measure,
                       const RunOptions& options) {
-    static const std::atomic<bool> never{false};
-    const std::atomic<bool>& stop = options.stop == nullptr ? never : *options.stop;
-    RunSummary out;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Point& point = points[i];
-        if (i % static_cast<std::size_t>(options.parts) + 1 != static_cast<std::size_t>(options.part))
-            continue;
-        if (store.is_done(point)) {
-            const bool again = options.again_failed && !store.read_result(point)->failed.empty();
-            if (!again) {
-                ++out.kept;
-                continue;
-            }
-        }
-        if (stop.load()) {
-            out.stopped = true;
-            break;
-        }
-        if (options.progress)
-            options.progress(i, points.size(), point);
-        store.write_point(point);
-        if (!point.impossible.empty()) {
-            store.write_result(point, failure(point.impossible), options.program);
-        } else {
-            const Ended ended =
-                run_isolated([&] { return measure_and_write(point, store, measure, options.program); }, stop);
-            // Whoever was told to end has no result, however it ended.
-            if (stop.load() && (ended.code != 0 || !ended.signal.empty())) {
-                out.stopped = true;
-                break;
-            }
-            if (!ended.signal.empty())
-                store.write_result(point, failure(fmt::format("ended by a signal: {}", ended.signal)),
-                                   options.program);
-            else if (ended.code != 0)
-                throw StudyError(
-                    fmt::format("the result of {} cannot be written; check the disk", point.name));
-        }
-        ++out.measured;
-        if (!store.read_result(point)->failed.empty())
-            ++out.failed;
-    }
-    return out;
+    return Queue(points, store, measure, options).run();
 }
 
 } // namespace analysis

@@ -22,16 +22,18 @@ struct RunOptions {
     const std::atomic<bool>* stop = nullptr; // set to true from anywhere, a signal handler too, to stop
     bool again_failed = false;               // measure points anew that failed
     int part = 1, parts = 1;                 // of all points, only each parts-th, the part-th first
-    /// Before each point that is measured: how many are done of how many, and the point.
+    /// Before each point that is measured: how many are begun or done of how many, and the point.
     std::function<void(std::size_t done, std::size_t of, const Point& next)> progress{};
+    int jobs = 1; // points measured at a time, each in a process
 };
 
 struct RunSummary {
-    std::size_t measured = 0, failed = 0, kept = 0; // now; of them failed; done before
+    std::size_t measured = 0, failed = 0, kept = 0; // now; of them failed; done before, or by others
     bool stopped = false;
 };
 
 /// In a process for each point, so that one that crashes, or takes all memory, is a result that says so.
+/// Where others measure points of the same folder at the same time (Claims), waits for these.
 RunSummary run_points(const std::vector<Point>& points, const Store& store, const Measure& measure,
                       const RunOptions& options);
 

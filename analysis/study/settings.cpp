@@ -60,6 +60,14 @@ std::string plain_text(const Value& value) {
     return toml_text(value);
 }
 
+std::optional<double> number_of(const Value& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value))
+        return static_cast<double>(*whole);
+    if (const auto* real = std::get_if<double>(&value))
+        return *real;
+    return {};
+}
+
 std::string toml_text(const Settings& settings) {
     std::string out;
     for (const auto& [key, value] : settings)

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -17,6 +18,9 @@ using Value = std::variant<bool, std::int64_t, double, std::string>;
 std::string toml_text(const Value& value);
 /// For people and tables: without the quotes of words, whole numbers without a point.
 std::string plain_text(const Value& value);
+
+/// Of whole and real numbers.
+std::optional<double> number_of(const Value& value);
 
 /// By name, "section.key" of what stands in tables.
 using Settings = std::map<std::string, Value>;

@@ -28,14 +28,6 @@ struct Condition {
     bool holds(const Settings& settings) const;
 };
 
-std::optional<double> number_of(const Value& value) {
-    if (const auto* whole = std::get_if<std::int64_t>(&value))
-        return static_cast<double>(*whole);
-    if (const auto* real = std::get_if<double>(&value))
-        return *real;
-    return {};
-}
-
 bool Condition::holds(const Settings& settings) const {
     const auto found = settings.find(key);
     if (found == settings.end())
@@ -54,9 +46,12 @@ public:
         TomlSection top(root, "", file_);
         study_.file = file_;
         if (top.needed_text("kind") != vocabulary_.kind)
-            top.fail("kind", fmt::format("this program measures studies of kind \"{}\"; use the program that "
-                                         "measures others (razor study: image, razor-sim study: machine)",
-                                         vocabulary_.kind));
+            top.fail(
+                "kind",
+                fmt::format(
+                    "this program measures studies of kind \"{}\"; use the program that "
+                    "measures others (razor study: image, razor-sim study: machine, razor-sim sweep: sweep)",
+                    vocabulary_.kind));
         study_.title = top.text("title").value_or(std::filesystem::path(file_).stem().string());
         study_.seeds = top.whole("seeds", 1, 1, 1000);
         study_.repeats = top.whole("repeats", 1, 0, 1000);
@@ -69,6 +64,13 @@ public:
         const std::vector<const toml::table*> exclude = top.tables("exclude");
         for (const toml::table* const plot : top.tables("plot"))
             read_plot(*plot);
+        const std::vector<const toml::table*> curves = top.tables("curve");
+        for (const toml::table* const curve : curves)
+            read_curve(*curve);
+        study_.rank = top.texts("rank");
+        for (const std::string& figure : study_.rank)
+            if (const std::string wrong = wrong_figure(figure); !wrong.empty())
+                top.fail("rank", wrong);
         const std::vector<const toml::table*> rivals = top.tables("rival");
         top.table("full");
         top.finish();
@@ -90,10 +92,43 @@ public:
                     fail_at(file_, root.source(),
                             fmt::format("a plot has lines by {}, in which no points differ; there are {}",
                                         line, fmt::join(study_.knobs, ", ")));
+        for (std::size_t i = 0; i < study_.curves.size(); ++i)
+            check_curve(study_.curves[i], *curves[i]);
         return std::move(study_);
     }
 
 private:
+    /// Why a plot cannot show it, or nothing.
+    std::string wrong_figure(const std::string& name) const {
+        const std::vector<std::string>& known = vocabulary_.figures;
+        return std::find(known.begin(), known.end(), name) != known.end()
+                   ? ""
+                   : fmt::format("there is no figure {}; there are {}", name, fmt::join(known, ", "));
+    }
+
+    void read_curve(const toml::table& table) {
+        TomlSection section(table, "curve", file_);
+        CurveRequest curve{section.needed_text("x"), section.needed_text("y")};
+        section.finish();
+        if (const std::string wrong = wrong_figure(curve.y); !wrong.empty())
+            section.fail("y", wrong);
+        study_.curves.push_back(std::move(curve));
+    }
+
+    void check_curve(const CurveRequest& curve, const toml::table& table) const {
+        const TomlSection section(table, "curve", file_);
+        if (std::find(study_.knobs.begin(), study_.knobs.end(), curve.x) == study_.knobs.end())
+            section.fail("x", fmt::format("in {} no points differ; they do in {}", curve.x,
+                                          fmt::join(study_.knobs, ", ")));
+        for (const Settings& point : study_.points)
+            if (const auto found = point.find(curve.x);
+                found != point.end() && !number_of(found->second).has_value())
+                section.fail("x",
+                             fmt::format("{} = {} is no number; draw curves over numbers, or leave it to "
+                                         "the bars of sensitivity",
+                                         curve.x, toml_text(found->second)));
+    }
+
     Value checked(const std::string& key, const toml::node& node) const {
         Value value;
         if (node.is_boolean())
@@ -259,11 +294,9 @@ private:
         TomlSection section(table, "plot", file_);
         PlotRequest plot{section.needed_text("x"), section.needed_text("y"), section.texts("lines")};
         section.finish();
-        const std::vector<std::string>& known = vocabulary_.figures;
         for (const auto& [key, name] : {std::pair{"x", &plot.x}, std::pair{"y", &plot.y}})
-            if (std::find(known.begin(), known.end(), *name) == known.end())
-                section.fail(
-                    key, fmt::format("there is no figure {}; there are {}", *name, fmt::join(known, ", ")));
+            if (const std::string wrong = wrong_figure(*name); !wrong.empty())
+                section.fail(key, wrong);
         study_.plots.push_back(std::move(plot));
     }
 

@@ -4,22 +4,24 @@
 //     title = "Levels of detail"
 //     seeds = 4                    # runs of each point that differ in noise alone: seeds 1 to 4
 //     repeats = 2                  # timed frames of a run after its first
-//     [settings]                   # of all points, where they state nothing else
-//     scene = "../scenes/showcase.toml"
-//     [knobs]                      # a point for each combination
-//     lod = ["recursive", "fixed"]
-//     edge_pixels = [1, 2, 4]
+//     rank = ["rmse"]              # figures by which points are ranked, and whose ratios tell what settings
+//     do [settings]                   # of all points, where they state nothing else scene =
+//     "../scenes/showcase.toml" [knobs]                      # a point for each combination lod =
+//     ["recursive", "fixed"] edge_pixels = [1, 2, 4]
 //     [[points]]                   # further ones: a value, or a list, of which each combination is a point
 //     lod = "paper"
 //     edge_pixels = [1, 2]
 //     [[exclude]]                  # leaves out points of which all of this holds
-//     lod = "fixed"                # a value, a list of them, or { least = 2, most = 4 } (either may be
-//     missing) edge_pixels = { most = 1 } [reference]                  # what the reference has instead of a
+//     lod = "fixed"                # a value, a list of them, or { least = 2, most = 4 } (one of both will
+//     do) edge_pixels = { most = 1 } [reference]                  # what the reference has instead of a
 //     point's settings seeds = 4 samples = 256
 //     [[plot]]                     # from figures that the program knows
 //     x = "seconds"
 //     y = "rmse"
 //     lines = ["lod"]              # settings that tell lines apart; points of a line differ in the others
+//     [[curve]]                    # a figure over a setting of numbers, a line for all others' combinations
+//     x = "edge_pixels"
+//     y = "rmse"
 //     [[rival]]                    # another program, measured by the same rules: see Rival
 //     [full]                       # keys as above, which take their place where the full size is asked for
 //
@@ -63,6 +65,11 @@ struct PlotRequest {
     std::vector<std::string> lines;
 };
 
+/// A figure over a setting.
+struct CurveRequest {
+    std::string x, y;
+};
+
 struct Study {
     std::string file, title;
     int seeds = 1, repeats = 1;
@@ -72,6 +79,8 @@ struct Study {
     Settings reference;             // [reference], without its seeds
     int reference_seeds = 2;
     std::vector<PlotRequest> plots;
+    std::vector<CurveRequest> curves;
+    std::vector<std::string> rank; // figures
     std::vector<Rival> rivals;
 };
 

@@ -11,6 +11,7 @@
 #include "sim/program/provenance.h"
 #include "sim/program/run_command.h"
 #include "sim/program/study_command.h"
+#include "sim/program/sweep_command.h"
 #include "sim/program/validate_command.h"
 #include "traces/error.h"
 
@@ -58,6 +59,8 @@ int main(int argc, char** argv) {
     compare.add_to(app);
     sim::StudyCommand study;
     study.add_to(app);
+    sim::SweepCommand sweep;
+    sweep.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
             return print.parsed()               ? print_config(machine)
@@ -66,6 +69,7 @@ int main(int argc, char** argv) {
                    : validate.parsed()          ? validate.run()
                    : compare.parsed()           ? compare.run()
                    : study.parsed()             ? study.run()
+                   : sweep.parsed()             ? sweep.run()
                    : app.got_subcommand("dram") ? dram.run()
                                                 : run.run();
         } catch (const sim::ConfigError& e) {

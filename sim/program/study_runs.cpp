@@ -4,13 +4,16 @@
 #include "razor/program/study/command.h"
 #include "razor/program/study/scene_knobs.h"
 #include "razor/scene/error.h"
+#include "razor/scene/ranges.h"
 #include "sim/config/machine_file.h"
 #include "sim/config/parameters.h"
+#include "sim/program/report_figures.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 
@@ -24,15 +27,6 @@ using analysis::Settings;
 using analysis::toml_text;
 using analysis::Value;
 
-/// Figures of a report, by JSON pointers.
-struct ReportFigure {
-    const char *name, *over;
-};
-constexpr ReportFigure report_figures[] = {
-    {"cycles", "/cycles"},           {"instructions", "/core/instructions"},
-    {"dram_reads", "/memory/reads"}, {"dram_writes", "/memory/writes"},
-    {"l1_misses", "/l1/misses"},     {"l2_misses", "/l2/misses"},
-    {"row_hits", "/memory/row_hits"}};
 /// Of which points are compared with their reference: relative errors, but of rates their difference.
 constexpr const char* compared[] = {"cycles", "dram_bytes", "l1_miss_rate", "l2_miss_rate"};
 
@@ -45,9 +39,27 @@ std::string wrong_parameter(const Parameter& p, Value& value) {
         return set_integer(p, any, *whole);
     if (const auto* const real = std::get_if<double>(&value))
         return set_real(p, any, *real);
-    if (const auto* const text = std::get_if<std::string>(&value))
-        return set_text(p, any, *text);
+    if (const auto* const text = std::get_if<std::string>(&value)) {
+        const std::string wrong = set_text(p, any, *text);
+        // "64 KiB" is the number, so that equal settings are equal values and have an order.
+        if (const auto* const whole = std::get_if<IntegerKind>(&p.kind); whole != nullptr && wrong.empty())
+            value = std::int64_t{whole->at(any)};
+        return wrong;
+    }
     return fmt::format("{} is no flag; write a number or a text in quotes", p.key);
+}
+
+/// Of a text that an option of `razor-sim run` takes.
+std::string wrong_text(std::string_view key, const Value& value,
+                       const std::function<void(const std::string&)>& parse) {
+    if (const std::string wrong = razor::wrong_word(key, value, {}); !wrong.empty())
+        return wrong;
+    try {
+        parse(std::get<std::string>(value));
+    } catch (const razor::UserError& error) {
+        return error.what();
+    }
+    return "";
 }
 
 std::string wrong_setting(std::string_view key, Value& value) {
@@ -57,6 +69,20 @@ std::string wrong_setting(std::string_view key, Value& value) {
         return razor::wrong_word(key, value, {});
     if (key == "workers" || key == "host_threads")
         return razor::wrong_whole(key, value, 1, key == "workers" ? 65536 : 1024);
+    if (key == "frames")
+        return razor::wrong_whole(key, value, 1, 1000);
+    if (key == "seed")
+        return razor::wrong_whole(key, value, razor::seed_range.least, razor::seed_range.most);
+    if (key == "tiles")
+        return wrong_text(key, value, [](const std::string& text) {
+            razor::parse_span("tiles", text, {0, 1e9});
+        });
+    if (key == "memory")
+        return wrong_text(key, value, [](const std::string& text) { razor::parse_bytes("memory", text); });
+    if (key == "share")
+        return "share is kdtree.share among the settings of machines; write that";
+    if (key == "jitter" || key == "sim.jitter")
+        return fmt::format("{} is what the runs of a point differ in; write seeds = N above the tables", key);
     if (const Parameter* const p = find_parameter(key)) {
         const std::string wrong = wrong_parameter(*p, value);
         return wrong.empty() || wrong.find(';') != std::string::npos ? wrong
@@ -71,32 +97,6 @@ double number_at(const nlohmann::ordered_json& json, const char* pointer) {
     return razor::pointed_numbers(json, pointer).front();
 }
 
-double rate(double part, double whole) {
-    return whole > 0 ? part / whole : 0;
-}
-
-/// What a report says that does not depend on the host.
-void add_values(analysis::Samples& values, const nlohmann::ordered_json& json) {
-    for (const ReportFigure& figure : report_figures)
-        if (json.contains(nlohmann::ordered_json::json_pointer(figure.over)))
-            values[figure.name].push_back(number_at(json, figure.over));
-    double line = 0; // of the last level, whose lines are the memory's
-    for (const auto& [name, level] : json.at("machine").items())
-        if (name.size() == 2 && name[0] == 'l' && level.contains("line_bytes") &&
-            level.value("size_bytes", 0.0) > 0)
-            line = level.at("line_bytes").get<double>();
-    values["dram_bytes"].push_back(line *
-                                   (number_at(json, "/memory/reads") + number_at(json, "/memory/writes")));
-    for (const char* level : {"l1", "l2"}) {
-        const std::string at = fmt::format("/{}/", level);
-        if (!json.contains(nlohmann::ordered_json::json_pointer(at + "misses")))
-            continue;
-        const auto count = [&](const char* what) { return number_at(json, (at + what).c_str()); };
-        values[fmt::format("{}_miss_rate", level)].push_back(
-            rate(count("misses"), count("reads") + count("writes")));
-    }
-}
-
 double mean_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -104,7 +104,8 @@ double mean_of(const std::vector<double>& values) {
 } // namespace
 
 const std::vector<std::string_view>& run_keys() {
-    static const std::vector<std::string_view> keys{"machine", "workers", "host_threads"};
+    static const std::vector<std::string_view> keys{"machine", "workers", "host_threads", "frames",
+                                                    "tiles",   "memory",  "seed"};
     return keys;
 }
 
@@ -113,30 +114,36 @@ razor::StudyProgram machine_study_program() {
     out.name = fmt::format("razor-sim {}", razor::version());
     out.figures = {{"host_seconds", "host, s"},
                    {"host_processor_seconds", "host, processor seconds"},
-                   {"instructions_per_second", "simulated instructions a second of the host"},
-                   {"cycles", "cycles"},
+                   {"instructions_per_second", "simulated instructions a second of the host", true},
                    {"cycles_error", "error of cycles, relative"},
                    {"cycles_deviation", "cycles beside the reference's, with its sign"},
-                   {"instructions", "instructions"},
-                   {"dram_bytes", "bytes from and to DRAM"},
                    {"dram_bytes_error", "error of bytes from and to DRAM, relative"},
-                   {"dram_reads", "lines read from DRAM"},
-                   {"dram_writes", "lines written to DRAM"},
-                   {"row_hits", "row hits"},
-                   {"l1_misses", "misses of L1s"},
-                   {"l1_miss_rate", "misses of L1s, of all accesses"},
                    {"l1_miss_rate_error", "error of the L1s' miss rate, absolute"},
-                   {"l2_misses", "misses of L2s"},
-                   {"l2_miss_rate", "misses of L2s, of all accesses"},
                    {"l2_miss_rate_error", "error of the L2s' miss rate, absolute"}};
+    out.figures.insert(out.figures.end(), report_figures().begin(), report_figures().end());
     out.vocabulary.kind = "machine";
     out.vocabulary.wrong = wrong_setting;
-    for (const analysis::Figure& figure : out.figures)
-        out.vocabulary.figures.push_back(figure.name);
-    out.plots = {{"host_processor_seconds", "cycles_error", {}}};
+    out.name_figures();
+    out.views.plots = {{"host_processor_seconds", "cycles_error", {}}};
     out.remarks = {
         "Errors are beside the mean of the reference's runs. Runs of a point differ in sim.jitter alone: "
         "errors below what that moves mean nothing."};
+    return out;
+}
+
+razor::StudyProgram sweep_program() {
+    razor::StudyProgram out;
+    out.name = machine_study_program().name;
+    out.figures = report_figures();
+    out.figures.push_back({"host_processor_seconds", "host, processor seconds"});
+    out.vocabulary.kind = "sweep";
+    out.vocabulary.wrong = wrong_setting;
+    out.name_figures();
+    out.views = {
+        {{"seconds", "energy_joules", {}}}, {"cycles", "dram_bytes", "energy_joules"}, true, {"limited_by"}};
+    out.remarks = {
+        "Runs of a design differ in sim.jitter alone (seeds 1 to N): designs whose runs overlap are not told "
+        "apart."};
     return out;
 }
 
@@ -160,10 +167,10 @@ std::vector<std::string> MachineStudy::command(const Settings& settings, int see
                                        [&](const razor::SceneKnob& one) { return one.key == key; });
         if (key == "scene" || key == "machine")
             add("--" + key, (folder_ / plain_text(value)).string());
-        else if (key == "workers")
-            add("--workers", plain_text(value));
         else if (key == "host_threads")
             add("--host-threads", plain_text(value));
+        else if (std::find(run_keys().begin(), run_keys().end(), key) != run_keys().end())
+            add("--" + key, plain_text(value));
         else if (knob == knobs.end())
             add("-g", fmt::format("{}={}", key, plain_text(value)));
         else if (knob->kind != razor::SceneKnob::flag)
@@ -176,6 +183,20 @@ std::vector<std::string> MachineStudy::command(const Settings& settings, int see
     return out;
 }
 
+const MachineStudy::Described& MachineStudy::described(const Settings& settings) const {
+    Settings own; // of the scene: hundreds of machines render one
+    for (const razor::SceneKnob& knob : razor::scene_knobs())
+        if (const auto found = settings.find(std::string(knob.key)); found != settings.end())
+            own.insert(*found);
+    const std::string text = toml_text(own);
+    if (const auto found = described_.find(text); found != described_.end())
+        return found->second;
+    const razor::SceneDescription scene = razor::describe_scene(own, folder_);
+    return described_
+        .emplace(text, Described{razor::scene_digest(own, folder_, scene), razor::with_defaults(own, scene)})
+        .first->second;
+}
+
 std::string MachineStudy::own_body(const Settings& settings, int seeds) const {
     std::vector<std::string> overrides;
     const auto machine = settings.find("machine");
@@ -184,20 +205,19 @@ std::string MachineStudy::own_body(const Settings& settings, int seeds) const {
     for (const auto& [key, value] : settings)
         if (find_parameter(key) != nullptr)
             overrides.push_back(fmt::format("{}={}", key, plain_text(value)));
-    const MachineDescription described =
+    const MachineDescription machine_description =
         describe_machine((folder_ / plain_text(machine->second)).string(), overrides);
-    const razor::SceneDescription scene = razor::describe_scene(settings, folder_);
+    const Described& scene = described(settings);
     // Marks and comments of the machine's file do not change what is measured.
-    std::string config = print_machine(described.config);
-    Settings known = razor::with_defaults(settings, scene);
+    std::string config = print_machine(machine_description.config);
+    Settings known = analysis::overlaid(scene.settings, settings);
     known.erase("machine");
     known.erase("host_threads"); // changes no digit but the host's
     const auto threads = settings.find("host_threads");
     return fmt::format(
         "# A point of razor-sim study.\nkind = \"machine\"\nprogram = {}\nscene_digest = {}\nseeds = {}\n"
         "repeats = {}\nhost_threads = {}\n\n[settings]\n{}\n# the machine\n{}",
-        toml_text(Value(machine_study_program().name)),
-        toml_text(Value(razor::scene_digest(settings, folder_, scene))), seeds, study_.repeats,
+        toml_text(Value(machine_study_program().name)), toml_text(Value(scene.digest)), seeds, study_.repeats,
         threads == settings.end() ? "1" : plain_text(threads->second), toml_text(known), config);
 }
 
@@ -227,6 +247,7 @@ std::vector<Point> MachineStudy::references(const std::vector<Point>& points) co
 
 Result MachineStudy::run_all(const Settings& settings, int seeds) const {
     Result out;
+    std::map<std::string, int> limiters; // how many runs each limits
     for (int seed = 1; seed <= seeds; ++seed)
         for (int repeat = 0; repeat < std::max(study_.repeats, 1); ++repeat) {
             const razor::ScratchFolder folder;
@@ -238,8 +259,14 @@ Result MachineStudy::run_all(const Settings& settings, int seeds) const {
             out.host["host_processor_seconds"].push_back(number_at(report, "/host/processor_seconds"));
             out.host["instructions_per_second"].push_back(number_at(report, "/host/instructions_per_second"));
             if (repeat == 0)
-                add_values(out.values, report);
+                add_figures(out.values, report);
+            if (repeat == 0)
+                ++limiters[limiter_name(report)];
         }
+    const auto most = std::max_element(limiters.begin(), limiters.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    out.details = nlohmann::ordered_json::object();
+    out.details["limited_by"] = most->first;
     return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,8 @@ namespace sim {
 
 /// Settings, figures and plots that `razor-sim study` knows.
 razor::StudyProgram machine_study_program();
+/// ... `razor-sim sweep`.
+razor::StudyProgram sweep_program();
 /// Settings besides those of scenes and of the machine's file.
 const std::vector<std::string_view>& run_keys();
 
@@ -34,6 +37,12 @@ public:
     analysis::Result measure(const analysis::Point& point, const analysis::Store& store) const;
 
 private:
+    /// What is known of a scene of these settings.
+    struct Described {
+        std::string digest;
+        analysis::Settings settings; // all of them
+    };
+    const Described& described(const analysis::Settings& settings) const;
     /// `razor-sim run` of these settings. With seeds, of that one.
     std::vector<std::string> command(const analysis::Settings& settings, int seed,
                                      const std::string& json) const;
@@ -45,6 +54,7 @@ private:
     std::filesystem::path folder_;
     std::string program_;
     const std::atomic<bool>& stop_;
+    mutable std::map<std::string, Described> described_; // by the settings' text: scenes take long to read
 };
 
 } // namespace sim

@@ -5,7 +5,7 @@ simulator=sim/program/razor-sim
 picture=tests/kernels/picture
 # ctest's regular expressions have ten parentheses at most: these have none.
 # Run by g++'s build alone: studies and whole runs, of which every part has tests of its own.
-only_by_gcc='ValidatesItself|^absent_code|^Sweep\.|^Whole\.|^sweep_|^calibration_|^sharing_|^analysis_|^embree_'
+only_by_gcc='ValidatesItself|^absent_code|^Sweep\.|^DesignSweep\.|^Whole\.|^sweep_|^calibration_|^sharing_|^analysis_|^embree_'
 only_by_gcc+='|^kernels_operand_order|^isa_refused|^isa_lint|^tree$|^api_example'
 # Not under sanitizers either: the longest ones that take the paths of others.
 not_sanitized='^Zoom|LevelsOfTorus|_stretched|_bilinear|/female_generic|/catmark_car|/spot|/urchin|/tapered|/prism'

@@ -115,9 +115,8 @@ StudyProgram image_study_program() {
                    {"process_megabytes", "the process at most, MiB"}};
     out.vocabulary.kind = "image";
     out.vocabulary.wrong = wrong_image_setting;
-    for (const analysis::Figure& figure : out.figures)
-        out.vocabulary.figures.push_back(figure.name);
-    out.plots = {{"seconds", "rmse", {}}, {"seconds", "flip", {}}};
+    out.name_figures();
+    out.views.plots = {{"seconds", "rmse", {}}, {"seconds", "flip", {}}};
     out.remarks = {
         "Errors are of each seed's picture beside the mean of the references (RMSE, relative MSE and MAPE as "
         "pbrt's imgtool defines them, HDR-FLIP by Andersson et al. 2021). Bias and noise are estimated from "

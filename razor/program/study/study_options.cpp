@@ -4,10 +4,13 @@
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
 #include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <thread>
 #include <tuple>
 #include <unistd.h>
 
@@ -39,20 +42,15 @@ private:
     bool shown_;
 };
 
-std::string described(const analysis::Point& point, const std::vector<std::string>& knobs) {
-    std::string out = point.rival;
-    for (const std::string& key : knobs)
-        if (const auto found = point.settings.find(key); found != point.settings.end())
-            out += fmt::format("{}{} {}", out.empty() ? "" : ", ", key, analysis::plain_text(found->second));
-    return out;
-}
-
 } // namespace
 
-void StudyOptions::add_to(CLI::App& command) {
-    command.add_option("study", file_, "the study, such as configs/studies/showcase-levels.toml")
+void StudyOptions::add_to(CLI::App& command, StudyKind kind) {
+    command.add_option("study", file_, "the study, such as those of configs/studies")
         ->type_name("STUDY.toml")
         ->required();
+    timed_ = kind == StudyKind::timed;
+    if (!timed_)
+        add_steps(command);
     command
         .add_option(
             "-o,--output", folder_,
@@ -60,8 +58,10 @@ void StudyOptions::add_to(CLI::App& command) {
             "without it, out/ and the study's name")
         ->type_name("FOLDER");
     command.add_flag("--full", full_, "the study's full size, [full] in its file");
-    command.add_flag("--plan", plan_, "say which points there are, and measure nothing");
-    command.add_flag("--collect", collect_, "of what is measured already, make tables and plots anew");
+    if (timed_) {
+        command.add_flag("--plan", plan_, "say which points there are, and measure nothing");
+        command.add_flag("--collect", collect_, "of what is measured already, make tables and plots anew");
+    }
     command
         .add_option("--part", part_,
                     "measure only every M-th point, beginning with the N-th: for several machines with one "
@@ -69,6 +69,27 @@ void StudyOptions::add_to(CLI::App& command) {
         ->type_name("N/M");
     command.add_flag("--again", again_, "measure points anew that failed");
     command.add_flag("--quiet", quiet_, "show no progress");
+}
+
+void StudyOptions::add_steps(CLI::App& command) {
+    command
+        .add_option("step", step_,
+                    "one step alone: plan writes points/NAME.toml for each point and lists them, run "
+                    "measures them, collect makes tables and plots; without it, all three")
+        ->type_name("plan|run|collect");
+    command.add_option("--point", point_, "run this point alone, by the name that plan tells")
+        ->type_name("NAME");
+    command.add_option("--jobs", jobs_, "points measured at a time; without it, one a processor")
+        ->type_name("N");
+}
+
+bool StudyOptions::wants(const char* step) const {
+    return step_.empty() || step_ == step;
+}
+
+int StudyOptions::jobs() const {
+    return jobs_.empty() ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))
+                         : parse_whole("--jobs", jobs_, {1, 4096});
 }
 
 std::filesystem::path StudyOptions::base() const {
@@ -85,7 +106,17 @@ std::pair<int, int> StudyOptions::part() const {
 }
 
 analysis::Study StudyOptions::read(const StudyProgram& program) const {
-    part(); // a wrong one is found before any file is read
+    // Wrong ones are found before any file is read.
+    part();
+    jobs();
+    if (!step_.empty() && step_ != "plan" && step_ != "run" && step_ != "collect")
+        throw UserError(
+            fmt::format("{} is no step of a sweep; write plan, run, collect, or none for all three",
+                        printable(step_, 100)));
+    if (!point_.empty() && step_ != "run")
+        throw UserError("--point says which point the step run takes; write run behind the study");
+    if (!point_.empty() && !part_.empty())
+        throw UserError("--point and --part both say which points run; give one of them");
     try {
         return analysis::read_study(file_, program.vocabulary, full_);
     } catch (const analysis::StudyError& error) {
@@ -97,21 +128,21 @@ int StudyOptions::run(
     const StudyProgram& program, const analysis::Study& study, const std::vector<analysis::Point>& points,
     const analysis::Store& store,
     const std::function<std::vector<StudyStage>(const std::vector<analysis::Point>& missing)>& stages) const {
-    if (plan_) {
-        for (const analysis::Point& point : points) {
-            store.write_point(point);
-            fmt::print("{} {}{}\n", point.name, described(point, study.knobs),
-                       point.impossible.empty() ? store.is_done(point) ? " (done)" : ""
-                                                : ": impossible: " + point.impossible);
-        }
+    if (plan_ || step_ == "plan") {
+        print_plan(study, points, store);
         return 0;
     }
+    if (!point_.empty() && std::none_of(points.begin(), points.end(),
+                                        [&](const analysis::Point& point) { return point.name == point_; }))
+        throw UserError(fmt::format("{}: there is no point {}; the step plan lists them", study.file,
+                                    printable(point_, 100)));
     analysis::RunSummary all;
-    if (!collect_) {
+    if (!collect_ && wants("run")) {
         analysis::RunOptions options;
         options.program = program.name;
         options.stop = &watch_interrupts();
         options.again_failed = again_;
+        options.jobs = timed_ ? 1 : jobs();
         const auto [part, parts] = this->part();
         std::vector<analysis::Point> missing;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -123,9 +154,13 @@ int StudyOptions::run(
         }
         Line line(!quiet_);
         options.progress = [&](std::size_t done, std::size_t of, const analysis::Point& next) {
-            line.show(done, of, described(next, study.knobs));
+            line.show(done, of, analysis::settings_text(next, study.knobs));
         };
-        for (const StudyStage& stage : stages(missing)) {
+        for (StudyStage stage : stages(missing)) {
+            if (!point_.empty())
+                std::erase_if(stage.points, [&](const analysis::Point& point) {
+                    return !stage.shared && point.name != point_;
+                });
             std::tie(options.part, options.parts) = stage.shared ? std::pair{1, 1} : std::pair{part, parts};
             all = run_points(stage.points, store, stage.measure, options);
             if (all.stopped)
@@ -137,14 +172,28 @@ int StudyOptions::run(
                    program.name.substr(0, program.name.find(' ')), store.folder().string());
         return interrupted_exit;
     }
-    collect(program, study, points, store);
+    if (wants("collect"))
+        collect(program, study, points, store);
+    else if (!quiet_)
+        fmt::print("{} measured, {} of them failed; {} were there\n", all.measured, all.failed, all.kept);
     return 0;
+}
+
+void StudyOptions::print_plan(const analysis::Study& study, const std::vector<analysis::Point>& points,
+                              const analysis::Store& store) const {
+    for (const analysis::Point& point : points) {
+        store.write_point(point);
+        if (!quiet_)
+            fmt::print("{} {}{}\n", point.name, analysis::settings_text(point, study.knobs),
+                       point.impossible.empty() ? store.is_done(point) ? " (done)" : ""
+                                                : ": impossible: " + point.impossible);
+    }
 }
 
 void StudyOptions::collect(const StudyProgram& program, const analysis::Study& study,
                            const std::vector<analysis::Point>& points, const analysis::Store& store) const {
     const OutputGuard guard;
-    const analysis::Collection all = analysis::collect(study, points, store, program.figures, program.plots);
+    const analysis::Collection all = analysis::collect(study, points, store, program.figures, program.views);
     const std::vector<std::string> written = analysis::write_collection(all, store, program.remarks);
     if (quiet_)
         return;
@@ -158,13 +207,22 @@ void StudyOptions::collect(const StudyProgram& program, const analysis::Study& s
             const auto x = analysis::spread_of(all.points[i].samples(plot.request.x));
             const auto y = analysis::spread_of(all.points[i].samples(plot.request.y));
             fmt::print("  {:10.4g} [{:.4g} .. {:.4g}]  {:10.4g} [{:.4g} .. {:.4g}]  {}{}\n", x.median,
-                       x.least, x.most, y.median, y.least, y.most, described(points[i], all.knobs),
+                       x.least, x.most, y.median, y.least, y.most,
+                       analysis::settings_text(points[i], all.knobs),
                        plot.standing[i] == analysis::Standing::tied ? " (tied)" : "");
         }
     }
+    for (const analysis::Ranking& ranking : all.rankings) {
+        fmt::print("\n{}\n", ranking.verdict(all.points, all.knobs));
+        for (const analysis::Sensitivity& s : ranking.ratios)
+            fmt::print("  {:<28} {} to {}: {:.4g} [{:.4g} .. {:.4g}] of {} pairs, {} beyond noise\n", s.knob,
+                       analysis::plain_text(s.from), analysis::plain_text(s.to), s.ratio.median,
+                       s.ratio.least, s.ratio.most, s.ratio.count, s.sure);
+    }
     for (const analysis::CollectedPoint& point : all.points)
         if (point.result && !point.measured())
-            fmt::print("failed: {}: {}\n", described(point.point, all.knobs), point.result->failed);
+            fmt::print("failed: {}: {}\n", analysis::settings_text(point.point, all.knobs),
+                       point.result->failed);
     fmt::print("\n{}\n", fmt::join(written, "\n"));
 }
 

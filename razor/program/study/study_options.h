@@ -1,4 +1,5 @@
-// What `razor study` and `razor-sim study` have in common: options, the order of things, what is told.
+// What `razor study`, `razor-sim study` and `razor-sim sweep` have in common: options, the order of things,
+// what is told.
 #pragma once
 
 #include "analysis/study/collect.h"
@@ -19,8 +20,14 @@ struct StudyProgram {
     std::string name; // and version, for results: "razor 0.1.0"
     analysis::Vocabulary vocabulary;
     std::vector<analysis::Figure> figures;
-    std::vector<analysis::PlotRequest> plots; // of studies that name none
-    std::vector<std::string> remarks;         // for the page: what figures mean
+    analysis::Views views;            // of studies that ask for none
+    std::vector<std::string> remarks; // for the page: what figures mean
+
+    /// The vocabulary's figures are these.
+    void name_figures() {
+        for (const analysis::Figure& figure : figures)
+            vocabulary.figures.push_back(figure.name);
+    }
 };
 
 /// What is to be measured before others, and how: references, which have results as points have.
@@ -30,10 +37,16 @@ struct StudyStage {
     bool shared = false; // by all parts of a study
 };
 
+/// What the program's figures allow.
+enum class StudyKind {
+    timed, // times of the host are among them: a point at a time
+    sweep  // none depends on the host: several points at a time, and steps by themselves for clusters
+};
+
 class StudyOptions {
 public:
     /// Adds options to a subcommand; the object must outlive the parsing.
-    void add_to(CLI::App& command);
+    void add_to(CLI::App& command, StudyKind kind = StudyKind::timed);
 
     /// The folder of the study's file, from which files are named.
     std::filesystem::path base() const;
@@ -52,10 +65,16 @@ public:
 private:
     /// N and M of --part N/M.
     std::pair<int, int> part() const;
+    int jobs() const;
+    bool wants(const char* step) const;
+    void add_steps(CLI::App& command);
+    void print_plan(const analysis::Study& study, const std::vector<analysis::Point>& points,
+                    const analysis::Store& store) const;
     void collect(const StudyProgram& program, const analysis::Study& study,
                  const std::vector<analysis::Point>& points, const analysis::Store& store) const;
 
-    std::string file_, folder_, part_;
+    std::string file_, step_, folder_, part_, point_, jobs_;
+    bool timed_ = true;
     bool full_ = false, plan_ = false, collect_ = false, again_ = false, quiet_ = false;
 };
 

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""snakemake_test.py PROJECT SIMULATOR: the Snakefile of sweeps on local cores: every point once, collected; what is done is not run
+again; failing points are results. Without Snakemake: skipped (exit code 77)."""
+import csv
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SIMULATOR, PROJECT = os.path.abspath(sys.argv.pop()), os.path.abspath(sys.argv.pop())
+STUDY = f"""kind = "sweep"
+[settings]
+machine = "{PROJECT}/configs/machines/tiny.toml"
+scene = "box.toml"
+size = "16x16"
+samples = 1
+[knobs]
+core.lanes = [4, 8]
+workers = [2, 100]
+"""
+
+
+class Snakemake(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.write("box.toml", '[[mesh]]\nshape = "box"\n')
+        self.write("study.toml", STUDY)
+
+    def write(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def snakemake(self, *options):
+        home = dict(os.environ, HOME=self.folder, XDG_CACHE_HOME=os.path.join(self.folder, "cache"))
+        return subprocess.run(["snakemake", "-s", os.path.join(PROJECT, "analysis/sweep/Snakefile"), "--cores", "2",
+                               "--rerun-triggers", "mtime", *options, "--config", "study=study.toml", "folder=out",
+                               f"simulator={SIMULATOR}"],
+                              cwd=self.folder, env=home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=500)
+
+    def test_points_run_and_are_collected(self):
+        first = self.snakemake()
+        self.assertEqual(first.returncode, 0, first.stdout)
+        results = os.path.join(self.folder, "out", "results")
+        self.assertEqual(len(os.listdir(results)), 4)
+        with open(os.path.join(self.folder, "out", "study.csv"), encoding="utf-8") as file:
+            states = sorted(row["state"].split(":")[0] for row in csv.DictReader(file))
+        self.assertEqual(states, ["failed", "failed", "measured", "measured"])
+        # One that is lost is run again, and no other.
+        lost = sorted(os.listdir(results))[0]
+        times = {name: os.stat(os.path.join(results, name)).st_mtime_ns for name in os.listdir(results)}
+        os.remove(os.path.join(results, lost))
+        self.assertEqual(self.snakemake().returncode, 0)
+        for name, time in times.items():
+            now = os.stat(os.path.join(results, name)).st_mtime_ns
+            (self.assertNotEqual if name == lost else self.assertEqual)(now, time, name)
+
+    def test_mistakes_end_it(self):
+        self.write("study.toml", STUDY.replace("core.lanes", "core.lane"))
+        result = self.snakemake()
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("did you mean core.lanes?", result.stdout)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "out")))
+
+
+if __name__ == "__main__":
+    if shutil.which("snakemake") is None:
+        print("skipped: there is no snakemake; ./test.sh --all installs it")
+        sys.exit(77)
+    unittest.main()
