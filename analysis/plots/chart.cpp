@@ -68,7 +68,7 @@ std::vector<double> ticks(double low, double high, bool logarithmic, Unit unit, 
     if (!(high > low))
         return {low};
     if (logarithmic) {
-        const double base = unit == Unit::bytes ? 2 : 10;
+        const double base = unit == Unit::bytes || high / low < 100 ? 2 : 10; // tens would be one or none
         const double first = std::ceil(std::log(low) / std::log(base) - 1e-9),
                      last = std::floor(std::log(high) / std::log(base) + 1e-9);
         const double step = std::max(1.0, std::ceil((last - first + 1) / static_cast<double>(most)));

@@ -14,7 +14,8 @@ namespace analysis {
 enum class Unit { plain, bytes, percent };
 std::string short_text(double value, Unit unit);
 /// Values at which an axis from `low` to `high` is marked: multiples of 1, 2 or 5 times a power of ten (of
-/// bytes, of two), or, if it is logarithmic, powers of two or ten; at most about `most`.
+/// bytes, of two), or, if it is logarithmic, powers of ten, or of two where these are few; at most about
+/// `most`.
 std::vector<double> ticks(double low, double high, bool logarithmic, Unit unit, std::size_t most);
 
 struct Axis {

@@ -37,6 +37,9 @@ Svg RatioChart::drawing() const {
         low = std::min({low, bar.low, bar.median});
         high = std::max({high, bar.high, bar.median});
     }
+    const double margin = std::pow(high / low, 0.03); // so that ranges end within the axis
+    low /= margin;
+    high *= margin;
     const double y1 = top + row * static_cast<double>(bars.size());
     Svg out(width, y1 + bottom);
     const auto at = [&](double ratio) {
@@ -50,7 +53,7 @@ Svg RatioChart::drawing() const {
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const Bar& bar = bars[i];
         const double y = top + row * static_cast<double>(i), middle = y + row / 2;
-        const auto [from, to] = std::minmax(at(1), at(bar.median));
+        const auto [from, to] = std::minmax({at(1), at(bar.median)});
         out.text(left - 8, middle + 4, bar.name, Svg::Anchor::end, 11);
         out.rectangle(from, y + 5, std::max(to - from, 0.5), row - 10,
                       bar.faint        ? neither

@@ -135,6 +135,7 @@ razor::StudyProgram sweep_program() {
     razor::StudyProgram out;
     out.name = machine_study_program().name;
     out.figures = report_figures();
+    out.figures.push_back({"host_seconds", "host, s"});
     out.figures.push_back({"host_processor_seconds", "host, processor seconds"});
     out.vocabulary.kind = "sweep";
     out.vocabulary.wrong = wrong_setting;
@@ -245,6 +246,18 @@ std::vector<Point> MachineStudy::references(const std::vector<Point>& points) co
     return out;
 }
 
+void MachineStudy::run(const std::vector<std::string>& words, const std::filesystem::path& log) const {
+    try {
+        razor::run_command(words, log, stop_);
+    } catch (const razor::UserError& error) {
+        // Why a point fails is told alike wherever the program lies.
+        std::string what = error.what();
+        if (what.starts_with(program_))
+            what.replace(0, program_.size(), "razor-sim run");
+        throw razor::UserError(what);
+    }
+}
+
 Result MachineStudy::run_all(const Settings& settings, int seeds) const {
     Result out;
     std::map<std::string, int> limiters; // how many runs each limits
@@ -253,7 +266,7 @@ Result MachineStudy::run_all(const Settings& settings, int seeds) const {
             const razor::ScratchFolder folder;
             const std::string json = (folder / "report.json").string();
             // One run alone is as the machine's file says; several differ by noise.
-            razor::run_command(command(settings, seeds == 1 ? 0 : seed, json), folder / "log", stop_);
+            run(command(settings, seeds == 1 ? 0 : seed, json), folder / "log");
             const nlohmann::ordered_json report = razor::read_figures(json, "razor-sim run");
             out.host["host_seconds"].push_back(number_at(report, "/host/seconds"));
             out.host["host_processor_seconds"].push_back(number_at(report, "/host/processor_seconds"));

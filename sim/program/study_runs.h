@@ -46,6 +46,7 @@ private:
     /// `razor-sim run` of these settings. With seeds, of that one.
     std::vector<std::string> command(const analysis::Settings& settings, int seed,
                                      const std::string& json) const;
+    void run(const std::vector<std::string>& words, const std::filesystem::path& log) const;
     std::string own_body(const analysis::Settings& settings, int seeds) const;
     analysis::Point reference_of(const analysis::Point& point) const;
     analysis::Result run_all(const analysis::Settings& settings, int seeds) const;

@@ -35,14 +35,17 @@ class Snakemake(unittest.TestCase):
             file.write(text)
 
     def snakemake(self, *options):
-        home = dict(os.environ, HOME=self.folder, XDG_CACHE_HOME=os.path.join(self.folder, "cache"))
-        return subprocess.run(["snakemake", "-s", os.path.join(PROJECT, "analysis/sweep/Snakefile"), "--cores", "2",
-                               "--rerun-triggers", "mtime", *options, "--config", "study=study.toml", "folder=out",
-                               f"simulator={SIMULATOR}"],
+        home = dict(os.environ, HOME=self.folder, XDG_CACHE_HOME=os.path.join(self.folder, "cache"),
+                    PATH=os.path.join(self.folder, "bin") + os.pathsep + os.environ["PATH"])
+        return subprocess.run(["snakemake", "-s", os.path.join(PROJECT, "analysis/sweep/Snakefile"), *options, "--config",
+                               "study=study.toml", "folder=out", f"simulator={SIMULATOR}"],
                               cwd=self.folder, env=home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=500)
 
+    def on_this_host(self):
+        return self.snakemake("--cores", "2", "--rerun-triggers", "mtime")
+
     def test_points_run_and_are_collected(self):
-        first = self.snakemake()
+        first = self.on_this_host()
         self.assertEqual(first.returncode, 0, first.stdout)
         results = os.path.join(self.folder, "out", "results")
         self.assertEqual(len(os.listdir(results)), 4)
@@ -53,14 +56,28 @@ class Snakemake(unittest.TestCase):
         lost = sorted(os.listdir(results))[0]
         times = {name: os.stat(os.path.join(results, name)).st_mtime_ns for name in os.listdir(results)}
         os.remove(os.path.join(results, lost))
-        self.assertEqual(self.snakemake().returncode, 0)
+        self.assertEqual(self.on_this_host().returncode, 0)
         for name, time in times.items():
             now = os.stat(os.path.join(results, name)).st_mtime_ns
             (self.assertNotEqual if name == lost else self.assertEqual)(now, time, name)
 
+    def test_the_profile_sends_each_point_to_the_cluster(self):
+        # In the place of Slurm's, a program that notes its options and runs the job at once.
+        os.mkdir(os.path.join(self.folder, "bin"))
+        self.write("bin/sbatch", '#!/bin/sh\necho "$@" >>"$HOME/sent"\nfor script; do :; done\nsh "$script" >/dev/null 2>&1\necho 1\n')
+        os.chmod(os.path.join(self.folder, "bin", "sbatch"), 0o755)
+        result = self.snakemake("--profile", os.path.join(PROJECT, "analysis/sweep/slurm"))
+        self.assertEqual(result.returncode, 0, result.stdout)
+        with open(os.path.join(self.folder, "sent"), encoding="utf-8") as file:
+            sent = file.read().splitlines()
+        self.assertEqual(len(sent), 4)
+        for line in sent:
+            self.assertIn("--parsable --cpus-per-task=1 --mem=2000M", line)
+        self.assertTrue(os.path.exists(os.path.join(self.folder, "out", "study.html")))
+
     def test_mistakes_end_it(self):
         self.write("study.toml", STUDY.replace("core.lanes", "core.lane"))
-        result = self.snakemake()
+        result = self.on_this_host()
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("did you mean core.lanes?", result.stdout)
         self.assertFalse(os.path.exists(os.path.join(self.folder, "out")))

@@ -163,5 +163,23 @@ TEST_F(StudyRatios, MoreMayBeBetter) {
               std::string::npos);
 }
 
+// Bars begin at 1 and end at the median, to the side of what it is.
+TEST(RatioChart, BarsReachFromOneToTheMedian) {
+    const RatioChart chart{"cycles", {{"less", 0.5, 0.4, 0.6, false}, {"more", 2, 1.5, 2.5, true}}};
+    const std::string svg = chart.drawing().str();
+    const auto number = [&](std::size_t bar, const std::string& attribute) {
+        std::size_t at = svg.find("</title>");
+        for (std::size_t i = 0; i < bar; ++i)
+            at = svg.find("</title>", at + 1);
+        const std::size_t begin = svg.rfind("<rect ", at);
+        return std::stod(svg.substr(svg.find(" " + attribute + "=\"", begin) + attribute.size() + 3));
+    };
+    EXPECT_NEAR(number(0, "x") + number(0, "width"), number(1, "x"), 0.02); // both have an end at 1
+    EXPECT_NEAR(number(0, "width"), number(1, "width"), 0.02);              // a half and twice: as far
+    EXPECT_GT(number(0, "x"), 330);
+    EXPECT_LT(number(1, "x") + number(1, "width"), 770);
+    EXPECT_GT(number(0, "width"), 50);
+}
+
 } // namespace
 } // namespace analysis

@@ -160,7 +160,10 @@ TEST_F(DesignSweep, FailingDesignsStopNoOther) {
     EXPECT_EQ(odd.code, 0) << odd.err;
     EXPECT_NE(odd.out.find("4 points: 1 measured, 3 failed, 0 missing"), std::string::npos) << odd.out;
     EXPECT_NE(odd.out.find("do not divide"), std::string::npos) << odd.out;
-    EXPECT_NE(odd.out.find("--workers 100"), std::string::npos) << odd.out;
+    EXPECT_NE(odd.out.find("failed: l2.size_bytes 131072, workers 100: razor-sim run failed (exit code 2): "
+                           "razor-sim: --workers '100'"),
+              std::string::npos)
+        << odd.out;
     EXPECT_NE(text("s/study.csv").find("failed: "), std::string::npos);
     // They stay so until it is asked for.
     EXPECT_EQ(sweep("odd.toml run -o s").out, "0 measured, 0 of them failed; 4 were there\n");
@@ -238,7 +241,7 @@ TEST_F(DesignSweep, RefusesMistakesWithOneLine) {
     }
     const std::pair<const char*, const char*> options[] = {
         {"sweep.toml walk", "walk is no step of a sweep"},
-        {"sweep.toml --jobs 0", "--jobs 0"},
+        {"sweep.toml --jobs 0", "--jobs '0'"},
         {"sweep.toml --part 3/2", "--part"},
         {"sweep.toml --point 0123", "write run"},
         {"sweep.toml run --point 0 --part 1/2", "give one"},
