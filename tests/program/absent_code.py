@@ -26,7 +26,7 @@ FEATURES = {
     "displacement": r"::place_displaced\(|::make_displaced_normals\(|::displaced_point\(",
     "sheen": r"\bCloth\b",
     "surfaces that are lights": r"::sample_emitters\(|TowardsEmitters",
-    "lights that are chosen": r"TowardsChosen|::choose_light\(|::meet_chosen\(",
+    "lights that are chosen": r"TowardsChosen|::sample_chosen\(|::meet_chosen\(",
     "opacity of textures": r"::sample_map<true>\(|::find_holes\(",
     "paths": r"::sample_bounce[(<]",
     "lights met by bounces": r"::meet_lights\(",

@@ -177,7 +177,7 @@ TEST_F(ReplayTool, MistakesAreALineAndLeaveNothing) {
              {"a.din --machine none.toml", "none.toml"},
              {"a.din" + on + ",l2.siz_bytes=3", "l2.size_bytes"},
              {"a.din" + on + " -g l2.size_bytes=nothing", "l2.size_bytes"},
-             {"a.din" + on + " -g sim.mode=reference", "sim.mode=fast"},
+             {"a.din --timed" + on + " -g sim.mode=reference", "sim.mode=fast"},
              {"a.din" + on + " --by colour", "there is no such thing; give all, structure"},
              {"a.din" + on + on + " --against no.json", "give one --machine"},
              {"a.din" + on + " --against no.json", "no report of a run"},
