@@ -17,6 +17,7 @@ not_sanitized+='|WritesATimeSeries|CacheOracle.SyntheticStream|ReportsDoNotDepen
 not_sanitized+='|DoNotDependOnWorkers|TilesThatFight|HitsDoNotPop|Fields.*/instances|OnePairOfLevelsAtATimeLeaks'
 not_sanitized+='|NoReportDependsOn|IsAsANewFrame|ClosedFormsPass|SharesTreesAsAsked|HostThreadsChangeNoDigit|LawsHoldOnTheLast|NoRayPassesBetweenLevels|Cutouts.AreNotThere'
 not_sanitized+='|LetNoRayThrough/[d-z]|LetNoRayThrough/ch|LetNoRayThrough/cr|HaveTheirMeanWhereItIs|^Emitters.Of|^Emitters.Placed|^Emitters.InMetal|EmittersOf.All|^Paths.Sheen'
+not_sanitized+='|StaysWithinItsMemory|KnowsWhatAFrameTakes|^Study.GoesOn|^Study.Measures|^ProgramTargetError|^Recording.Counts'
 not_sanitized+='|^EdgeChoice|^Emitters.WithMaps|^NearLights|^TargetFrames|^AdaptiveFrames|AreClosedUnderBothSchemes/100|AreClosedUnderBothSchemes/360|ReferenceReplay|^RandomCages|TheSameBytesOnAny|FiltersGiveWhatIsLeft'
 not_sanitized+='|^PathsOf|^Paths.Patterns|^Paths.Bumps|^Paths.Surf|^Paths.Disp|^ManyLights.Matte|^ManyLights.What|^IndependentReplay.TenMillion'
 scene=configs/scenes/default.toml
