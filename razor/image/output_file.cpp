@@ -22,6 +22,10 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
     std::error_code error;
     // A link stays a link: what it names is replaced.
     path_ = std::filesystem::is_symlink(path, error) ? std::filesystem::weakly_canonical(path, error) : path;
+    // Renaming would put a file in the place of a device.
+    if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error))
+        throw UserError(
+            fmt::format("{}: is not a regular file; choose another name", printable(path_.string(), 1000)));
     temporary_ = path_;
     temporary_.replace_filename(fmt::format(".{}.{}.tmp", path_.filename().string(), ::getpid()));
     file_ = std::fopen(temporary_.c_str(), "wbx");
@@ -88,9 +92,6 @@ void check_writable(const std::filesystem::path& path) {
     const auto status = std::filesystem::status(path, error);
     if (status.type() == std::filesystem::file_type::directory || !path.has_filename()) {
         throw UserError(fmt::format("{}: is a directory; name a file in it", name));
-    }
-    if (std::filesystem::exists(status) && status.type() != std::filesystem::file_type::regular) {
-        throw UserError(fmt::format("{}: is not a regular file; choose another name", name));
     }
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder, error)) {

@@ -23,6 +23,7 @@
 #include <limits>
 #include <set>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <tuple>
 
 namespace razor {
@@ -230,6 +231,14 @@ TEST(Output, FailureLeavesTheOldFile) {
         EXPECT_EQ(std::filesystem::file_size(folder / name), 3U);
     }
     EXPECT_EQ(folder.count(), 4U) << "the temporary file is removed";
+}
+
+TEST(Output, PutsNoFileInThePlaceOfADevice) {
+    const TemporaryFolder folder;
+    const std::string pipe = folder.path() / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THROW(write_text_file(pipe, "text"), UserError);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(Output, WritesThroughLinks) {

@@ -173,8 +173,8 @@ int StudyOptions::run(
         return interrupted_exit;
     }
     if (wants("collect"))
-        collect(program, study, points, store);
-    else if (!quiet_)
+        return collect(program, study, points, store);
+    if (!quiet_)
         fmt::print("{} measured, {} of them failed; {} were there\n", all.measured, all.failed, all.kept);
     return 0;
 }
@@ -190,13 +190,14 @@ void StudyOptions::print_plan(const analysis::Study& study, const std::vector<an
     }
 }
 
-void StudyOptions::collect(const StudyProgram& program, const analysis::Study& study,
-                           const std::vector<analysis::Point>& points, const analysis::Store& store) const {
+int StudyOptions::collect(const StudyProgram& program, const analysis::Study& study,
+                          const std::vector<analysis::Point>& points, const analysis::Store& store) const {
     const OutputGuard guard;
     const analysis::Collection all = analysis::collect(study, points, store, program.figures, program.views);
     const std::vector<std::string> written = analysis::write_collection(all, store, program.remarks);
+    const int code = all.failed > 0 && all.failed + all.missing == points.size() ? 1 : 0;
     if (quiet_)
-        return;
+        return code;
     fmt::print("{} points: {} measured, {} failed, {} missing\n", points.size(),
                points.size() - all.failed - all.missing, all.failed, all.missing);
     for (const analysis::CollectedPlot& plot : all.plots) {
@@ -224,6 +225,7 @@ void StudyOptions::collect(const StudyProgram& program, const analysis::Study& s
             fmt::print("failed: {}: {}\n", analysis::settings_text(point.point, all.knobs),
                        point.result->failed);
     fmt::print("\n{}\n", fmt::join(written, "\n"));
+    return code;
 }
 
 } // namespace razor

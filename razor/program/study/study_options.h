@@ -70,8 +70,9 @@ private:
     void add_steps(CLI::App& command);
     void print_plan(const analysis::Study& study, const std::vector<analysis::Point>& points,
                     const analysis::Store& store) const;
-    void collect(const StudyProgram& program, const analysis::Study& study,
-                 const std::vector<analysis::Point>& points, const analysis::Store& store) const;
+    /// Returns the exit code: 1 where points failed and none was measured.
+    int collect(const StudyProgram& program, const analysis::Study& study,
+                const std::vector<analysis::Point>& points, const analysis::Store& store) const;
 
     std::string file_, step_, folder_, part_, point_, jobs_;
     bool timed_ = true;
