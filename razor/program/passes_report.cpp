@@ -50,11 +50,11 @@ nlohmann::ordered_json json_of(const EdgeChoice& c) {
 }
 
 std::optional<EdgeChoice> choose_edges(SceneDescription& description, int frame, RenderOptions& options,
-                                         bool given) {
+                                       bool given) {
     EdgeChoice choice;
     try {
         choice = choose_edge(build_scene(pose_of_frame(description, frame)), options,
-                              options.passes.target_error, given);
+                             options.passes.target_error, given);
     } catch (const Cancelled&) {
         return std::nullopt;
     }

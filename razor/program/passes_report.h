@@ -21,6 +21,6 @@ nlohmann::ordered_json json_of(const EdgeChoice& choice);
 /// is in that frame; a time for passes is shorter by what this takes. `given`: the user states them. Nothing:
 /// it was interrupted.
 std::optional<EdgeChoice> choose_edges(SceneDescription& description, int frame, RenderOptions& options,
-                                         bool given);
+                                       bool given);
 
 } // namespace razor

@@ -122,7 +122,7 @@ TEST(Raster, FillsWhatTheDrawingHolds) {
     EXPECT_EQ(pixel(one, 30, 8), (Rgb{64, 64, 255}));
     EXPECT_EQ(pixel(one, 25, 8), (Rgb{0, 0, 255}));
     EXPECT_EQ(pixel(one, 10, 22), (Rgb{255, 255, 255})); // inside of the ring
-    EXPECT_EQ(pixel(one, 14, 22)[1], 255); // most of it
+    EXPECT_EQ(pixel(one, 14, 22)[1], 255);               // most of it
     EXPECT_LT(pixel(one, 14, 22)[0], 80);
     // The ring's area at a finer scale: pi ((5.8)^2 - (4.2)^2), drawn with 24 corners.
     const Pixels fine = rasterised(svg, 8);

@@ -182,7 +182,8 @@ TEST(StudyFile, SaysWhereMistakesAreAndTheMend) {
     EXPECT_THROW(read_study("there_is_no_such_file.toml", test_vocabulary()), StudyError);
 }
 
-// uuid.uuid5() of Python says so. Names are the same on every machine and in every version: results of others are found again.
+// uuid.uuid5() of Python says so. Names are the same on every machine and in every version: results of others
+// are found again.
 TEST(StudyPoint, NamesAreStable) {
     EXPECT_EQ(point_name("edge = 1.0\nlod = \"x\"\n"), "16fb92a832f059f2bbefd319d69087d0");
     std::set<std::string> names;

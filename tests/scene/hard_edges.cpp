@@ -172,8 +172,7 @@ TEST(HardEdges, OfScenesStayWhileTheModelMoves) {
     };
     EXPECT_EQ(wrong("[[mesh]]\nshape = \"box\"\ncrease_angle = 30\n"),
               "s.toml:3:16: only MD3 and glTF models have normals instead of creases; leave it out");
-    EXPECT_NE(wrong("[[mesh]]\nfile = \"m.glb\"\ncrease_angle = 181\n").find("180"),
-              std::string::npos);
+    EXPECT_NE(wrong("[[mesh]]\nfile = \"m.glb\"\ncrease_angle = 181\n").find("180"), std::string::npos);
 }
 
 } // namespace
