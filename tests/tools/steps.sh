@@ -159,19 +159,10 @@ compare_compilers() {
     tests/kernels/compare_compilers.sh build/release build/asan-ubsan
 }
 
+# As many at once as there are processors.
 fuzz() {
-    local program name
-    for program in scene/fuzz_obj scene/fuzz_ply scene/fuzz_pictures traces/fuzz_traces; do
-        name=$(basename $program)
-        mkdir -p "build/fuzz/$name"
-        # Findings are left beside the corpus; the log only matters when there are some.
-        if ! "build/asan-ubsan/tests/$program" -max_total_time=$fuzz_seconds -artifact_prefix="build/fuzz/$name/" \
-            "build/fuzz/$name" >build/fuzz.log 2>&1; then
-            tail -n 40 build/fuzz.log >&2
-            return 1
-        fi
-        printf '%s: %s\n' "$name" "$(tail -n 1 build/fuzz.log)"
-    done
+    find build/asan-ubsan/tests/fuzz -maxdepth 1 -name 'fuzz_*' -type f -executable -print0 | sort -z |
+        xargs -0 -n 1 -P "$(nproc)" bash -c 'source tests/tools/fuzz.sh; fuzz_one "$0" '$fuzz_seconds
 }
 
 build_for_threads() {

@@ -1,6 +1,7 @@
-// libFuzzer target for the readers of traces: the first byte chooses the format, the rest gives blocks that
+// Readers of traces: the first byte chooses the format, the rest gives blocks that
 // keep their promises, or an Error in a line. Checksums of our own format are set right first, else hardly
 // any bytes would pass.
+#include "tests/fuzz/target.h"
 #include "tests/traces/samples.h"
 #include "traces/chunk.h"
 #include "traces/error.h"
@@ -9,22 +10,11 @@
 #include "traces/writer.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <cstring>
-#include <string>
-#include <vector>
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace {
 
 using namespace traces;
-
-void require(bool condition) {
-    if (!condition)
-        std::abort();
-}
+using fuzz::require;
 
 std::string own_seed() {
     std::string out;
@@ -38,27 +28,6 @@ std::string own_seed() {
     writer.write(block);
     writer.finish();
     return out;
-}
-
-const std::array<std::string, 9>& seeds() {
-    static const std::array<std::string, 9> all{
-        std::string(1, '\0') + own_seed(),
-        std::string("\1") + "0 10 4\n1 7fff 8\n2 401000 3\n",
-        std::string("\2") +
-            "cycles,address,kind,size,site,stream\n1,10,read,4,a:1,thread 0\n2,ff,write,8,,\n",
-        std::string("\3") + "I  04000000,3\n L 1ffe80,8\n S 1ffe78,8\n M 1ffe70,4\n",
-        std::string("\4") + "0x10 READ 1\n0x20 WRITE 2\n",
-        std::string("\5") + "0x10 R\n0x20 W\n",
-        std::string("\6") + std::string(128, '\1'),
-        std::string("\7") + std::string(48, '\2'),
-        std::string("\10") +
-            "Output format:\n           1           0:        1234 <marker: version 6>\n"
-            "           2           1:        1234 ifetch       3 byte(s) @ 0x0000000000401000 "
-            "89 c3 90 mov %eax -> %ebx\n"
-            "           3           1:    W0.T1234 write        8 byte(s) @ 0x00007fff00000010 by "
-            "PC 0x0000000000401000\n",
-    };
-    return all;
 }
 
 /// Sets right the checksums of all chunks that lie whole in the bytes.
@@ -100,21 +69,31 @@ void check(const Block& block, const Description& d, bool own) {
 
 } // namespace
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
-                                               unsigned int seed) {
-    if (size <= 1 || seed % 512 == 0) {
-        const std::string& text = seeds()[seed / 512 % seeds().size()];
-        size = std::min(text.size(), max_size);
-        std::memcpy(data, text.data(), size);
-    }
-    return LLVMFuzzerMutate(data, size, max_size);
+const std::vector<std::string>& fuzz::seeds() {
+    static const std::vector<std::string> all{
+        std::string(1, '\0') + own_seed(),
+        std::string("\1") + "0 10 4\n1 7fff 8\n2 401000 3\n",
+        std::string("\2") + "cycles,address,kind,size,site,stream\n1,10,read,4,1,0\n2,ff,write,8,0,1\n",
+        std::string("\3") + "I  04000000,3\n L 1ffe80,8\n S 1ffe78,8\n M 1ffe70,4\n",
+        std::string("\4") + "0x10 READ 1\n0x20 WRITE 2\n",
+        std::string("\5") + "0x10 R\n0x20 W\n",
+        std::string("\6") + std::string(128, '\1'),
+        std::string("\7") + std::string(48, '\2'),
+        std::string("\10") +
+            "Output format:\n           1           0:        1234 <marker: version 6>\n"
+            "           2           1:        1234 ifetch       3 byte(s) @ 0x0000000000401000 "
+            "89 c3 90 mov %eax -> %ebx\n"
+            "           3           1:    W0.T1234 write        8 byte(s) @ 0x00007fff00000010 by "
+            "PC 0x0000000000401000\n",
+    };
+    return all;
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    if (size == 0)
-        return 0;
-    const Format& format = formats()[data[0] % formats().size()];
-    std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+bool fuzz::try_bytes(std::string_view given) {
+    if (given.empty())
+        return false;
+    const Format& format = formats()[static_cast<unsigned char>(given[0]) % formats().size()];
+    std::string bytes(given.substr(1));
     if (format.name == "rzt")
         sign(bytes);
     try {
@@ -122,8 +101,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (Block block; input->next(block);)
             check(block, input->description(), format.name == "rzt");
     } catch (const Error& error) {
-        require(std::string_view(error.what()).starts_with("fuzz"));
-        require(std::string_view(error.what()).find_first_of("\n\r") == std::string_view::npos);
+        require_line(error.what());
     }
-    return 0;
+    return true;
 }
