@@ -4,17 +4,21 @@
 //     title = "Levels of detail"
 //     seeds = 4                    # runs of each point that differ in noise alone: seeds 1 to 4
 //     repeats = 2                  # timed frames of a run after its first
-//     rank = ["rmse"]              # figures by which points are ranked, and whose ratios tell what settings
-//     do [settings]                   # of all points, where they state nothing else scene =
-//     "../scenes/showcase.toml" [knobs]                      # a point for each combination lod =
-//     ["recursive", "fixed"] edge_pixels = [1, 2, 4]
+//     rank = ["rmse"]              # figures that points are ranked by, whose ratios tell what settings do
+//     [settings]                   # of all points, where they state nothing else
+//     scene = "../scenes/showcase.toml"
+//     [knobs]                      # a point for each combination
+//     lod = ["recursive", "fixed"]
+//     edge_pixels = [1, 2, 4]
 //     [[points]]                   # further ones: a value, or a list, of which each combination is a point
 //     lod = "paper"
 //     edge_pixels = [1, 2]
 //     [[exclude]]                  # leaves out points of which all of this holds
-//     lod = "fixed"                # a value, a list of them, or { least = 2, most = 4 } (one of both will
-//     do) edge_pixels = { most = 1 } [reference]                  # what the reference has instead of a
-//     point's settings seeds = 4 samples = 256
+//     lod = "fixed"                # a value, a list of them, or { least = 2, most = 4 } (or one of both)
+//     edge_pixels = { most = 1 }
+//     [reference]                  # what the reference has instead of a point's settings
+//     seeds = 4
+//     samples = 256
 //     [[plot]]                     # from figures that the program knows
 //     x = "seconds"
 //     y = "rmse"
