@@ -1,5 +1,7 @@
 #include "razor/check/field_surface.h"
 
+#include "razor/frame/transition.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -24,10 +26,11 @@ int twos(int i) {
     return std::countr_zero(static_cast<unsigned>(i));
 }
 
-/// Of a vertex born at absolute level `birth` (Design: rule 2; the last quarter of an octave).
+/// Of a vertex born at absolute level `birth` (Design: rule 2).
 double weight(double target, int birth) {
     const double gone = std::ldexp(1.0, birth + 1);
-    const double x = std::clamp((target * level_rounding / gone - 0.875) * 8, 0.0, 1.0);
+    const double part = target * level_rounding / gone;
+    const double x = std::clamp((part - morph_begin) / (1 - morph_begin), 0.0, 1.0);
     return 1 - x * x * (3 - 2 * x);
 }
 

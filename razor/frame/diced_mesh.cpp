@@ -1,5 +1,7 @@
 #include "razor/frame/diced_mesh.h"
 
+#include "razor/frame/transition.h"
+
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
@@ -25,7 +27,8 @@ struct Field {
         const double blur = std::abs(base + glm::dot(slope, way));
         const double target = blur + growth * glm::length(way);
         // Design: razor/kernels/morph.h.
-        const double x = std::clamp((std::ldexp(target * level_rounding, -birth - 1) - 0.875) * 8, 0.0, 1.0);
+        const double part = std::ldexp(target * level_rounding, -birth - 1); // of what it is gone at
+        const double x = std::clamp((part - morph_begin) / (1 - morph_begin), 0.0, 1.0);
         return 1 - x * x * (3 - 2 * x);
     }
 };

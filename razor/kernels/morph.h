@@ -5,13 +5,12 @@
 // wherever they are asked for. (Design: one surface per ray, rules 1 and 2.)
 #pragma once
 
+#include "razor/frame/transition.h"
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {
 inline namespace morph_kernel {
 
-/// The last eighth of the way from 0 to gone_from: the last quarter of an octave.
-inline constexpr float morph_begin = 0.875F;
 inline constexpr float least_target = least_target_edge;
 inline constexpr float unbounded_target = 3.0e38F; // of lists for all rays
 

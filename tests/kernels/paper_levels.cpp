@@ -2,6 +2,7 @@
 // after the other, every vertex of the finer one blended by where it projects on the ray.
 #include "razor/check/escapes.h"
 #include "razor/check/field_surface.h"
+#include "razor/frame/transition.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/oracle.h"
 #include "tests/kernels/targets.h"
@@ -75,9 +76,8 @@ private:
         for (int j = 0; j <= up; j += step)
             for (int i = 0; i <= across; i += step) {
                 const auto at = static_cast<std::size_t>(j * width + i);
-                const double x = std::clamp(
-                    (asked_at(ray, glm::dot(fine[at] - from, d)) / std::ldexp(1.0, k + 1) - 0.875) * 8, 0.0,
-                    1.0);
+                const double part = asked_at(ray, glm::dot(fine[at] - from, d)) / std::ldexp(1.0, k + 1);
+                const double x = std::clamp((part - morph_begin) / (1 - morph_begin), 0.0, 1.0);
                 const double b = 1 - x * x * (3 - 2 * x);
                 seen_[at] = b * fine[at] + (1 - b) * coarse[at];
                 low = glm::min(low, seen_[at]);
