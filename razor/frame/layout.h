@@ -355,8 +355,9 @@ struct ItemList {
     float coarse;       // leaves: the target edge length from which on it is fine enough
     float coarsest;     // leaves: what is finer is bounded for target edge lengths up to this
     float most;         // the largest target edge length of rays that come here
-    float low[3], high[3]; // leaves: of all that is finer or can move, scene coordinates
-    std::int32_t padding[2];
+    float low[3], high[3];            // leaves: of all that is finer or can move, scene coordinates
+    isa::shared<std::int32_t> beyond; // leaves: a list many levels finer (razor/kernels/chain.h)
+    std::int32_t padding;
     // What only builders read.
     std::int32_t depth;
     float cell_low[3], cell_high[3];

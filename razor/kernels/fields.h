@@ -206,7 +206,8 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
 }
 
 /// From every field's origin no place in the box is further, its radius taken off.
-inline sfloat furthest_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+[[gnu::always_inline]] inline sfloat furthest_in(const FieldBounds& f, const svec& low, const svec& high,
+                                                 sfloat slack) {
     sfloat lows[3] = {low.x, low.y, low.z};
     sfloat highs[3] = {high.x, high.y, high.z};
     sfloat first[3] = {f.low.x, f.low.y, f.low.z};
@@ -222,7 +223,8 @@ inline sfloat furthest_in(const FieldBounds& f, const svec& low, const svec& hig
     return max(far - f.least_radius, 0.0F);
 }
 /// From no field's origin any place in the box is nearer.
-inline sfloat nearest_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+[[gnu::always_inline]] inline sfloat nearest_in(const FieldBounds& f, const svec& low, const svec& high,
+                                                sfloat slack) {
     sfloat lows[3] = {low.x, low.y, low.z};
     sfloat highs[3] = {high.x, high.y, high.z};
     sfloat first[3] = {f.low.x, f.low.y, f.low.z};
@@ -238,22 +240,38 @@ inline sfloat nearest_in(const FieldBounds& f, const svec& low, const svec& high
     return max(near - f.most_radius, 0.0F);
 }
 
+/// What is seldom asked, out of line: fields of a lens, and those that shrink.
+[[gnu::noinline]] inline sfloat least_blur_in(const FieldBounds& f, const svec& low, const svec& high,
+                                              sfloat slack) {
+    return common_blur_in(f, low, high, slack).least;
+}
+[[gnu::noinline]] inline sfloat most_blur_in(const FieldBounds& f, const svec& low, const svec& high,
+                                             sfloat slack) {
+    return common_blur_in(f, low, high, slack).most;
+}
+[[gnu::noinline]] inline sfloat furthest_of_shrinking(const FieldBounds& f, const svec& low, const svec& high,
+                                                      sfloat slack) {
+    return furthest_in(f, low, high, slack);
+}
+
 /// No field's target edge length in the box is less. Growth of either sign: shrinking fields are bounded by
-/// what they begin with.
-inline sfloat least_target_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+/// what they begin with. Asked at every leaf: calls would cost as much as what is computed.
+[[gnu::always_inline]] inline sfloat least_target_in(const FieldBounds& f, const svec& low, const svec& high,
+                                                     sfloat slack) {
     sfloat least = f.least_base;
     if (branch(f.sloped))
-        least = common_blur_in(f, low, high, slack).least;
-    sfloat distance =
-        branch(f.least_growth < 0.0F) ? furthest_in(f, low, high, slack) : nearest_in(f, low, high, slack);
+        least = least_blur_in(f, low, high, slack);
+    sfloat distance = branch(f.least_growth < 0.0F) ? furthest_of_shrinking(f, low, high, slack)
+                                                    : nearest_in(f, low, high, slack);
     return fma(f.least_growth, distance, least) * (1.0F - 2.0e-6F);
 }
 
 /// No field's target edge length in the box is more.
-inline sfloat most_target_in(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+[[gnu::always_inline]] inline sfloat most_target_in(const FieldBounds& f, const svec& low, const svec& high,
+                                                    sfloat slack) {
     sfloat most = f.most_base;
     if (branch(f.sloped))
-        most = common_blur_in(f, low, high, slack).most;
+        most = most_blur_in(f, low, high, slack);
     constexpr float up = 1.0F + 2.0e-6F;
     if (branch(f.most_growth <= 0.0F))
         return most * up;

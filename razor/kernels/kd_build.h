@@ -186,6 +186,7 @@ inline void make_leaf(const Context& c, const List& l) {
 /// Node `finer` is for those rays for which the leaf, of that level, is too coarse.
 inline void make_finer(const Context& c, const List& l, sint level, sint finer) {
     store(field(l.header, &ItemList::finer), finer);
+    store_release(field(l.header, &ItemList::beyond), -1);
     pointer<KdNode> node = c.nodes + finer;
     note_list_level(l, level, 0);
     note_level(node, 1, level, 1);

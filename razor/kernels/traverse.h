@@ -6,6 +6,7 @@
 #pragma once
 
 #include "razor/kernels/beam.h"
+#include "razor/kernels/chain.h"
 #include "razor/kernels/paper_levels.h"
 #include "razor/kernels/patch_levels.h"
 
@@ -202,6 +203,7 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
     sint number = load(field(c.tree, &TreeRecord::root));
     pointer<float> top = c.stack; // of the stack: the next free entry
     sint depth = 0;
+    [[maybe_unused]] Chain chain;
     for (;;) {
         tally(c.counters->node_visits, 1);
         pointer<KdNode> node = c.nodes + number;
@@ -292,12 +294,21 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
                     sfloat coarse = load(field(list, &ItemList::coarse));
                     svec low = load_svec(field(list, &ItemList::low));
                     svec high = load_svec(field(list, &ItemList::high));
-                    if (branch(least_target_in(g.fields, low, high, g.slack) < coarse)) {
+                    sfloat least = least_target_in(g.fields, low, high, g.slack);
+                    if (branch(least < coarse)) {
+                        sint far = node_beyond(c, g, list, coarse, least);
+                        if (branch(far >= 0)) {
+                            walk(chain, list, link, number, far);
+                            number = far;
+                            continue;
+                        }
                         // Where this is too coarse for a ray, all go on in the same cell, if what is finer is
                         // bounded for what they ask: nobody is left behind, who would keep it from the
                         // mailbox.
                         sfloat bound = load(field(list, &ItemList::coarsest));
                         if (branch(most_target_in(g.fields, low, high, g.slack) <= bound)) {
+                            sint levels = walk(chain, list, link, number, finer);
+                            keep_beyond(c, chain, link, levels);
                             number = finer;
                             continue;
                         }
