@@ -1,6 +1,6 @@
 // Study files: what is measured, at which points, against which reference, how often. In TOML:
 //
-//     kind = "image"               # of the program that measures: image, machine
+//     kind = "image"               # of the program that measures: image, machine, sweep, trace
 //     title = "Levels of detail"
 //     seeds = 4                    # runs of each point that differ in noise alone: seeds 1 to 4
 //     repeats = 2                  # timed frames of a run after its first

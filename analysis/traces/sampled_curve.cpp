@@ -15,17 +15,17 @@ std::uint64_t stretch_of(double rate) {
 } // namespace
 
 SampledCurve::SampledCurve(const std::vector<std::uint64_t>& sizes, double rate, double of,
-                           std::uint64_t most)
-    : sizes_(sizes), shards_(sizes, rate, of, most) {
+                           std::uint64_t most, std::uint64_t seed)
+    : sizes_(sizes), shards_(sizes, rate, of, most, seed) {
     constexpr double hundredth = 0.01;
     constexpr std::uint64_t short_stretch = 2048, long_stretch = 65536;
     if (of < 1)
         return;
     if (most == 0) {
-        stretches_.emplace_back(sizes, rate, stretch_of(rate));
+        stretches_.emplace_back(sizes, rate, stretch_of(rate), seed);
     } else {
-        stretches_.emplace_back(sizes, hundredth, short_stretch);
-        stretches_.emplace_back(sizes, hundredth, long_stretch);
+        stretches_.emplace_back(sizes, hundredth, short_stretch, seed);
+        stretches_.emplace_back(sizes, hundredth, long_stretch, seed);
     }
 }
 

@@ -14,7 +14,9 @@ class SampledCurve {
 public:
     /// Lines: as of Shards. The same part of the trace is looked at for small caches, or a hundredth of it
     /// where the sample is of so many lines; nothing of it if the trace is a sample itself (`of` below 1).
-    SampledCurve(const std::vector<std::uint64_t>& sizes, double rate, double of = 1, std::uint64_t most = 0);
+    /// `seed`: of which lines and stretches; of the lines of a trace that is a sample 0.
+    SampledCurve(const std::vector<std::uint64_t>& sizes, double rate, double of = 1, std::uint64_t most = 0,
+                 std::uint64_t seed = 0);
 
     void touch(std::uint64_t line, std::size_t group) {
         shards_.touch(line, group);

@@ -50,8 +50,9 @@ void LineSample::touch(std::uint64_t line, std::size_t group, std::uint64_t hash
     }
 }
 
-Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of, std::uint64_t most)
-    : of_(of), limit_(limit_of(rate)), sample_(sizes, rate, 1, most),
+Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of, std::uint64_t most,
+               std::uint64_t seed)
+    : of_(of), offset_(seed * 0xD1B54A32D192ED03U), limit_(limit_of(rate)), sample_(sizes, rate, 1, most),
       part_samples_(parts, LineSample(sizes, rate, parts, most / parts)) {}
 
 void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
@@ -71,7 +72,7 @@ void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
 
 /// Touches of one line that follow each other, if it is in the sample.
 void Shards::take_run(std::uint64_t line, std::size_t count, std::size_t group) {
-    const std::uint64_t hash = traces::hash_bits_of_line(line);
+    const std::uint64_t hash = traces::hash_bits_of_line(line + offset_);
     for (; count != 0 && hash < limit_; --count)
         take(line, group, hash);
 }
@@ -101,7 +102,7 @@ void Shards::touch(std::span<const std::uint64_t> lines, std::size_t group) {
         // A hash below the limit has top bits that are not above those of the limit.
         const std::uint64_t top = traces::top_bits_of_hash(limit_);
         for (std::size_t r = 0; r < runs; ++r)
-            if (traces::top_bits_of_line(line[r]) <= top) [[unlikely]]
+            if (traces::top_bits_of_line(line[r] + offset_) <= top) [[unlikely]]
                 take_run(line[r], begin[r + 1] - begin[r], group);
         lines = lines.subspan(n);
     }

@@ -53,14 +53,15 @@ public:
 
     /// `rate` of all lines, of which the trace holds the part `of` (1: all), in (0, of]. `most` lines, at
     /// least `parts`: the rate falls when there are more (SHARDS of a fixed size, s_max); 0: any number.
+    /// `seed`: another sample; that of a recorder (traces/sample.h) is 0.
     explicit Shards(const std::vector<std::uint64_t>& sizes, double rate, double of = 1,
-                    std::uint64_t most = 0);
+                    std::uint64_t most = 0, std::uint64_t seed = 0);
 
     void touch(std::uint64_t line, std::size_t group) {
         if (group >= seen_.size())
             seen_.resize(group + 1, 0);
         ++seen_[group];
-        const std::uint64_t hash = traces::hash_bits_of_line(line);
+        const std::uint64_t hash = traces::hash_bits_of_line(line + offset_);
         if (hash < limit_)
             take(line, group, hash);
     }
@@ -87,6 +88,7 @@ private:
     double ratio(const LineSample& sample, std::size_t group, std::size_t size) const;
 
     double of_;
+    std::uint64_t offset_;            // of lines before they are hashed: which are in the sample
     std::uint64_t limit_;             // of hashes in the sample or a part
     std::vector<std::uint64_t> seen_; // by group
     std::uint64_t sampled_ = 0;

@@ -11,20 +11,23 @@ namespace analysis {
 namespace {
 
 constexpr std::size_t slots = 8192;
+constexpr std::uint64_t seed_step = 0xD1B54A32D192ED03U; // odd, without a pattern
 
 } // namespace
 
-ShortReuse::ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint64_t stretch)
+ShortReuse::ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint64_t stretch,
+                       std::uint64_t seed)
     : sizes_(std::move(sizes)), stretch_(stretch),
       period_(std::max(stretch, static_cast<std::uint64_t>(static_cast<double>(stretch) / rate))),
-      stack_(slots) {
+      seed_(seed), stack_(slots) {
     next_stretch();
 }
 
 /// Somewhere in period `number_`.
 void ShortReuse::next_stretch() {
-    begin_ = number_ * period_ + static_cast<std::uint64_t>(traces::hash_of_line(number_) *
-                                                            static_cast<double>(period_ - stretch_));
+    begin_ =
+        number_ * period_ + static_cast<std::uint64_t>(traces::hash_of_line(number_ + seed_ * seed_step) *
+                                                       static_cast<double>(period_ - stretch_));
     end_ = begin_ + stretch_;
     stack_ = StackDistance(slots);
     ++number_;

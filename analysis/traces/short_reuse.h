@@ -20,7 +20,8 @@ namespace analysis {
 class ShortReuse {
 public:
     /// `sizes`: lines, ascending. `rate`: of all touches that are looked at, in (0, 1]; stretches of so many.
-    ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint64_t stretch);
+    /// `seed`: of which stretches.
+    ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint64_t stretch, std::uint64_t seed = 0);
 
     void touch(std::uint64_t line, std::size_t group) {
         if (now_ >= begin_)
@@ -64,7 +65,7 @@ private:
     void next_stretch();
 
     std::vector<std::uint64_t> sizes_;
-    std::uint64_t stretch_, period_;
+    std::uint64_t stretch_, period_, seed_;
     std::uint64_t now_ = 0, number_ = 0, begin_ = 0, end_ = 0; // touches; of the stretch at hand or next
     std::uint64_t stretches_ = 0;
     StackDistance stack_;

@@ -7,6 +7,7 @@
 #ifdef RAZOR_HAS_SIMULATED
 #include "traces/program/replay_command.h"
 #endif
+#include "traces/program/study_command.h"
 #include "traces/summary.h"
 
 #include <CLI/CLI.hpp>
@@ -112,6 +113,8 @@ int main(int argc, char** argv) {
         analysis->add_to(app);
     traces::OverlayCommand overlay;
     overlay.add_to(app);
+    traces::StudyCommand study;
+    study.add_to(app);
 #ifdef RAZOR_HAS_SIMULATED // the machine is part of this build
     traces::ReplayCommand replay;
     replay.add_to(app);
@@ -128,6 +131,8 @@ int main(int argc, char** argv) {
                 analysis->run();
         if (overlay.parsed())
             overlay.run();
+        if (study.parsed())
+            return study.run();
 #ifdef RAZOR_HAS_SIMULATED
         if (replay.parsed())
             replay.run();

@@ -81,25 +81,6 @@ const std::vector<SceneKnob>& scene_knobs() {
     return all;
 }
 
-std::string wrong_word(std::string_view key, const Value& value, const std::vector<std::string_view>& words) {
-    const auto* text = std::get_if<std::string>(&value);
-    if (text == nullptr)
-        return fmt::format("{} is no text; write it in quotes", key);
-    if (words.empty() || std::find(words.begin(), words.end(), *text) != words.end())
-        return "";
-    return fmt::format("{} = {} is not possible; write one of {}", key, toml_text(value),
-                       fmt::join(words, ", "));
-}
-
-std::string wrong_whole(std::string_view key, const Value& value, double least, double most) {
-    const auto* number = std::get_if<std::int64_t>(&value);
-    const bool right =
-        number != nullptr && static_cast<double>(*number) >= least && static_cast<double>(*number) <= most;
-    return right ? ""
-                 : fmt::format("{} = {} is not possible; write a whole number from {} to {}", key,
-                               toml_text(value), least, most);
-}
-
 std::optional<std::string> wrong_scene_setting(std::string_view key, Value& value) {
     const SceneKnob* const knob = find_knob(key);
     if (knob == nullptr)
@@ -107,15 +88,8 @@ std::optional<std::string> wrong_scene_setting(std::string_view key, Value& valu
     switch (knob->kind) {
     case SceneKnob::whole:
         return wrong_whole(key, value, knob->least, knob->most);
-    case SceneKnob::number: {
-        if (const auto* const integer = std::get_if<std::int64_t>(&value))
-            value = static_cast<double>(*integer);
-        const auto* const real = std::get_if<double>(&value);
-        const bool right = real != nullptr && *real >= knob->least && *real <= knob->most;
-        return right ? ""
-                     : fmt::format("{} = {} is not possible; write a number from {} to {}", key,
-                                   toml_text(value), knob->least, knob->most);
-    }
+    case SceneKnob::number:
+        return wrong_number(key, value, knob->least, knob->most);
     case SceneKnob::flag:
         return std::holds_alternative<bool>(value) ? ""
                                                    : fmt::format("{} is no flag; write true or false", key);

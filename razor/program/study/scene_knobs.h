@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/study/settings.h"
+#include "razor/program/study/checks.h"
 #include "razor/scene/description.h"
 
 #include <filesystem>
@@ -27,12 +28,6 @@ const std::vector<SceneKnob>& scene_knobs();
 std::optional<std::string> wrong_scene_setting(std::string_view key, analysis::Value& value);
 /// "unknown setting X; did you mean Y?", of these keys and those of scenes.
 std::string unknown_setting(std::string_view key, const std::vector<std::string_view>& others);
-
-/// What is wrong with a value that must be one of the words, likewise.
-std::string wrong_word(std::string_view key, const analysis::Value& value,
-                       const std::vector<std::string_view>& words);
-/// ... a whole number in a range.
-std::string wrong_whole(std::string_view key, const analysis::Value& value, double least, double most);
 
 /// The scene of these settings, posed; keys that are not of scenes are passed over. Files are found from
 /// `folder`. Throws UserError.
