@@ -60,8 +60,8 @@ Cache::Cache(const Config& machine, const CacheConfig& config, unsigned level, b
 
 /// An access that found its line on its way there, or prefetched and not used yet.
 Answer Cache::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present) {
-    Pool::Hold* hold = mshrs_.find(line);
-    bool waits = hold != nullptr && (is_ticket(hold->until) || hold->until > present.ready);
+    const Pool::Hold* const hold = mshrs_.find(line, present.ready);
+    const bool waits = hold != nullptr;
     if (array_.prefetched(entry)) {
         array_.set_prefetched(entry, false);
         used_prefetched_ = true;

@@ -36,7 +36,7 @@ Answer Cache::later_of(Answer a, Answer b) const {
 
 /// The right to write a line that is here, from below; or refused.
 Answer Cache::ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t line, cycle done) {
-    if (const Pool::Hold* asked = mshrs_.find_right(line); asked != nullptr && is_ticket(asked->until))
+    if (const Pool::Hold* asked = mshrs_.find_right(line); asked != nullptr)
         return {tickets_.no_earlier(asked->until, done, cause_), asked->cause};
     if (!last_ && !a.forced)
         if (const cycle room = mshrs_.take(a.at); room != a.at)

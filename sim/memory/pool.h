@@ -11,6 +11,9 @@ namespace sim {
 /// For requests that come in any order of time, held until cycles that may not be known yet. Notes whose each
 /// hold is. Remembers twice as many holds as it has entries, and some: a request that far behind finds it
 /// emptier.
+///
+/// Holds whose end is known are kept in order of it: most requests come when all but a few have ended, and
+/// look at these few alone.
 class Pool {
 public:
     /// What of the line is on its way: it, it with the right to write it, that right alone.
@@ -31,20 +34,22 @@ public:
     cycle take(cycle t) {
         for (;;) {
             std::size_t held = 0;
-            cycle next = ~cycle{0};
             cycle floor = unknown; // of those that are open
-            for (Hold& h : holds_) {
+            if (!open_.empty())
+                resolve_begun(t);
+            for (const Kept& h : open_) {
                 if (h.from > t)
                     continue;
-                if (is_ticket(h.until) && !resolve(h)) {
-                    ++held;
-                    const Floors& floors = tickets_.floors();
-                    floor = std::min(floor, h.what == What::right ? floors.any : floors.lines);
-                } else if (h.until > t) {
-                    ++held;
-                    next = std::min(next, h.until);
-                }
+                ++held;
+                const Floors& floors = tickets_.floors();
+                floor = std::min(floor, h.what == What::right ? floors.any : floors.lines);
             }
+            cycle next = ~cycle{0};
+            for (std::size_t i = known_.size(); i-- > first_ && known_[i].until > t;)
+                if (known_[i].from <= t) {
+                    ++held;
+                    next = known_[i].until;
+                }
             if (held < entries_)
                 return t;
             if (floor != unknown && next > floor)
@@ -53,17 +58,24 @@ public:
         }
     }
     void hold(const Hold& h) {
-        if (holds_.size() >= limit_)
+        if (known_.size() - first_ + open_.size() >= limit_)
             unlimited_ ? drop_ended(h.from) : drop_oldest();
-        holds_.push_back(h);
+        const Kept kept{h, number_++};
+        if (is_ticket(h.until))
+            open_.push_back(kept);
+        else
+            keep(kept);
     }
-    /// The hold of a line, or nullptr: it has ended.
-    Hold* find(std::uint64_t line) {
-        return find_latest([line](const Hold& h) { return h.line == line && h.what != What::right; });
+    /// The latest hold of a line, if it lasts beyond this cycle, or who knows how long; or nullptr. Until the
+    /// next call.
+    const Hold* find(std::uint64_t line, cycle by) {
+        return find_latest([line](const Hold& h) { return h.line == line && h.what != What::right; }, by);
     }
-    /// ... of the right to write it.
-    Hold* find_right(std::uint64_t line) {
-        return find_latest([line](const Hold& h) { return h.line == line && h.what != What::line; });
+    /// ... of the right to write it, if nobody knows yet when that comes.
+    const Hold* find_right(std::uint64_t line) {
+        const Hold* const h = find_latest(
+            [line](const Hold& one) { return one.line == line && one.what != What::line; }, unknown);
+        return h != nullptr && is_ticket(h->until) ? h : nullptr;
     }
     /// From now on as many are held as there may be; take() is not asked.
     void lift_limit() {
@@ -73,15 +85,51 @@ public:
     static constexpr cycle unknown = ~cycle{0};
 
 private:
-    template <class Wanted> Hold* find_latest(Wanted wanted) {
-        for (std::size_t i = holds_.size(); i-- > 0;)
-            if (wanted(holds_[i])) {
-                Hold& h = holds_[i];
-                if (is_ticket(h.until))
-                    resolve(h);
-                return &h;
+    struct Kept : Hold {
+        std::uint64_t number; // as they came
+    };
+
+    /// In its place among those whose end is known.
+    const Kept& keep(const Kept& h) {
+        if (first_ > limit_) {
+            known_.erase(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(first_));
+            first_ = 0;
+        }
+        known_.push_back(h);
+        std::size_t at = known_.size() - 1;
+        for (; at > first_ && is_later(known_[at - 1], h); --at)
+            known_[at] = known_[at - 1];
+        known_[at] = h;
+        return known_[at];
+    }
+    static bool is_later(const Kept& a, const Kept& b) {
+        return a.until != b.until ? a.until > b.until : a.number > b.number;
+    }
+    template <class Wanted> const Hold* find_latest(Wanted wanted, cycle by) {
+        for (std::size_t i = open_.size(); i-- > 0;)
+            if (wanted(open_[i]) && !newer_is_known(wanted, open_[i].number)) {
+                Kept h = open_[i];
+                if (!resolve(h))
+                    return &open_[i];
+                open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(i));
+                const Kept& known = keep(h);
+                return known.until > by ? &known : nullptr;
             }
+        for (std::size_t i = known_.size(); i-- > first_ && known_[i].until > by;)
+            if (wanted(known_[i])) // the latest that ends last is hardly ever not the latest
+                return newer_is_known(wanted, known_[i].number) ? latest_known(wanted, by) : &known_[i];
         return nullptr;
+    }
+    template <class Wanted> bool newer_is_known(Wanted wanted, std::uint64_t number) const {
+        return std::any_of(known_.begin() + static_cast<std::ptrdiff_t>(first_), known_.end(),
+                           [&](const Kept& h) { return h.number > number && wanted(h); });
+    }
+    template <class Wanted> const Hold* latest_known(Wanted wanted, cycle by) const {
+        const Kept* latest = nullptr;
+        for (std::size_t i = first_; i < known_.size(); ++i)
+            if (wanted(known_[i]) && (latest == nullptr || known_[i].number > latest->number))
+                latest = &known_[i];
+        return latest != nullptr && latest->until > by ? latest : nullptr;
     }
     bool resolve(Hold& h) {
         Answered a;
@@ -91,24 +139,35 @@ private:
         h.cause = a.from;
         return true;
     }
+    /// Of those that began by then.
+    void resolve_begun(cycle by) {
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            Kept h = open_[i];
+            if (h.from <= by && resolve(h))
+                keep(h);
+            else
+                open_[left++] = h;
+        }
+        open_.resize(left);
+    }
     void drop_ended(cycle by) {
-        std::erase_if(holds_, [&](Hold& h) { return (!is_ticket(h.until) || resolve(h)) && h.until <= by; });
+        resolve_begun(unknown);
+        while (first_ < known_.size() && known_[first_].until <= by)
+            ++first_;
     }
     void drop_oldest() {
-        std::size_t oldest = holds_.size();
-        for (std::size_t i = 0; i < holds_.size(); ++i) {
-            if (is_ticket(holds_[i].until) && !resolve(holds_[i]))
-                continue;
-            if (oldest == holds_.size() || holds_[i].until < holds_[oldest].until)
-                oldest = i;
-        }
-        if (oldest != holds_.size())
-            holds_.erase(holds_.begin() + static_cast<std::ptrdiff_t>(oldest));
+        resolve_begun(unknown);
+        if (first_ < known_.size())
+            ++first_;
     }
 
     std::size_t entries_, limit_;
     bool unlimited_ = false, heard_;
-    std::vector<Hold> holds_;
+    std::vector<Kept> known_; // by their end, then as they came; from first_ on, those before were dropped
+    std::size_t first_ = 0;
+    std::vector<Kept> open_; // as they came
+    std::uint64_t number_ = 0;
     Tickets& tickets_;
 };
 
