@@ -61,7 +61,7 @@ public:
     /// visit(Access) for each reference of a block, merged by time.
     template <class Visit> void each_access(const traces::Block& block, Visit visit) {
         classify(block);
-        traces::each_in_time(block, [&](const traces::Segment& s, std::size_t i) {
+        in_time_.each(block, [&](const traces::Segment& s, std::size_t i) {
             const Counted& c = counted_[block.classes[i]];
             if (!c.counts)
                 return;
@@ -122,6 +122,7 @@ private:
     bool static_key_ = true, by_window_ = false; // static: classes alone say groups
     std::map<Key, std::uint32_t> groups_;
     std::vector<Key> keys_; // of groups
+    traces::TimeOrder in_time_;
     // Of the block at hand:
     std::vector<Counted> counted_; // by class
     std::vector<Key> combined_;    // without streams and windows
