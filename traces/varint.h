@@ -28,7 +28,7 @@ inline char* put_varint(char* to, std::uint64_t x) {
 }
 inline void append_varint(std::string& out, std::uint64_t x) {
     char bytes[longest_varint]; // NOLINT: filled as far as used
-    out.append(bytes, put_varint(bytes, x));
+    out.append(bytes, static_cast<std::size_t>(put_varint(bytes, x) - bytes));
 }
 template <class Number> void append_fixed(std::string& out, Number x) {
     for (std::size_t i = 0; i < sizeof(Number); ++i)

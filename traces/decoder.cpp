@@ -1,5 +1,5 @@
+#include "traces/block_layout.h"
 #include "traces/codec.h"
-
 #include "traces/error.h"
 #include "traces/evictions.h"
 #include "traces/varint.h"
@@ -8,18 +8,9 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <bit>
-#include <numeric>
-#include <tuple>
 
 namespace traces {
 namespace {
-
-constexpr std::size_t columns = 5;     // table, classes, addresses, times, order
-constexpr unsigned part_shift = 4;     // above the kind
-constexpr unsigned set_bits_shift = 8; // above the addresses' shift
-/// Of what caches pass on there is less than of what cores ask for, and hardly anything repeats itself.
-constexpr int level_for_caches = 9;
 
 /// Of windows there are hardly more than references.
 std::size_t most_turns(std::size_t references) {
@@ -30,106 +21,6 @@ std::size_t most_turns(std::size_t references) {
 std::size_t columns_of(std::uint32_t version) {
     return version == 1 ? columns - 1 : columns;
 }
-std::size_t header_bytes(std::size_t columns) {
-    return 16 + 8 + columns * 8;
-}
-
-/// From the most frequent to the least.
-std::vector<std::uint32_t> by_frequency(const Block& block) {
-    std::vector<std::uint32_t> count(block.table.size(), 0);
-    for (const std::uint32_t c : block.classes)
-        ++count[c];
-    std::vector<std::uint32_t> order(count.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return count[a] > count[b]; });
-    return order;
-}
-
-/// Trailing zeros that all addresses have.
-unsigned common_shift(const std::vector<std::uint64_t>& addresses) {
-    std::uint64_t any = 0;
-    for (const std::uint64_t a : addresses)
-        any |= a;
-    return any == 0 ? 0 : static_cast<unsigned>(std::countr_zero(any));
-}
-
-/// Bytes that numbers below `n` take.
-std::uint32_t bytes_for(std::size_t n) {
-    return n <= 1U << 8U ? 1 : n <= 1U << 16U ? 2 : 3;
-}
-
-void put_table(const Block& block, const std::vector<std::uint32_t>& order, std::string& out) {
-    std::uint64_t stream = 0, site = 0;
-    for (const Segment& s : block.segments) {
-        append_varint(out, s.stream - stream);
-        append_varint(out, s.end - s.begin);
-        stream = s.stream;
-    }
-    for (const std::uint32_t number : order) {
-        const Class& c = block.table[number];
-        append_varint(out, static_cast<std::uint64_t>(c.kind) | static_cast<std::uint64_t>(c.part)
-                                                                    << part_shift);
-        append_varint(out, c.size);
-        append_varint(out, c.structure);
-        append_varint(out, c.phase);
-        append_varint(out, c.work);
-        append_varint(out, zigzag(c.site - site));
-        append_varint(out, c.detail);
-        site = c.site;
-    }
-}
-
-/// Of each class, the first that differs in its part alone: their addresses follow each other.
-template <class ClassOf> std::vector<std::uint32_t> without_parts(std::size_t classes, ClassOf class_of) {
-    const auto key = [&](std::uint32_t number) {
-        const Class& c = class_of(number);
-        return std::tuple(c.site, c.size, c.structure, c.phase, c.work, c.kind, c.detail);
-    };
-    std::vector<std::uint32_t> sorted(classes), first(classes);
-    std::iota(sorted.begin(), sorted.end(), 0U);
-    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::tuple_cat(key(a), std::tuple(a)) < std::tuple_cat(key(b), std::tuple(b));
-    });
-    for (std::size_t i = 0; i < classes; ++i)
-        first[sorted[i]] = i != 0 && key(sorted[i]) == key(sorted[i - 1]) ? first[sorted[i - 1]] : sorted[i];
-    return first;
-}
-
-/// Windows mostly follow each other, and are as long.
-struct WindowGuess {
-    std::uint64_t last, length = 0;
-    void see(const Turn& t) {
-        last = t.until;
-        length = t.until - t.begin;
-    }
-};
-
-// The order: how many bytes the turns take, and the counts; a varint a turn, 0 a window, 1 the end, 2 + the
-// segment's number; the counts; what is to know of windows. (Apart, as each repeats itself.)
-void put_order(const Block& block, std::string& out) {
-    std::string turns, counts, windows;
-    WindowGuess guess{block.times.front()};
-    for (const Turn& t : block.order) {
-        if (t.what == Turn::What::references) {
-            append_varint(turns, std::uint64_t{t.segment} + 2);
-            append_varint(counts, t.count);
-            continue;
-        }
-        append_varint(turns, t.what == Turn::What::window ? 0 : 1);
-        append_varint(windows, zigzag(t.until - guess.last - guess.length));
-        append_varint(windows, zigzag(t.begin - guess.last));
-        guess.see(t);
-    }
-    if (!turns.empty()) {
-        append_varint(out, turns.size());
-        append_varint(out, counts.size());
-    }
-    out += turns;
-    out += counts;
-    out += windows;
-}
-
 std::uint32_t largest(const std::uint8_t* bytes, std::size_t n) {
     std::uint8_t most = 0;
     for (std::size_t i = 0; i < n; ++i)
@@ -142,108 +33,6 @@ std::uint32_t largest(const std::uint8_t* bytes, std::size_t n) {
 }
 
 } // namespace
-
-void Encoder::Free::operator()(ZSTD_CCtx_s* c) const {
-    ZSTD_freeCCtx(c);
-}
-
-Encoder::Encoder(int zstd_level) : context_(ZSTD_createCCtx()), level_(zstd_level) {}
-Encoder::~Encoder() = default;
-
-void Encoder::compress(const std::string& column, int level, std::string& out) {
-    const std::size_t begin = out.size();
-    out.resize(begin + ZSTD_compressBound(column.size()));
-    const std::size_t n = ZSTD_compressCCtx(context_.get(), out.data() + begin, out.size() - begin,
-                                            column.data(), column.size(), level);
-    if (ZSTD_isError(n) != 0)
-        throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(n)));
-    out.resize(begin + n);
-}
-
-void Encoder::encode(const Block& block, std::string& out) {
-    const std::size_t n = block.size();
-    const std::vector<std::uint32_t> order = by_frequency(block);
-    std::vector<std::uint32_t> rank(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        rank[order[i]] = static_cast<std::uint32_t>(i);
-    const unsigned shift = common_shift(block.addresses);
-    const std::uint32_t id_bytes = bytes_for(order.size());
-    const std::uint64_t first_time = block.times.front();
-
-    table_.clear();
-    put_table(block, order, table_);
-    classes_.resize(n * id_bytes);
-    for (std::uint32_t plane = 0; plane < id_bytes; ++plane)
-        for (std::size_t i = 0; i < n; ++i)
-            classes_[plane * n + i] = static_cast<char>(rank[block.classes[i]] >> (8 * plane));
-    const std::vector<std::uint32_t> place =
-        without_parts(order.size(), [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; });
-    std::vector<std::uint64_t> last(order.size(), 0);
-    addresses_.resize(n * longest_varint);
-    char* to = addresses_.data();
-    const unsigned set_bits = Evictions::set_bits(block, shift);
-    const auto put = [&](std::size_t i) {
-        const std::uint64_t a = block.addresses[i] >> shift;
-        std::uint64_t& before = last[place[rank[block.classes[i]]]];
-        to = put_varint(to, zigzag(a - before));
-        before = a;
-    };
-    for (std::size_t i = 0; i < n; ++i)
-        if (set_bits == 0 || !Evictions::leaves(block.what(i)))
-            put(i);
-    if (set_bits != 0) { // and of each of these a byte more, in the worst case
-        const auto used = to - addresses_.data();
-        addresses_.resize(addresses_.size() + n);
-        to = addresses_.data() + used;
-        Evictions evictions(set_bits);
-        for (const Segment& s : block.segments) {
-            evictions.clear();
-            for (std::size_t i = s.begin; i < s.end; ++i) {
-                const std::uint64_t a = block.addresses[i] >> shift;
-                if (Evictions::leaves(block.what(i))) {
-                    const bool room = i + 1 != s.end && Evictions::comes(block.what(i + 1));
-                    const std::uint64_t at = room ? evictions.leave(a, block.addresses[i + 1] >> shift) : 0;
-                    to = put_varint(to, at);
-                    if (at == 0)
-                        put(i);
-                } else if (Evictions::comes(block.what(i))) {
-                    evictions.come(a);
-                }
-            }
-        }
-    }
-    addresses_.resize(static_cast<std::size_t>(to - addresses_.data()));
-    times_.resize(n * longest_varint);
-    to = times_.data();
-    for (const Segment& s : block.segments) {
-        std::uint64_t before = first_time;
-        for (std::size_t i = s.begin; i < s.end; ++i) {
-            if (i != s.begin && block.what(i).part == Part::piece)
-                continue; // at the same time
-            to = put_varint(to, zigzag(block.times[i] - before));
-            before = block.times[i];
-        }
-    }
-    times_.resize(static_cast<std::size_t>(to - times_.data()));
-    order_.clear();
-    put_order(block, order_);
-
-    const std::size_t begin = out.size();
-    append_fixed(out, static_cast<std::uint32_t>(n));
-    append_fixed(out, static_cast<std::uint32_t>(block.segments.size()));
-    append_fixed(out, static_cast<std::uint32_t>(order.size()));
-    append_fixed(out, static_cast<std::uint32_t>(shift | set_bits << set_bits_shift));
-    append_fixed(out, first_time);
-    out.resize(begin + header_bytes(columns));
-    std::string sizes;
-    for (const std::string* column : {&table_, &classes_, &addresses_, &times_, &order_}) {
-        const std::size_t before = out.size();
-        compress(*column, set_bits == 0 ? level_ : std::max(level_, level_for_caches), out);
-        append_fixed(sizes, static_cast<std::uint32_t>(column->size()));
-        append_fixed(sizes, static_cast<std::uint32_t>(out.size() - before));
-    }
-    std::copy(sizes.begin(), sizes.end(), out.begin() + static_cast<std::ptrdiff_t>(begin + 24));
-}
 
 void Decoder::Free::operator()(ZSTD_DCtx_s* c) const {
     ZSTD_freeDCtx(c);

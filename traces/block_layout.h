@@ -1,0 +1,53 @@
+// What writing and reading of blocks have in common: the layout, and what is guessed from what came before.
+#pragma once
+
+#include "traces/reference.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+namespace traces {
+
+inline constexpr std::size_t columns = 5;     // table, classes, addresses, times, order
+inline constexpr unsigned part_shift = 4;     // above the kind
+inline constexpr unsigned set_bits_shift = 8; // above the addresses' shift
+
+inline std::size_t header_bytes(std::size_t columns) {
+    return 16 + 8 + columns * 8;
+}
+
+/// Bytes that numbers below `n` take.
+inline std::uint32_t bytes_for(std::size_t n) {
+    return n <= 1U << 8U ? 1 : n <= 1U << 16U ? 2 : 3;
+}
+
+/// Of each class, the first that differs in its part alone: their addresses follow each other.
+template <class ClassOf> std::vector<std::uint32_t> without_parts(std::size_t classes, ClassOf class_of) {
+    const auto key = [&](std::uint32_t number) {
+        const Class& c = class_of(number);
+        return std::tuple(c.site, c.size, c.structure, c.phase, c.work, c.kind, c.detail);
+    };
+    std::vector<std::uint32_t> sorted(classes), first(classes);
+    std::iota(sorted.begin(), sorted.end(), 0U);
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tuple_cat(key(a), std::tuple(a)) < std::tuple_cat(key(b), std::tuple(b));
+    });
+    for (std::size_t i = 0; i < classes; ++i)
+        first[sorted[i]] = i != 0 && key(sorted[i]) == key(sorted[i - 1]) ? first[sorted[i - 1]] : sorted[i];
+    return first;
+}
+
+/// Windows mostly follow each other, and are as long.
+struct WindowGuess {
+    std::uint64_t last, length = 0;
+    void see(const Turn& t) {
+        last = t.until;
+        length = t.until - t.begin;
+    }
+};
+
+} // namespace traces
