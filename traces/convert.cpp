@@ -26,6 +26,7 @@ void Conversion::convert(Reference r) {
     size_ |= r.what.size != 0;
     sites_ |= r.what.site != 0;
     names_ |= r.what.structure != 0 || r.what.phase != 0 || r.what.work != 0;
+    parts_ |= r.what.part != Part::operation || r.what.detail != 0;
     const auto put = [&](Kind kind) {
         r.what.kind = kind;
         output_.write(r);
@@ -58,6 +59,7 @@ std::string Conversion::lost() const {
     field(size_, holds_.size, "sizes");
     field(sites_, holds_.sites, "sites");
     field(names_, holds_.names, "structures, phases and work");
+    field(parts_, holds_.parts, "operations and details");
     if (!fields.empty())
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
     for (std::size_t k = 0; k < kind_names.size(); ++k) {

@@ -102,6 +102,8 @@ TEST(TraceFormats, WhatAFormatHoldsComesBack) {
             if (f.holds.names && name != "csv") {
                 ASSERT_TRUE(b.what == e.what) << i;
             }
+            ASSERT_EQ(b.what.part, f.holds.parts ? e.what.part : Part::operation) << i;
+            ASSERT_EQ(b.what.detail, f.holds.parts ? e.what.detail : 0) << i;
             if (name == "csv") { // numbers as names come up
                 const Description d = test::small_description();
                 ASSERT_EQ(back_description.structures[b.what.structure], d.structures[e.what.structure]) << i;
@@ -134,7 +136,9 @@ TEST(TraceFormats, SaysWhatATargetCannotHold) {
     for (const Reference& r : all)
         ++count[r.what.kind];
     const std::string lost = converted("rzt", own, "din").lost;
-    EXPECT_EQ(lost.find("times, threads, sites, structures, phases and work are lost"), 0U) << lost;
+    EXPECT_EQ(
+        lost.find("times, threads, sites, structures, phases and work, operations and details are lost"), 0U)
+        << lost;
     EXPECT_NE(
         lost.find(std::to_string(count[Kind::modify]) + " modify references are a read and a write each"),
         std::string::npos)
@@ -277,6 +281,8 @@ TEST(TraceFormats, RefusesByOneLineThatSaysWhere) {
         {"csv", "address,address\n", "sample, line 1: ", "twice"},
         {"csv", "cycles,address,order\n", "sample, line 1: ", "twice"},
         {"csv", "address,kind\n10,raed\n", "sample, line 2: ", "kind that there is not"},
+        {"csv", "address,part\n10,half\n", "sample, line 2: ", "part that there is not"},
+        {"csv", "address,detail\n10,x\n", "sample, line 2: ", "detail"},
         {"csv", "address,kind\n10\n", "sample, line 2: ", "1 fields instead of 2"},
         {"csv", "address,kind\n10,\"read\n", "sample, line 2: ", "without an end"},
         {"dramsim3", "0x10 READ\n", "sample, line 1: ", "'' is no cycle"},

@@ -1,6 +1,6 @@
-// A table: the first row names the columns (time, stream, kind, address, size, site, structure, phase, work),
-// of which a file to be read needs address alone, in any order. Addresses are hexadecimal, the rest decimal,
-// or names: of sites, structures, phases and work.
+// A table: the first row names the columns (time, stream, kind, address, size, site, structure, phase, work,
+// part, detail), of which a file to be read needs address alone, in any order. Addresses are hexadecimal, the
+// rest decimal, or names: of sites, structures, phases and work.
 #include "traces/formats/text.h"
 
 #include <fmt/format.h>
@@ -14,10 +14,24 @@ namespace traces {
 namespace {
 
 /// After the times.
-constexpr std::array<std::string_view, 8> columns = {"stream", "kind",      "address", "size",
-                                                     "site",   "structure", "phase",   "work"};
+constexpr std::array<std::string_view, 10> columns = {"stream",    "kind",  "address", "size", "site",
+                                                      "structure", "phase", "work",    "part", "detail"};
+constexpr std::array<std::string_view, parts> part_names = {"operation", "access", "piece", "aside"};
 constexpr std::array<std::string_view, 4> units = {"cycles", "instructions", "seconds", "order"};
-enum Column : std::size_t { stream, kind, address, size, site, structure, phase, work, time, unread };
+enum Column : std::size_t {
+    stream,
+    kind,
+    address,
+    size,
+    site,
+    structure,
+    phase,
+    work,
+    part,
+    detail,
+    time,
+    unread
+};
 
 std::string quoted(const std::string& text) {
     if (text.find_first_of(",\"") == std::string::npos)
@@ -133,6 +147,17 @@ private:
             r.what.kind = static_cast<Kind>(found - kind_names.begin());
             break;
         }
+        case part: {
+            const auto* const found = std::find(part_names.begin(), part_names.end(), field);
+            if (found == part_names.end())
+                refuse("has a part that there is not",
+                       fmt::format("parts are {}", fmt::join(part_names, ", ")));
+            r.what.part = static_cast<Part>(found - part_names.begin());
+            break;
+        }
+        case detail:
+            r.what.detail = static_cast<std::uint32_t>(number(field, 10, "detail", 0xFFFFFFFF));
+            break;
         default:
             break;
         }
@@ -198,7 +223,8 @@ public:
             fmt::format_to(to, "0x{:x}", c.site);
         else if (c.site != 0)
             room() += sites_[c.site - 1];
-        fmt::format_to(to, ",{},{},{}\n", structures_[c.structure], phases_[c.phase], work_[c.work]);
+        fmt::format_to(to, ",{},{},{},{},{}\n", structures_[c.structure], phases_[c.phase], work_[c.work],
+                       part_names[static_cast<std::size_t>(c.part)], c.detail);
     }
 
 private:

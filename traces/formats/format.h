@@ -47,6 +47,7 @@ public:
 struct Holds {
     bool time = false, streams = false, size = false, sites = false, names = false; // structure, phase, work
     std::array<bool, kind_names.size()> kinds{};                                    // by number
+    bool parts = false; // of which operation a reference is, and the details of its class
     bool holds(Kind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 

@@ -20,12 +20,12 @@ constexpr std::array<bool, kind_names.size()> all =
                                               lackey = {true, true, true, true}, plain = {true, true},
                                               requests = {true}, drmemtrace = {true, true, false, true, true};
 
-// time, streams, size, sites, names, kinds
+// time, streams, size, sites, names, kinds, parts
 constexpr Format table[] = {
     {"rzt",
      "this project's own, by blocks of columns",
      ".rzt",
-     {true, true, true, true, true, all},
+     {true, true, true, true, true, all, true},
      read_own,
      write_own},
     {"din",
@@ -37,7 +37,7 @@ constexpr Format table[] = {
     {"csv",
      "a row a reference, columns by name",
      ".csv",
-     {true, true, true, true, true, all},
+     {true, true, true, true, true, all, true},
      read_csv,
      write_csv},
     {"lackey",
