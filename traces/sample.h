@@ -14,16 +14,6 @@ inline std::uint64_t hash_bits_of_line(std::uint64_t line) {
     z ^= z >> 31U;
     return z >> 11U;
 }
-/// The top 31 of these bits of a line, for less; and of a hash.
-inline std::uint64_t top_bits_of_line(std::uint64_t line) {
-    std::uint64_t z = line + 0x9E3779B97F4A7C15U;
-    z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ z >> 27U) * 0x94D049BB133111EBU;
-    return z >> 33U; // what is left to do changes the bits below
-}
-inline std::uint64_t top_bits_of_hash(std::uint64_t hash) {
-    return hash >> 22U;
-}
 /// Uniform in [0, 1).
 inline double hash_of_line(std::uint64_t line) {
     return static_cast<double>(hash_bits_of_line(line)) * 0x1p-53;

@@ -1,7 +1,6 @@
 #include "analysis/traces/shards.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace analysis {
@@ -50,10 +49,17 @@ void LineSample::touch(std::uint64_t line, std::size_t group, std::uint64_t hash
     }
 }
 
+void LineSample::touch_top(std::size_t group, std::size_t count) {
+    counts_.add(group, 1, static_cast<double>(count) / rate_);
+}
+
 Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of, std::uint64_t most,
                std::uint64_t seed)
     : of_(of), offset_(seed * 0xD1B54A32D192ED03U), limit_(limit_of(rate)), sample_(sizes, rate, 1, most),
-      part_samples_(parts, LineSample(sizes, rate, parts, most / parts)) {}
+      part_samples_(parts, LineSample(sizes, rate, parts, most / parts)), known_out_(out_lines) {
+    for (std::size_t i = 0; i < out_lines; ++i)
+        known_out_[i] = ~std::uint64_t{i}; // no line of this place
+}
 
 void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     if (hash < sample_.limit()) {
@@ -70,41 +76,46 @@ void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     }
 }
 
-/// Touches of one line that follow each other, if it is in the sample.
-void Shards::take_run(std::uint64_t line, std::size_t count, std::size_t group) {
+/// Touches of one line that follow each other, all but the first of which find it at the top; whether it is
+/// in the sample.
+bool Shards::take_run(std::uint64_t line, std::size_t count, std::size_t group) {
     const std::uint64_t hash = traces::hash_bits_of_line(line + offset_);
-    for (; count != 0 && hash < limit_; --count)
-        take(line, group, hash);
+    if (hash >= limit_)
+        return false;
+    take(line, group, hash);
+    if (count == 1)
+        return true;
+    if (hash < sample_.limit()) { // the limits are what the first has left of them
+        sampled_ += count - 1;
+        sample_.touch_top(group, count - 1);
+    }
+    LineSample& part = part_samples_[hash % parts];
+    if (hash < part.limit())
+        part.touch_top(group, count - 1);
+    return true;
 }
 
-// Most touches are of the line of the touch before, and of the others most lines are not in the sample: what
-// there is to do for these goes without branches that a processor would guess wrong.
+// Most touches are of lines that were met not long ago and are not in the sample, where no line ever comes
+// into it: what there is to do for these is one comparison that a processor guesses right. (To hash them all
+// takes more than twice as long.)
 void Shards::touch(std::span<const std::uint64_t> lines, std::size_t group) {
     if (group >= seen_.size())
         seen_.resize(group + 1, 0);
     seen_[group] += lines.size();
-    constexpr std::size_t most = 256;
-    std::array<std::uint64_t, most> line;      // NOLINT: of a run of touches; filled as far as used
-    std::array<std::uint32_t, most + 1> begin; // NOLINT: likewise, where it begins
-    while (!lines.empty()) {
-        const std::size_t n = std::min(most, lines.size());
-        std::size_t runs = 0;
-        std::uint64_t before = ~lines.front();
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::uint64_t at = lines[i];
-            line[runs] = at;
-            begin[runs] = static_cast<std::uint32_t>(i);
-            runs += at != before ? 1 : 0;
-            // The first of a run stays, as the next of the same line is written behind it.
-            before = at;
+    const std::uint64_t* const line = lines.data();
+    std::uint64_t* const out = known_out_.data();
+    const std::size_t n = lines.size();
+    for (std::size_t i = 0; i < n;) {
+        const std::uint64_t at = line[i];
+        if (out[at % out_lines] == at) [[likely]] {
+            ++i;
+            continue;
         }
-        begin[runs] = static_cast<std::uint32_t>(n);
-        // A hash below the limit has top bits that are not above those of the limit.
-        const std::uint64_t top = traces::top_bits_of_hash(limit_);
-        for (std::size_t r = 0; r < runs; ++r)
-            if (traces::top_bits_of_line(line[r] + offset_) <= top) [[unlikely]]
-                take_run(line[r], begin[r + 1] - begin[r], group);
-        lines = lines.subspan(n);
+        const std::size_t first = i;
+        while (i < n && line[i] == at)
+            ++i;
+        if (!take_run(at, i - first, group))
+            out[at % out_lines] = at;
     }
 }
 

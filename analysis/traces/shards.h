@@ -22,6 +22,8 @@ public:
 
     /// A line that is below the limit.
     void touch(std::uint64_t line, std::size_t group, std::uint64_t hash);
+    /// So many more touches of the line that was touched last, which is below the limit still.
+    void touch_top(std::size_t group, std::size_t count);
     std::uint64_t limit() const { return limit_; }
     /// Of all lines, this fraction is in.
     double rate() const { return rate_; }
@@ -84,7 +86,7 @@ public:
 
 private:
     void take(std::uint64_t line, std::size_t group, std::uint64_t hash);
-    void take_run(std::uint64_t line, std::size_t count, std::size_t group);
+    bool take_run(std::uint64_t line, std::size_t count, std::size_t group);
     double ratio(const LineSample& sample, std::size_t group, std::size_t size) const;
 
     double of_;
@@ -94,6 +96,8 @@ private:
     std::uint64_t sampled_ = 0;
     LineSample sample_;
     std::vector<LineSample> part_samples_;
+    static constexpr std::size_t out_lines = 16384;
+    std::vector<std::uint64_t> known_out_; // lines met last that are not in the sample, by their low bits
 };
 
 } // namespace analysis
