@@ -49,10 +49,6 @@ void LineSample::touch(std::uint64_t line, std::size_t group, std::uint64_t hash
     }
 }
 
-void LineSample::touch_top(std::size_t group, std::size_t count) {
-    counts_.add(group, 1, static_cast<double>(count) / rate_);
-}
-
 Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of, std::uint64_t most,
                std::uint64_t seed)
     : of_(of), offset_(seed * 0xD1B54A32D192ED03U), limit_(limit_of(rate)), sample_(sizes, rate, 1, most),
@@ -76,22 +72,14 @@ void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     }
 }
 
-/// Touches of one line that follow each other, all but the first of which find it at the top; whether it is
-/// in the sample.
+/// Touches of one line that follow each other; whether it is in the sample. All but the first are hits of all
+/// caches, of which nothing but their number is to be known.
 bool Shards::take_run(std::uint64_t line, std::size_t count, std::size_t group) {
     const std::uint64_t hash = traces::hash_bits_of_line(line + offset_);
     if (hash >= limit_)
         return false;
     take(line, group, hash);
-    if (count == 1)
-        return true;
-    if (hash < sample_.limit()) { // the limits are what the first has left of them
-        sampled_ += count - 1;
-        sample_.touch_top(group, count - 1);
-    }
-    LineSample& part = part_samples_[hash % parts];
-    if (hash < part.limit())
-        part.touch_top(group, count - 1);
+    sampled_ += hash < sample_.limit() ? count - 1 : 0; // by what the first has left of the limit
     return true;
 }
 

@@ -22,8 +22,6 @@ public:
 
     /// A line that is below the limit.
     void touch(std::uint64_t line, std::size_t group, std::uint64_t hash);
-    /// So many more touches of the line that was touched last, which is below the limit still.
-    void touch_top(std::size_t group, std::size_t count);
     std::uint64_t limit() const { return limit_; }
     /// Of all lines, this fraction is in.
     double rate() const { return rate_; }
