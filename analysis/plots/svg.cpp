@@ -89,6 +89,14 @@ void Svg::polyline(const std::vector<std::pair<double, double>>& points, std::st
                          list(points), colour, stroke_width, dashed ? " stroke-dasharray=\"5 3\"" : "");
 }
 
+void Svg::path(const std::vector<std::pair<double, double>>& points, std::string_view colour, double width,
+               std::string_view title) {
+    shapes_.push_back({Shape::line, points, std::string(colour), width});
+    body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"",
+                         list(points), colour, number(width));
+    body_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></polyline>\n", escaped(title));
+}
+
 void Svg::polygon(const std::vector<std::pair<double, double>>& points, std::string_view colour,
                   double opacity) {
     shapes_.push_back({Shape::area, points, std::string(colour), opacity});

@@ -27,6 +27,9 @@ public:
                 std::string_view title = {});
     void polyline(const std::vector<std::pair<double, double>>& points, std::string_view colour,
                   bool dashed = false);
+    /// Lines of a width of their own, likewise with a title.
+    void path(const std::vector<std::pair<double, double>>& points, std::string_view colour, double width,
+              std::string_view title = {});
     void polygon(const std::vector<std::pair<double, double>>& points, std::string_view colour,
                  double opacity);
     void text(double x, double y, std::string_view text, Anchor anchor = Anchor::start, double size = 12,

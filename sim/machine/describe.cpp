@@ -15,14 +15,6 @@ double real(integer x) {
     return static_cast<double>(x);
 }
 
-std::string size(double bytes) {
-    const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
-    std::size_t unit = 0;
-    for (; bytes >= 1024 && unit + 1 < std::size(units); ++unit)
-        bytes /= 1024;
-    return fmt::format("{:.4g} {}", bytes, units[unit]);
-}
-
 std::string rate(double per_second, const char* what) {
     const double giga = per_second * 1e-9;
     return giga < 1e4 ? fmt::format("{:.4g} {}", giga, what) : fmt::format("{:.0f} {}", giga, what);
@@ -31,10 +23,10 @@ std::string rate(double per_second, const char* what) {
 /// What TLBs reach, and what a miss takes.
 std::string tlb_text(const Config& c) {
     const auto of = [&c](integer entries, integer ways) {
-        return fmt::format("{} pages of {}, {}: {}", entries, size(real(c.tlb.page_bytes)),
+        return fmt::format("{} pages of {}, {}: {}", entries, size_text(real(c.tlb.page_bytes)),
                            ways == 0 || ways == entries ? std::string("fully associative")
                                                         : fmt::format("{} ways", ways),
-                           size(real(entries * c.tlb.page_bytes)));
+                           size_text(real(entries * c.tlb.page_bytes)));
     };
     std::string out = fmt::format("{} a core", of(c.tlb.entries, c.tlb.ways));
     if (c.tlb.second_entries != 0)
@@ -52,6 +44,14 @@ std::string tlb_text(const Config& c) {
 }
 
 } // namespace
+
+std::string size_text(double bytes) {
+    const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    std::size_t unit = 0;
+    for (; bytes >= 1024 && unit + 1 < std::size(units); ++unit)
+        bytes /= 1024;
+    return fmt::format("{:.4g} {}", bytes, units[unit]);
+}
 
 ChipFigures chip_figures(const Config& c) {
     ChipFigures f;
@@ -116,8 +116,8 @@ std::string chip_text(const Config& c) {
     line("instructions", rate(f.instructions_per_second, "G/s at most"));
     line("arithmetic", rate(f.flops_per_second, "GFLOP/s at most, fused"));
     line("L1", fmt::format("{} a core, {} ways, lines of {} bytes; {} in all; {}; {:.3g} ns",
-                           size(real(c.l1.size_bytes)), c.l1.ways, c.l1.line_bytes, size(f.l1_bytes),
-                           rate(f.l1_bytes_per_second, "GB/s"), f.l1_ns));
+                           size_text(real(c.l1.size_bytes)), c.l1.ways, c.l1.line_bytes,
+                           size_text(f.l1_bytes), rate(f.l1_bytes_per_second, "GB/s"), f.l1_ns));
     for (unsigned level = 1; level < c.cache_levels(); ++level) {
         const CacheConfig& cache = c.cache(level);
         const ChipFigures::Level& l = f.below[level - 1];
@@ -128,8 +128,8 @@ std::string chip_text(const Config& c) {
                                                            : fmt::format("for {} cores", cores);
         line(fmt::format("L{}", level + 1).c_str(),
              fmt::format("{} {}, {} ways, lines of {} bytes{}; {} in all; {}; {:.3g} ns",
-                         size(real(cache.size_bytes)), whose, cache.ways, cache.line_bytes,
-                         cache.inclusion == "none" ? "" : ", " + cache.inclusion, size(l.bytes),
+                         size_text(real(cache.size_bytes)), whose, cache.ways, cache.line_bytes,
+                         cache.inclusion == "none" ? "" : ", " + cache.inclusion, size_text(l.bytes),
                          rate(l.bytes_per_second, "GB/s"), l.ns));
     }
     if (c.tlb.any())

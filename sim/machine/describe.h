@@ -29,6 +29,9 @@ struct ChipFigures {
 };
 ChipFigures chip_figures(const Config& config);
 
+/// In the largest binary unit of which there is one: "32 KiB".
+std::string size_text(double bytes);
+
 /// As lines for people.
 std::string chip_text(const Config& config);
 

@@ -44,6 +44,7 @@ Topology::Topology(const Config& c)
         node_.push_back(ch * nodes_ / channels_);
     const auto add = [this](std::size_t from, std::size_t to) {
         name_.push_back(fmt::format("router {} to {}", from, to));
+        ends_.emplace_back(from, to);
     };
     if (kind_ == Kind::ring && nodes_ > 1) {
         for (std::size_t n = 0; n < nodes_; ++n)

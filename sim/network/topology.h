@@ -18,6 +18,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sim {
@@ -54,6 +55,8 @@ public:
     std::size_t link_from(std::size_t unit) const { return unit; }
     std::size_t link_to(std::size_t unit) const { return units() + unit; }
     std::string link_name(std::size_t link) const;
+    /// Of a ring or mesh: the routers that a link between such joins, from the first to the second.
+    std::pair<std::size_t, std::size_t> ends(std::size_t link) const { return ends_[link - 2 * units()]; }
     /// visit(link) of each link between routers, in order.
     template <class Visit> void walk(std::size_t from, std::size_t to, Visit visit) const {
         if (kind_ == Kind::crossbar)
@@ -89,9 +92,10 @@ private:
     Kind kind_;
     std::size_t nodes_, columns_ = 1, buses_ = 0, caches_ = 0, banks_ = 0, sharing_ = 1, channels_,
                         between_ = 0;
-    unsigned level_ = 0;            // of the caches beyond, for their names
-    std::vector<std::size_t> node_; // by unit
-    std::vector<std::string> name_; // by link between routers
+    unsigned level_ = 0;                                    // of the caches beyond, for their names
+    std::vector<std::size_t> node_;                         // by unit
+    std::vector<std::string> name_;                         // by link between routers, as what follows
+    std::vector<std::pair<std::size_t, std::size_t>> ends_; // of rings and meshes
 };
 
 /// Cycles that a message of so many bytes takes on a link.

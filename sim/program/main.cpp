@@ -3,12 +3,11 @@
 #include "razor/scene/error.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
-#include "sim/machine/describe.h"
 #include "sim/machine/machine.h"
 #include "sim/program/compare_command.h"
+#include "sim/program/describe_command.h"
 #include "sim/program/dram_table.h"
 #include "sim/program/explain_command.h"
-#include "sim/program/provenance.h"
 #include "sim/program/run_command.h"
 #include "sim/program/study_command.h"
 #include "sim/program/sweep_command.h"
@@ -26,12 +25,6 @@ int print_config(const sim::MachineOptions& options) {
     return 0;
 }
 
-int describe(const sim::MachineOptions& options) {
-    const sim::MachineDescription machine = sim::describe_machine(options.file, options.settings);
-    fmt::print("{}\n{}", sim::provenance_text(machine), sim::chip_text(machine.config));
-    return 0;
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -45,10 +38,8 @@ int main(int argc, char** argv) {
     CLI::App& print =
         *app.add_subcommand("print-config", "print a machine's complete, resolved configuration");
     machine.add_to(print);
-    sim::MachineOptions described;
-    CLI::App& describing =
-        *app.add_subcommand("describe", "print a chip: its parts, and what they can do at most");
-    described.add_to(describing);
+    sim::DescribeCommand describe;
+    describe.add_to(app);
     sim::ExplainCommand explain;
     explain.add_to(app);
     sim::DramTable dram;
@@ -64,7 +55,7 @@ int main(int argc, char** argv) {
     return razor::run_program(app, argc, argv, [&] {
         try {
             return print.parsed()               ? print_config(machine)
-                   : describing.parsed()        ? describe(described)
+                   : describe.parsed()          ? describe.run()
                    : explain.parsed()           ? explain.run()
                    : validate.parsed()          ? validate.run()
                    : compare.parsed()           ? compare.run()
