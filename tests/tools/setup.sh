@@ -4,7 +4,7 @@ packages_to_run=(g++ cmake ninja-build ccache libosd-dev libglm-dev libopenexr-d
                  libtomlplusplus-dev nlohmann-json3-dev libtinygltf-dev libzstd-dev zlib1g-dev liblzma-dev libboost-context-dev libstb-dev)
 packages_to_test=("${packages_to_run[@]}" libgtest-dev libgmock-dev python3 binutils)
 packages_for_all=("${packages_to_test[@]}" clang-14 lld-14 libclang-rt-14-dev clang-format-14 libbenchmark-dev
-                  libembree-dev valgrind python3-matplotlib snakemake)
+                  libembree-dev valgrind python3-matplotlib snakemake slurm-wlm munge)
 
 say() { printf '== %s\n' "$*"; }
 fail() {
