@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <poll.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -49,6 +52,30 @@ void Isolated::ask_to_end() {
     if (!asked_)
         kill(child_, SIGTERM);
     asked_ = true;
+}
+
+ChildrenEnd::ChildrenEnd(const std::vector<pid_t>& children) {
+    for (const pid_t child : children) {
+        // By its number: older C libraries lack the function.
+        const long file = ::syscall(SYS_pidfd_open, child, 0);
+        if (file < 0)
+            all_ = false;
+        else
+            files_.push_back(static_cast<int>(file));
+    }
+}
+
+ChildrenEnd::~ChildrenEnd() {
+    for (const int file : files_)
+        ::close(file);
+}
+
+void ChildrenEnd::wait(int most_ms) const {
+    constexpr int nap_ms = 3;
+    std::vector<pollfd> polled;
+    for (const int file : files_)
+        polled.push_back({file, POLLIN, 0});
+    ::poll(polled.data(), polled.size(), all_ ? most_ms : std::min(most_ms, nap_ms));
 }
 
 } // namespace analysis

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <sys/types.h>
+#include <vector>
 
 namespace analysis {
 
@@ -25,10 +26,28 @@ public:
     bool has_ended(Ended& how);
     /// Asks the copy to end (SIGTERM), as by a terminal that has told both; only once.
     void ask_to_end();
+    pid_t process() const { return child_; }
 
 private:
     pid_t child_;
     bool asked_ = false;
+};
+
+/// Waits for the first of some children of this process to end, and takes no processor time for it.
+class ChildrenEnd {
+public:
+    explicit ChildrenEnd(const std::vector<pid_t>& children);
+    ~ChildrenEnd();
+    ChildrenEnd(const ChildrenEnd&) = delete;
+    ChildrenEnd& operator=(const ChildrenEnd&) = delete;
+
+    /// Until one has ended, a signal has come, or so many milliseconds have passed. Where the system cannot
+    /// tell, a few milliseconds.
+    void wait(int most_ms) const;
+
+private:
+    std::vector<int> files_; // of children, by pidfd_open(2)
+    bool all_ = true;        // have one
 };
 
 } // namespace analysis

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <ctime>
 #include <deque>
 #include <list>
 
@@ -14,8 +13,7 @@ namespace analysis {
 namespace {
 
 constexpr int stopped_code = 130, unwritten_code = 3;
-constexpr timespec nap{0, 3'000'000};       // 3 ms, while processes of this one work
-constexpr timespec long_nap{0, 50'000'000}; // 50 ms, while others' do
+constexpr int look_ms = 50; // at whether it is to stop, and at what others have done
 
 /// In the point's own process.
 int measure_and_write(const Point& point, const Store& store, const Measure& measure,
@@ -69,7 +67,7 @@ public:
             if (running_.empty() && (stopping_ || waiting_.empty()))
                 break;
             claims_.keep();
-            ::nanosleep(running_.empty() ? &long_nap : &nap, nullptr);
+            wait_for_one();
         }
         out_.stopped = stopping_ && (cut_off_ || !waiting_.empty());
         return out_;
@@ -80,6 +78,13 @@ private:
         std::size_t point;
         Isolated process;
     };
+
+    void wait_for_one() const {
+        std::vector<pid_t> children;
+        for (const Running& one : running_)
+            children.push_back(one.process.process());
+        ChildrenEnd(children).wait(look_ms);
+    }
 
     /// Takes each waiting point once: what is done already falls out, what others have waits on.
     void begin_some(const std::atomic<bool>& stop) {

@@ -1,5 +1,6 @@
 #include "analysis/study/study_file.h"
 
+#include "analysis/study/constraint.h"
 #include "analysis/study/error.h"
 #include "analysis/study/toml_section.h"
 
@@ -62,6 +63,7 @@ public:
         const toml::table* const knobs = top.table("knobs");
         const std::vector<const toml::table*> points = top.tables("points");
         const std::vector<const toml::table*> exclude = top.tables("exclude");
+        const std::vector<std::string> where = top.texts("where");
         for (const toml::table* const plot : top.tables("plot"))
             read_plot(*plot);
         const std::vector<const toml::table*> curves = top.tables("curve");
@@ -76,14 +78,16 @@ public:
         top.finish();
         for (const toml::table* const one : exclude)
             exclude_.push_back(conditions(*one));
+        read_constraints(where, top);
         if (knobs != nullptr)
             add_points(*knobs, "knobs");
         for (const toml::table* const one : points)
             add_points(*one, "points");
         if (study_.points.empty())
             fail_at(file_, root.source(),
-                    given_ == 0 ? "there are no points; list values of some settings under [knobs]"
-                                : "all points are left out; mend [[exclude]]");
+                    given_ == 0      ? "there are no points; list values of some settings under [knobs]"
+                    : where_.empty() ? "all points are left out; mend [[exclude]]"
+                                     : "all points are left out; mend where or [[exclude]]");
         for (const toml::table* const rival : rivals)
             read_rival(*rival);
         for (const PlotRequest& plot : study_.plots)
@@ -242,7 +246,38 @@ private:
         return out;
     }
 
+    void read_constraints(const std::vector<std::string>& texts, const TomlSection& top) {
+        top_ = &top;
+        for (const std::string& text : texts)
+            try {
+                where_.emplace_back(text);
+            } catch (const StudyError& error) {
+                top.fail("where", error.what());
+            }
+    }
+
+    double number_at(const Settings& point, std::string_view key) const {
+        const auto found = point.find(std::string(key));
+        if (found != point.end())
+            if (const std::optional<double> number = number_of(found->second))
+                return *number;
+        if (found != point.end())
+            throw StudyError(fmt::format("{} = {} is no number; leave such points out by [[exclude]]", key,
+                                         toml_text(found->second)));
+        if (!vocabulary_.preset)
+            throw StudyError(
+                fmt::format("the study does not say {}; write it into [settings] or [knobs]", key));
+        return vocabulary_.preset(point, key, file_);
+    }
+
     bool excluded(const Settings& point) const {
+        for (const Constraint& one : where_)
+            try {
+                if (!one.holds([&](std::string_view key) { return number_at(point, key); }))
+                    return true;
+            } catch (const std::exception& error) {
+                top_->fail("where", error.what());
+            }
         return std::any_of(exclude_.begin(), exclude_.end(), [&](const std::vector<Condition>& all) {
             return !all.empty() && std::all_of(all.begin(), all.end(),
                                                [&](const Condition& one) { return one.holds(point); });
@@ -337,7 +372,9 @@ private:
     const Vocabulary& vocabulary_;
     Study study_;
     std::vector<std::vector<Condition>> exclude_;
-    std::set<std::string> known_; // points' texts
+    std::vector<Constraint> where_;
+    const TomlSection* top_ = nullptr; // the document, while it is read
+    std::set<std::string> known_;      // points' texts
     std::size_t given_ = 0;
 };
 

@@ -4,6 +4,7 @@
 //     title = "Levels of detail"
 //     seeds = 4                    # runs of each point that differ in noise alone: seeds 1 to 4
 //     repeats = 2                  # timed frames of a run after its first
+//     where = ["samples * edge_pixels <= 64"]  # points of which one does not hold are left out: constraint.h
 //     rank = ["rmse"]              # figures that points are ranked by, whose ratios tell what settings do
 //     [settings]                   # of all points, where they state nothing else
 //     scene = "../scenes/showcase.toml"
@@ -50,6 +51,9 @@ struct Vocabulary {
     /// equal settings are equal values.
     std::function<std::string(std::string_view key, Value& value)> wrong;
     std::vector<std::string> figures; // that plots may show
+    /// What a setting of a point of `file` is where the study does not say, as of a machine's file; none: it
+    /// must say. Throws std::exception (cause; mend) for what is no number, or no setting.
+    std::function<double(const Settings& point, std::string_view key, const std::string& file)> preset{};
 };
 
 /// Another program: a command is run for each point, with words in braces replaced: settings of the point

@@ -1,5 +1,6 @@
 #include "sim/program/study_runs.h"
 
+#include "analysis/study/error.h"
 #include "razor/program/arguments.h"
 #include "razor/program/study/command.h"
 #include "razor/program/study/scene_knobs.h"
@@ -93,6 +94,35 @@ std::string wrong_setting(std::string_view key, Value& value) {
     return razor::unknown_setting(key, run_keys());
 }
 
+/// Of a setting that a study's point leaves to its machine's file.
+double machine_number(const Settings& point, std::string_view key, const std::string& study) {
+    const Parameter* const p = find_parameter(key);
+    if (p == nullptr && key.find('.') != std::string_view::npos)
+        throw analysis::StudyError(
+            fmt::format("unknown setting {}; did you mean {}?", key, nearest_key(key)));
+    const auto machine = point.find("machine");
+    if (p == nullptr || machine == point.end())
+        throw analysis::StudyError(
+            fmt::format("the study does not say {}; write it into [settings] or [knobs]", key));
+    const std::string file =
+        (std::filesystem::path(study).parent_path() / plain_text(machine->second)).string();
+    std::vector<std::string> chosen; // what the point sets that sets others, as a preset of memory does
+    for (const auto& [name, value] : point)
+        if (const Parameter* const set = find_parameter(name); set != nullptr && sets_others(*set))
+            chosen.push_back(fmt::format("{}={}", name, plain_text(value)));
+    static std::map<std::pair<std::string, std::vector<std::string>>, Config>
+        read; // points share few of them
+    auto found = read.find({file, chosen});
+    if (found == read.end())
+        found = read.emplace(std::pair{file, chosen}, read_machine(file, chosen)).first;
+    Config config = found->second; // parameters are read by what could change them
+    if (const auto* const whole = std::get_if<IntegerKind>(&p->kind))
+        return static_cast<double>(whole->at(config));
+    if (const auto* const real = std::get_if<RealKind>(&p->kind))
+        return real->at(config);
+    throw analysis::StudyError(fmt::format("{} is no number; leave points out by it with [[exclude]]", key));
+}
+
 double number_at(const nlohmann::ordered_json& json, const char* pointer) {
     return razor::pointed_numbers(json, pointer).front();
 }
@@ -123,6 +153,7 @@ razor::StudyProgram machine_study_program() {
     out.figures.insert(out.figures.end(), report_figures().begin(), report_figures().end());
     out.vocabulary.kind = "machine";
     out.vocabulary.wrong = wrong_setting;
+    out.vocabulary.preset = machine_number;
     out.name_figures();
     out.views.plots = {{"host_processor_seconds", "cycles_error", {}}};
     out.remarks = {
@@ -139,6 +170,7 @@ razor::StudyProgram sweep_program() {
     out.figures.push_back({"host_processor_seconds", "host, processor seconds"});
     out.vocabulary.kind = "sweep";
     out.vocabulary.wrong = wrong_setting;
+    out.vocabulary.preset = machine_number;
     out.name_figures();
     out.views = {
         {{"seconds", "energy_joules", {}}}, {"cycles", "dram_bytes", "energy_joules"}, true, {"limited_by"}};

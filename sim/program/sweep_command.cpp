@@ -24,7 +24,10 @@ void SweepCommand::add_to(CLI::App& app) {
         figures += fmt::format("  {:<24} {}\n", figure.name, figure.label);
     command_->footer(fmt::format(
         "A study is a file of kind = \"sweep\": [settings] of all designs, lists under [knobs] of which each "
-        "combination is a design, [[exclude]] for those to leave out, seeds = N for N runs of each that "
+        "combination is a design, where = [\"core.lanes * chip.threads <= 64\"] for what must hold of their "
+        "numbers (what the study does "
+        "not set is as the machine's file says), [[exclude]] for those to leave out, seeds = N for N runs of "
+        "each that "
         "differ in "
         "noise (sim.jitter) alone. Three and more are needed to rank designs: those whose runs overlap are "
         "not told "

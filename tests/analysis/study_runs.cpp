@@ -1,5 +1,6 @@
 // Points are measured once, wherever a study is stopped; what fails or crashes is a result that says so.
 #include "analysis/study/error.h"
+#include "analysis/study/isolated.h"
 #include "analysis/study/run.h"
 #include "tests/analysis/study_parts.h"
 #include "tests/scene/temporary_folder.h"
@@ -150,6 +151,23 @@ TEST_F(StudyRun, DamagedResultsAreSaidToBe) {
     std::ofstream(file) << text(folder_ / "s" / "results" / (points_[1].name + ".json"));
     EXPECT_THROW(store_.read_result(points_[0]), StudyError);
     EXPECT_THROW(Store(file / "under"), StudyError);
+}
+
+// Waiting ends with the child, neither before nor long after.
+TEST(StudyRuns, WaitsForAChildAsLongAsItTakes) {
+    for (int i = 0; i < 3; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        Isolated child([] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            return 7;
+        });
+        ChildrenEnd({child.process()}).wait(60000);
+        Ended how;
+        EXPECT_TRUE(child.has_ended(how));
+        EXPECT_EQ(how.code, 7);
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+        ChildrenEnd({}).wait(1); // nobody: as long as was said
+    }
 }
 
 } // namespace

@@ -205,10 +205,41 @@ TEST_F(DesignSweep, TwoAtOnceAndAKillAreSafe) {
             << entry.path();
 }
 
+// Settings that the study does not make are as the machine's file, or what the point chooses of it, has them.
+TEST_F(DesignSweep, ConstraintsKnowTheMachine) {
+    const auto points = [&](const std::string& where) {
+        folder_.file("where.toml", "kind = \"sweep\"\nwhere = [" + where +
+                                       "]\n[settings]\nmachine = \"tiny.toml\"\n[knobs]\n"
+                                       "memory.preset = [\"ddr3-1600k\", \"hbm2\"]\ncore.lanes = [4, 8]\n");
+        const Outcome plan = sweep("where.toml plan -o w");
+        EXPECT_EQ(plan.code, 0) << plan.err;
+        return plan.out;
+    };
+    const std::string all = points("\"core.lanes >= 1\"");
+    EXPECT_EQ(lines(all), 4U);
+    EXPECT_EQ(points("\"chip.threads == 2 and chip.cores * chip.threads == 8\""), all) << "tiny's";
+    const std::string wide = points("\"core.lanes * chip.threads > 8\"");
+    EXPECT_EQ(lines(wide), 2U);
+    EXPECT_EQ(wide.find("lanes 4"), std::string::npos);
+    const std::string both = points("\"memory.row_bytes == 8 KiB\", \"core.lanes == 4\"");
+    EXPECT_EQ(lines(both), 1U) << "the preset's";
+    EXPECT_NE(both.find("ddr3"), std::string::npos);
+}
+
 TEST_F(DesignSweep, RefusesMistakesWithOneLine) {
+    const std::string knobs = "[settings]\nmachine = \"tiny.toml\"\n[knobs]\ncore.lanes = [4, 8]\n";
+    const auto where = [&](const std::string& text) {
+        return "kind = \"sweep\"\nwhere = [\"" + text + "\"]\n" + knobs;
+    };
     const std::string begin = "kind = \"sweep\"\n[settings]\nmachine = \"tiny.toml\"\n[knobs]\n";
     const std::pair<std::string, const char*> files[] = {
         {begin + "l2.size = [1]\n", "bad.toml:5:12: unknown setting l2.size; did you mean l2.size_bytes?"},
+        {where("core.threads <= 4"),
+         "bad.toml:2:9: unknown setting core.threads; did you mean chip.threads?"},
+        {where("core.gather <= 4"), "bad.toml:2:9: core.gather is no number"},
+        {where("workers <= 4"), "bad.toml:2:9: the study does not say workers"},
+        {where("core.lanes < 2 < 4"), "bad.toml:2:9: \"core.lanes < 2 < 4\", character 16: a second"},
+        {where("core.lanes > 8"), "all points are left out; mend where or [[exclude]]"},
         {begin + "l2.size_bytes = [\"4 KB\"]\n", "bad.toml:5:18: l2.size_bytes is \"4 KB\""},
         {begin + "workers = [0]\n", "bad.toml:5:12: workers = 0 is not possible"},
         {begin + "tiles = [\"3..1\"]\n", "bad.toml:5:10: "},

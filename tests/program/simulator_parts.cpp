@@ -239,5 +239,23 @@ TEST_F(Simulator, DiscardsWhatIsDead) {
     }
 }
 
+// What drawings hold: tests/sim/chip_drawing.cpp.
+TEST_F(Simulator, DrawsAChip) {
+    const std::string start = "describe --machine " + tiny + " -o ";
+    const Outcome drawn = simulator(start + "chip.svg");
+    ASSERT_EQ(drawn.code, 0) << drawn.err;
+    EXPECT_EQ(text("chip.svg").substr(0, 5), "<?xml");
+    EXPECT_NE(text("chip.svg").find("<title>core 3: 2 threads"), std::string::npos);
+    ASSERT_EQ(simulator(start + "chip.PNG").code, 0);
+    EXPECT_EQ(text("chip.PNG").substr(1, 3), "PNG");
+    const std::size_t before = folder_.count();
+    for (const char* bad : {"chip.pdf", "none/chip.svg", "a.svg -g chip.cores=0"}) {
+        const Outcome refused = simulator(start + bad);
+        EXPECT_EQ(refused.code, 2) << bad;
+        EXPECT_EQ(refused.error_lines(), 1) << refused.err;
+    }
+    EXPECT_EQ(folder_.count(), before);
+}
+
 } // namespace
 } // namespace razor

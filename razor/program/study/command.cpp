@@ -1,5 +1,6 @@
 #include "razor/program/study/command.h"
 
+#include "analysis/study/isolated.h"
 #include "analysis/study/run.h"
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"
@@ -10,7 +11,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <ctime>
 #include <fcntl.h>
 #include <spawn.h>
 #include <string_view>
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr timespec nap{0, 2'000'000}; // 2 ms
+constexpr int look_ms = 50; // at whether it is to stop
 
 std::string last_line(const fs::path& file) {
     std::error_code error;
@@ -91,6 +91,7 @@ void run_command(const std::vector<std::string>& command, const fs::path& log,
     if (wrong != 0)
         throw UserError(fmt::format("{}: cannot be run ({}); build it, or mend the command",
                                     printable(command[0], 300), std::strerror(wrong)));
+    const analysis::ChildrenEnd ended_soon({child});
     int status = 0;
     bool told = false;
     for (;;) {
@@ -103,7 +104,7 @@ void run_command(const std::vector<std::string>& command, const fs::path& log,
             told = true;
             ::kill(child, SIGTERM);
         }
-        ::nanosleep(&nap, nullptr);
+        ended_soon.wait(look_ms);
     }
     if (stop.load())
         throw analysis::Stopped{};
