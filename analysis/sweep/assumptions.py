@@ -3,6 +3,11 @@
 
     analysis/sweep/assumptions.py --machine configs/machines/tiny.toml --designs kdtree.share=chip kdtree.share=worker -- --size 64x64 --spp 1
     analysis/sweep/assumptions.py --machine M.toml --designs l2.size_bytes=1MiB l2.size_bytes=2MiB --only memory l2 --csv a.csv
+    analysis/sweep/assumptions.py configs/studies/assumptions-copernicus.toml -o out/assumptions-copernicus --jobs 2
+
+A study (assumptions_study.py says how it reads) ends in a page, FOLDER/study.html, with the tornado (study.png too, where
+Debian's python3-matplotlib is), and study.csv. FOLDER/runs keeps what has been run: the same command goes on after whatever
+stopped it.
 
 The conclusion is which design takes fewer cycles, if they differ by more than what an irrelevant change may move. That is
 measured: both designs run --seeds times with sim.jitter, their ratio is the mean, and noise two standard deviations of it;
@@ -15,14 +20,19 @@ and the simulator's own are left out. What follows -- goes to every run of `razo
 
 Exit code: 0; 1 if the conclusion flips anywhere; 2 on a mistake; 130 after Ctrl-C.
 """
+import argparse
+import functools
+import os
 import statistics
 import sys
 import tempfile
 
+import assumptions_study
 import simulation
 from simulation import Mistake
 
 FACTORS = [0.5, 2]
+TOP = 24  # bars of a page's tornado
 WITHOUT_TIME = ("energy.", "sim.")  # beginnings of keys
 ENERGIES = ("_pj", "_mw")  # ends of keys
 
@@ -61,7 +71,7 @@ def measure(options):
     with tempfile.TemporaryDirectory() as folder, simulation.Pool(options.jobs) as pool:
 
         def start(*settings):
-            return [pool.submit(simulation.run, options.simulator, options.machine, [design, *settings], options.more,
+            return [pool.submit(options.run, options.simulator, options.machine, [design, *settings], options.more,
                                 tempfile.mkdtemp(dir=folder)) for design in options.designs]
 
         seeds = range(1, options.seeds + 1) if options.noise is None else [0]
@@ -99,23 +109,49 @@ def measure(options):
     return rows, unchanged, noise, refused
 
 
-def show(options, rows, ratio, noise, refused):
+def told(options, rows, ratio, noise, refused):
+    """The table, a line of conclusion before and after it."""
     first, second = options.designs
     better = {-1: f"{second} is better", 0: "neither is better", 1: f"{first} is better"}
-    print(f"{second} takes {ratio:.3f} of the cycles of {first}: {better[conclusion(ratio, noise)]}"
-          f" (noise {100 * noise:.3g} %{'' if options.noise is not None else f', of {options.seeds} seeds'})")
+    out = [f"{second} takes {ratio:.3f} of the cycles of {first}: {better[conclusion(ratio, noise)]}"
+          f" (noise {100 * noise:.3g} %{'' if options.noise is not None else f', of {options.seeds} seeds'})"]
     width = max(len(r["key"]) for r in rows) + 1
-    print(f"{'assumed':<{width}}{'value':>12}{'changed':>12}{'first':>9}{'ratio':>9}  conclusion")
+    out.append(f"{'assumed':<{width}}{'value':>12}{'changed':>12}{'first':>9}{'ratio':>9}  conclusion")
     for r in rows:
-        print(f"{r['key']:<{width}}{r['value']:>12g}{r['changed']:>12g}{r['first']:>9.3f}{r['ratio']:>9.3f}  {r['verdict']}")
+        out.append(f"{r['key']:<{width}}{r['value']:>12g}{r['changed']:>12g}{r['first']:>9.3f}{r['ratio']:>9.3f}  {r['verdict']}")
     if refused:
-        print("not changed: " + "; ".join(f"{key} x {factor:g} ({why})" for key, factor, why in refused))
+        out.append("not changed: " + "; ".join(f"{key} x {factor:g} ({why})" for key, factor, why in refused))
     counts = [f"{words} in {sum(r['verdict'] == verdict for r in rows)}" for verdict, words in
               (("stays", "stays"), ("lost", "is lost"), ("appears", "appears"), ("FLIPS", "flips"))]
-    print(f"of {len(rows)} changes the conclusion {', '.join(counts)}")
+    out.append(f"of {len(rows)} changes the conclusion {', '.join(counts)}")
+    return out
+
+
+def parse_study(arguments):
+    """Of a study's file; its folder is where its results are."""
+    parser = argparse.ArgumentParser(prog="assumptions.py", allow_abbrev=False, exit_on_error=False)
+    parser.error = lambda message: (_ for _ in ()).throw(Mistake(f"{message}; see assumptions.py --help"))
+    parser.add_argument("study", metavar="STUDY.toml")
+    parser.add_argument("-o", "--output", metavar="FOLDER", help="without it, out/ and the study's name")
+    parser.add_argument("--full", action="store_true")
+    parser.add_argument("--jobs", default="1", metavar="N")
+    parser.add_argument("--simulator", metavar="PATH")
+    given = parser.parse_args(arguments)
+    study = assumptions_study.read(given.study, given.full)
+    name = os.path.splitext(os.path.basename(given.study))[0]
+    folder = given.output or os.path.join("out", name)
+    kept = assumptions_study.Kept(os.path.join(folder, "runs"))
+    own, more = assumptions_study.arguments(given.study, study)
+    own += ["--jobs", given.jobs, "--csv", os.path.join(folder, "study.csv")]
+    options = parse([*own, *(["--simulator", given.simulator] if given.simulator else []), "--", *more])
+    options.run = functools.partial(kept.run, simulation.run)
+    options.page, options.title = os.path.join(folder, "study.html"), str(study.get("title", name))
+    return options
 
 
 def parse(arguments):
+    if arguments and not arguments[0].startswith("-"):
+        return parse_study(arguments)
     arguments, more = simulation.split_arguments(arguments)
     parser = simulation.parser("assumptions.py", __doc__)
     parser.add_argument("--designs", required=True, nargs=2, metavar="KEY=VALUE", help="what is compared")
@@ -123,6 +159,7 @@ def parse(arguments):
     parser.add_argument("--seeds", type=int, default=10, metavar="N", help="that noise is measured with; 10 by default")
     parser.add_argument("--noise", type=float, metavar="PERCENT", help="that means nothing, instead of measuring it")
     options = parser.parse_args(arguments)
+    options.run, options.page = simulation.run, None
     for design in options.designs:
         if "=" not in design:
             raise Mistake(f"--designs {design}: give KEY=VALUE")
@@ -142,7 +179,10 @@ def main():
         unchanged = {"key": "", "value": "", "changed": "", "first": 1.0, "ratio": ratio, "verdict": "unchanged",
                      "noise": noise}
         simulation.write_csv(options.csv, [unchanged, *rows])
-    show(options, rows, ratio, noise, refused)
+    lines = told(options, rows, ratio, noise, refused)
+    print("\n".join(lines))
+    if options.page:
+        assumptions_study.write_page(options.page, options.title, lines, options.csv, TOP)
     return 1 if any(r["verdict"] == "FLIPS" for r in rows) else 0
 
 
