@@ -30,6 +30,8 @@ struct alignas(64) Hart {
     Core* core;
     std::uint32_t number;
     std::uint32_t memory_operands = 0; // that the operation at hand may still have
+    std::int64_t ahead = 0;   // while caches are only warmed: up to the window's end, in 1/256 cycles ...
+    std::uint32_t pace = 256; // ... of which an instruction takes so many
     // Issue order (rule 2).
     Due bound;               // no later operation issues before
     std::vector<Due> window; // when the last operations issued, a ring
@@ -89,6 +91,7 @@ struct alignas(64) Hart {
     cycle asked = 0; // for the word's line
     // While it sleeps.
     const std::int32_t* waits_for = nullptr;
+    std::uint64_t slept = 0;           // cycles, so far
     cycle next_look = 0;               // at the word, in issue slots taken in advance ...
     std::vector<Calendar::Slot> looks; // ... these, of the window at hand
 

@@ -232,6 +232,8 @@ stamp Engine::loaded_ticket(Hart& h, const Data& data) {
 }
 
 void Engine::stored(Hart& h, const Data& data) {
+    if (warming_) [[unlikely]]
+        return;
     h.stored = std::max(h.stored, data.last);
     h.complete.later(Due(data.last, data.from));
     if (data.open == 0) [[likely]]
@@ -268,7 +270,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
     if (h.memory_operands != 0) {
         --h.memory_operands;
         ++h.counters.memory_operands;
-        from = come_to_issue(h, now);
+        from = warming_ ? h.now : come_to_issue(h, now);
     } else {
         from = issue(h, vector_kind(load_kind), pieces, now).first;
     }
@@ -276,7 +278,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
     read_lanes(h, place, lanes, translated(h, place, last, from), data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
-    else
+    else if (!warming_)
         ready.later(Due(follow(data.first, data.last, span), Cause::spill));
 }
 
@@ -410,7 +412,7 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
     settle(h, ready);
     Issued at = issue(h, load_kind, ready);
     if (may_prefetch(h, address(p))) {
-        cycle t = h.core->ports.take(at.first << port_shift_) >> port_shift_;
+        cycle t = warming_ ? h.now : h.core->ports.take(at.first << port_shift_) >> port_shift_;
         ++h.core->l1.counters().busy_cycles;
         note_core(h, traces::Kind::prefetch, address(p), line_bytes_, t, traces::Part::operation);
         if (recorder_ != nullptr)

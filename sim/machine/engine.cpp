@@ -107,6 +107,15 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       host_threads_(std::min(host_threads, static_cast<int>(config.chip.tiles))), options_(options),
       worker_(worker), intervals_(options.interval, window_cycles_), workers_(workers) {
     describe_kinds();
+    if (options.sampling != nullptr) {
+        const double instruction =
+            static_cast<double>(config.chip.threads) / static_cast<double>(config.core.issue_width);
+        const auto line = static_cast<double>(shortest_line_);
+        sampler_.emplace(*options.sampling,
+                         SampledCosts{instruction, instruction, static_cast<double>(config.l2.latency), line,
+                                      static_cast<double>(config.l2.latency)});
+        set_paces();
+    }
     const std::uint64_t spill_bytes = spill_bytes_of(config);
     bool shares = config.core.shared_classes != "none";
     for (integer t = 0; t < config.chip.tiles; ++t) {
@@ -232,8 +241,9 @@ void Engine::fail(const std::exception_ptr& why) {
 }
 
 void Engine::run_tile(Tile& tile) {
-    for (Hart* sleeper : tile.sleepers)
-        look(*sleeper, window_end_);
+    if (!warming_)
+        for (Hart* sleeper : tile.sleepers)
+            look(*sleeper, window_end_);
     if (tile.scheduler.next() < window_end_)
         tile.scheduler.run(window_end_);
     if (tile.events)
@@ -449,7 +459,7 @@ void Engine::run_workers() {
     while (!failure_ && unfinished())
         if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed))
             fail(std::make_exception_ptr(Stopped()));
-        else if (!run_window())
+        else if (!(sampler_ ? run_sampled_window() : run_window()))
             fail(std::make_exception_ptr(Deadlock(describe_deadlock())));
     if (failure_) {
         for (Tile& tile : tiles_)

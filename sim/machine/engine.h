@@ -11,6 +11,7 @@
 #include "sim/machine/homes.h"
 #include "sim/machine/host_threads.h"
 #include "sim/machine/machine.h"
+#include "sim/machine/sampler.h"
 #include "sim/machine/tile.h"
 #include "sim/machine/windows.h"
 #include "sim/machine/word_moves.h"
@@ -48,6 +49,8 @@ public:
     Engine(const Config& config, const isa::address_space& space, int workers, const Labels& labels,
            int host_threads, const RunOptions& options, const std::function<void(int)>& worker);
     Report run();
+    /// What a sampled run estimates; after run().
+    Estimate estimate() const;
 
     // --- operations, by the hart that runs them (compute.cpp, access.cpp, shared_words.cpp)
     stamp compute(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready, bool vector);
@@ -128,6 +131,12 @@ public:
     /// Of the computation whose operands are needed next, some may come from the stack with it.
     void allow_memory_operands(Hart& h) const { h.memory_operands = memory_operands_; }
     std::uint32_t vector_instructions() const { return pieces_; }
+    /// Whether caches are warmed by what threads touch, and nothing takes time (warming.cpp).
+    bool warming() const { return warming_; }
+    /// ... of an operation, once all is asked of its operands; vectors in `s` are used.
+    template <class... Stamp>
+    stamp pass_operation(Hart& h, std::size_t kind, std::uint32_t instructions, bool vector,
+                         const Stamp&... s);
     bool folds_addresses() const { return folding_; }
     bool shuffles_by_lane() const { return lane_shuffle_; }
     void assemble_shuffle(Hart& h, Due ready);
@@ -195,6 +204,19 @@ private:
             h.bound.later(Due(t - reach_, Cause::slots));
     }
     cycle turn(Hart& h, cycle t);
+    // --- nothing but caches (warming.cpp)
+    Issued pass(Hart& h, std::size_t kind, std::uint32_t instructions);
+    void warm_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots);
+    cycle passing(const Hart& h) const;
+    void pause(Hart& h);
+    void come_to(Hart& h) const;
+    void begin_passing(Hart& h, bool writes, bool modifies, std::uint64_t address);
+    void begin_warming();
+    void end_warming();
+    bool warm_window();
+    bool run_sampled_window();
+    void set_paces();
+    SampledWork work_so_far() const;
     cycle hold_core(Hart& h, cycle t);
     void account_issue(Hart& h, Issued at, std::uint32_t instructions, Due ready) const;
     cycle come_to_issue(Hart& h, Due ready);
@@ -312,6 +334,11 @@ private:
     }
     void move_looks(const Hart& sleeper, cycle since, std::uint64_t looks);
     [[noreturn]] static void outside(const void* p);
+    void enter(Hart& h, std::size_t column) const {
+        h.enter(column);
+        if (!paces_.empty())
+            h.pace = paces_[column];
+    }
     static void check_label(const char* what, std::size_t number, std::size_t count);
 
     void describe_kinds();
@@ -348,6 +375,7 @@ private:
 
     // --- constants of the machine, in the types that the hot paths want
     Config config_;
+    bool warming_ = false;      // see warming.cpp
     std::uint32_t pieces_;      // machine instructions of a vector operation
     std::uint32_t piece_lanes_; // logical lanes of one of them, a power of two
     unsigned piece_shift_;      // of their bytes
@@ -405,7 +433,11 @@ private:
     RunOptions options_;
     std::function<void(int)> worker_;
     Intervals intervals_;
-    Interval at_end_; // of the run: what has been counted
+    Interval at_end_;                                     // of the run: what has been counted
+    std::optional<Sampler> sampler_;                      // if the run is sampled
+    std::array<std::uint64_t, cause_count> miss_paces_{}; // 1/256 cycles, by where a line came from
+    std::uint64_t word_pace_ = 0;                         // ... of an operation on a shared word
+    std::vector<std::uint32_t> paces_;                    // ... of an instruction, by column
     std::uint64_t misplaced_lines_ = 0, incoherent_lines_ = 0;
     int workers_;
 };

@@ -14,13 +14,17 @@ void Engine::begin_part(cycle t) {
         h.account(h.accounted, t, Cause::idle);
         h.accounted = h.now = t;
         h.bound = Due(t, Cause::idle);
-        h.enter(0);
+        enter(h, 0);
         if (h.worker < 0)
             continue;
         h.finished = false;
         const auto work = [this, &h] {
             running_hart = &h;
             worker_(h.worker);
+            if (warming_) {
+                h.now = passing(h);
+                h.accounted = std::max(h.accounted, h.now);
+            }
             h.finished = true;
         };
         h.tile->scheduler.add(h.number, t, work, [&h] { h.prefetch(); });

@@ -47,6 +47,10 @@ Report Engine::report() const {
     r.network = beyond_->network().report();
     r.memory = beyond_->counters();
     r.memory_by_rank = beyond_->rank_counters();
+    for (const Tile& tile : tiles_) {
+        r.memory.reads += tile.leaving.reads_at_once;
+        r.memory.writes += tile.leaving.writes_at_once;
+    }
     r.work.resize(labels_.columns());
     for (const Tile& tile : tiles_) {
         for (const Jitter& jitter : tile.jitters) {

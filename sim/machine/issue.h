@@ -6,13 +6,47 @@
 
 namespace sim {
 
+/// While caches are only warmed: instructions are counted, and take what the sampler says of their kind of
+/// work.
+inline Issued Engine::pass(Hart& h, std::size_t kind, std::uint32_t instructions) {
+    h.at->instructions += instructions;
+    h.by_kind[kind] += instructions;
+    h.ahead -= static_cast<std::int64_t>(std::uint64_t{instructions} * h.pace);
+    return {h.now, h.now};
+}
+
+/// ... and a line is accessed as ever, but for time.
+inline void Engine::warm_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses,
+                              std::uint32_t slots) {
+    Cache& l1 = h.core->l1;
+    l1.counters().busy_cycles += slots;
+    if (notes_sites_) [[unlikely]]
+        meet_site(h);
+    const Cause from = l1.access(line, write, accesses, h.now, h.column).from;
+    if (from != Cause::l1)
+        h.ahead -= static_cast<std::int64_t>(miss_paces_[static_cast<std::size_t>(from)]);
+    if (notes_sites_) [[unlikely]]
+        pass_site(h);
+}
+
+/// It goes on at its cycle `now`, in the window at hand.
+inline void Engine::come_to(Hart& h) const {
+    h.ahead = (static_cast<std::int64_t>(window_end_) - static_cast<std::int64_t>(h.now)) * 256;
+}
+
 /// Returns when the other threads have come as far as this one's cycle `t`.
 inline cycle Engine::turn(Hart& h, cycle t) {
+    if (warming_) [[unlikely]]
+        return t;
     Scheduler::Key k = Scheduler::key(t, h.number);
     if (k > h.tile->scheduler.horizon()) {
         Away away(h);
         h.tile->scheduler.yield(k);
         come_back(h, t);
+        if (warming_) [[unlikely]] { // since then
+            h.now = std::max(h.now, t);
+            come_to(h);
+        }
     }
     h.now = std::max(h.now, t);
     return t;
@@ -62,6 +96,8 @@ inline void Engine::note_issue(Hart& h, std::size_t kind, std::uint32_t instruct
 }
 
 inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
+    if (warming_) [[unlikely]]
+        return pass(h, kind, instructions);
     const cycle t = come_to_issue(h, ready);
     Issued at{};
     if (needs_[kind] == Needs::slot) {
@@ -76,6 +112,8 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instruction
 
 /// ... of a single instruction.
 inline Issued Engine::issue(Hart& h, std::size_t kind, Due ready) {
+    if (warming_) [[unlikely]]
+        return pass(h, kind, 1);
     const cycle t = come_to_issue(h, ready);
     cycle at;
     if (needs_[kind] == Needs::slot)
@@ -101,6 +139,8 @@ inline Issued Engine::issue_all(Hart& h, std::size_t kind, std::uint32_t instruc
 /// Ends an operation: later ones count from it (rule 2). A miss that waited for an MSHR left the pipeline
 /// only then.
 inline void Engine::finish_issue(Hart& h, Issued at, cycle granted, Cause held) {
+    if (warming_) [[unlikely]]
+        return;
     Due& slot = h.window[h.position];
     h.bound.later(slot);
     if (granted > at.last)
@@ -161,6 +201,8 @@ inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t byt
                                std::uint32_t accesses, std::uint32_t slots, cycle& from, Data& data) {
     Core& core = *h.core;
     const std::uint64_t line = address >> line_shift_;
+    if (warming_) [[unlikely]]
+        return warm_line(h, line, write, accesses, slots);
     Calendar::Span s = core.ports.take(from << port_shift_, slots);
     core.l1.counters().busy_cycles += slots;
     cycle at = s.first >> port_shift_;
@@ -204,6 +246,10 @@ inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t byt
 /// What a load brings.
 inline stamp Engine::loaded(Hart& h, const Data& data, bool vector, bool broadcast) {
     stamp r;
+    if (warming_) [[unlikely]] {
+        r.value = vector ? make_value(h, broadcast) : 0;
+        return r;
+    }
     if (data.open != 0) [[unlikely]] {
         r = loaded_ticket(h, data);
     } else {

@@ -4,6 +4,7 @@
 #include "isa/address_space.h"
 #include "sim/config/config.h"
 #include "sim/machine/report.h"
+#include "sim/machine/sampler.h"
 #include "sim/network/network.h"
 
 #include <atomic>
@@ -45,6 +46,11 @@ struct RunOptions {
     Recorder* recorder = nullptr;
     /// Ends the run at the next window's beginning once it is true.
     const std::atomic<bool>* stop = nullptr;
+    /// If it is given, the run is sampled (sampler.h): the report counts what was done, but for time, and
+    /// laws are checked only where all was simulated in detail. One frame, one thread of the host, no
+    /// recorder, no intervals.
+    const Sampling* sampling = nullptr;
+    Estimate* estimate = nullptr; // of a sampled run
 };
 
 class Machine {
@@ -54,6 +60,8 @@ public:
     /// Hardware threads: the most workers that can run.
     int threads() const { return static_cast<int>(config_.all_threads()); }
     const Config& config() const { return config_; }
+    /// Why runs of this machine cannot be sampled, in a few words; empty if they can.
+    std::string not_sampled() const;
     /// Calls worker(0 .. workers-1), each on a hardware thread of its own (chip.placement), with caches cold
     /// and time at 0. The workers' code is compiled for the target `simulated` and touches memory of `space`
     /// alone. Rethrows what a worker or a page service throws, after all other workers have been unwound;

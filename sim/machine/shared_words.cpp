@@ -29,6 +29,8 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
         return;
     bool writes = kind != isa::timing::atomic::load_acquire;
     std::uint64_t a = address(p);
+    if (warming_) [[unlikely]]
+        return begin_passing(h, writes, kind != isa::timing::atomic::store_release, a);
     Scheduler& scheduler = h.tile->scheduler;
     auto catch_up =
         [&h](cycle t) { // what is independent of the word does not stay behind for as long as it waits
@@ -173,13 +175,13 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
             h.core->words.write(release);
             note_word(asker(h), 1, traces::Kind::word, release, Passing::of(release, {}));
             ready = Due(t, Cause::synchronise);
-            if (chip)
+            if (chip && !warming_)
                 move_line(h, a, t, 0); // others wait for it, not the writer
         } else {
             const cycle service = wide(config_.coherence.atomic_cycles);
             Due seen = ready = h.acting;
             check_visible(h, a, t, seen);
-            if (chip)
+            if (chip && !warming_)
                 ready.later(Due(move_line(h, a, t, service), Cause::synchronise));
             else
                 ready = seen;
@@ -189,12 +191,14 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
         if (wrote)
             publish(h, a, t, ready.at(), chip);
     }
+    if (warming_) [[unlikely]]
+        return {};
     if (!is_ticket(r.last)) {
         h.complete.later(ready);
         r.first = r.last = ready.at();
         r.cause = static_cast<std::uint8_t>(ready.why());
     }
-    if (h.tile->scheduler.stepping()) { // the deed is done
+    if (h.tile->scheduler.stepping() && !warming_) { // the deed is done
         Away away(h);
         h.now = std::max(h.now, window_end_);
         come_back(h, window_end_);
@@ -252,7 +256,8 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         h.waits_for = p;
         h.next_look = since + wide(config_.core.spin_period);
         h.tile->sleepers.push_back(&h);
-        look(h, window_end_);
+        if (!warming_)
+            look(h, window_end_);
         {
             Away away(h);
             h.tile->scheduler.park();
@@ -267,10 +272,13 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
             if (h.interval != 0) [[unlikely]]
                 move_looks(h, since, looks);
             h.account(h.accounted, woken, Cause::synchronise);
+            h.slept += woken - h.accounted;
             h.accounted = woken;
         }
         h.bound.later(Due(woken, Cause::synchronise));
         h.now = std::max(h.now, woken);
+        if (warming_)
+            come_to(h);
     }
     return after_atomic(h, isa::timing::atomic::load_acquire, p, false);
 }
@@ -280,6 +288,8 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
 void Engine::request_page(Hart& h, isa::page_service& service, std::int32_t space, std::int32_t kind,
                           std::int32_t index) {
     ++h.counters.pages;
+    if (warming_)
+        h.now = passing(h);
     auto request = [&service, space, kind, index] { service.make_page(space, kind, index); };
     Away away(h);
     if (tiles_.size() == 1) {
@@ -287,6 +297,8 @@ void Engine::request_page(Hart& h, isa::page_service& service, std::int32_t spac
     } else {
         h.tile->deeds.push_back({h.now, &h, request});
         h.tile->scheduler.park();
+        if (warming_)
+            come_to(h);
     }
 }
 
@@ -301,7 +313,7 @@ std::size_t Engine::set_phase(Hart& h, std::size_t phase) {
     std::size_t phases = labels_.phases.size();
     check_label("phase", phase, phases);
     std::size_t before = h.column % phases;
-    h.enter(h.column - before + phase);
+    enter(h, h.column - before + phase);
     return before;
 }
 
@@ -309,7 +321,7 @@ std::size_t Engine::set_kind(Hart& h, std::size_t kind) {
     std::size_t phases = labels_.phases.size();
     check_label("kind", kind, labels_.kinds.size());
     std::size_t before = h.column / phases;
-    h.enter(kind * phases + h.column % phases);
+    enter(h, kind * phases + h.column % phases);
     return before;
 }
 

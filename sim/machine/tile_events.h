@@ -30,12 +30,20 @@ public:
     }
     // Who has the right to write the line is said when this has acted.
     Answer read(const Access& a) override {
+        if (at_once()) [[unlikely]]
+            return cache_.read(a);
         return {enter(a, Kind::read), cache_.cause(), false, false, true};
     }
     Answer own(const Access& a) override { return {enter(a, Kind::own), cache_.cause(), false, false, true}; }
-    Answer write(const Access& a) override { return {enter(a, Kind::write), cache_.cause()}; }
+    Answer write(const Access& a) override {
+        if (at_once()) [[unlikely]]
+            return cache_.write(a);
+        return {enter(a, Kind::write), cache_.cause()};
+    }
     /// The line of this address will be dead when word of it has come.
     void discard(std::uint64_t address, cycle t, std::uint32_t asker) {
+        if (at_once()) [[unlikely]]
+            return cache_.discard(address);
         Access a{address, 0, t, 0};
         a.asker = asker;
         enter(a, Kind::discard);
@@ -59,6 +67,7 @@ private:
         bool booked = false; // its bank
         bool recalled = false;
     };
+    bool at_once() const;
     cycle enter(const Access& a, Kind kind);
     cycle after_others(const Access& a, Kind kind, cycle at) const;
     void happen(std::uint32_t slot, cycle now);
@@ -154,5 +163,10 @@ private:
     cycle now_ = 0;
     Floors beyond_;
 };
+
+/// Nothing is busy, nor on its way for long (Tickets::at_once).
+inline bool Arrivals::at_once() const {
+    return events_.tickets_.at_once();
+}
 
 } // namespace sim

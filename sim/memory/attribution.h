@@ -17,6 +17,8 @@ public:
 
     /// The cell of an access to an L1, whose line counts as touched.
     Traffic& touch(std::uint64_t address, std::size_t column) {
+        if (idle_) [[unlikely]]
+            return spill_[column];
         LineMap::Line* line = map_.line(address);
         if (line == nullptr)
             return spill_[column];
@@ -25,14 +27,18 @@ public:
     }
     /// The cell of anything else that happens to the line there.
     Traffic& cell(std::uint64_t address, std::size_t column) {
+        if (idle_) [[unlikely]]
+            return spill_[column];
         LineMap::Line* line = map_.line(address);
         return line == nullptr ? spill_[column] : cells(line->kind(tile_))[column];
     }
     void note_level(std::uint64_t address, std::uint64_t bytes, int level) {
-        map_.note_level(address, bytes, level, tile_, notes_);
+        if (!idle_)
+            map_.note_level(address, bytes, level, tile_, notes_);
     }
     void note_level_of(std::uint64_t address, std::uint64_t bytes, std::uint64_t other) {
-        map_.note_level_of(address, bytes, other, tile_, notes_);
+        if (!idle_)
+            map_.note_level_of(address, bytes, other, tile_, notes_);
     }
     /// Memory is asked for so many bytes of a line at cycle `t`, or is given them.
     void count_memory_read(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
@@ -43,6 +49,8 @@ public:
         ++cell(address, column).memory_writes;
         note(TraceLevel::memory, traces::Kind::write, address, bytes, t, column, tile_);
     }
+    /// From now on nobody asks what belongs to what, until it is said again.
+    void set_idle(bool on) { idle_ = on; }
     /// References of the tile are noted there, if any are.
     void trace(TraceTap& tap) { tap_ = &tap; }
     /// What happens at a level is noted for a trace of that level.
@@ -81,6 +89,7 @@ private:
     std::vector<std::unique_ptr<Traffic[]>> made_;
     std::vector<LineMap::Line*> notes_;
     Traffic* spill_;
+    bool idle_ = false;
     TraceTap* tap_ = nullptr;
 };
 

@@ -171,7 +171,7 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, 
     mshrs_.hold({line, t, below.ready, below.from, to_write ? Pool::What::line_to_write : Pool::What::line});
     count_useless(entry);
     array_.fill(entry, line);
-    array_.set_in_flight(entry, true);
+    array_.set_in_flight(entry, !tickets_.at_once());
     if (below.dirty) [[unlikely]]
         array_.set_dirty(entry, true);
     if (coherent_) [[unlikely]]
@@ -248,6 +248,10 @@ Answer Cache::special_access(std::uint64_t line, bool write, std::uint32_t acces
 
 Answer Cache::serve(const Access& a, bool write) {
     std::uint32_t slots = slots_of(a);
+    if (tickets_.at_once()) [[unlikely]] {
+        counters_.busy_cycles += slots;
+        return act(a, write, a.at);
+    }
     Calendar& bank = banks_[(a.address >> line_shift_) & bank_mask_];
     cycle start = bank.find_run(a.at, slots);
     Answer answer = act(a, write, start);

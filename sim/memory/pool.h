@@ -32,6 +32,8 @@ public:
     /// The first cycle from `t` on at which an entry is free; unknown if that depends on open tickets, or
     /// (who waits hears of their answers) at_most(the cycle).
     cycle take(cycle t) {
+        if (tickets_.at_once()) [[unlikely]]
+            return t;
         for (;;) {
             std::size_t held = 0;
             cycle floor = unknown; // of those that are open
@@ -58,6 +60,8 @@ public:
         }
     }
     void hold(const Hold& h) {
+        if (tickets_.at_once()) [[unlikely]]
+            return;
         if (known_.size() - first_ + open_.size() >= limit_)
             unlimited_ ? drop_ended(h.from) : drop_oldest();
         const Kept kept{h, number_++};

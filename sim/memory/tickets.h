@@ -93,6 +93,9 @@ public:
     const Floors& floors() const { return floors_; }
     void set_floors(const Floors& floors) { floors_ = floors; }
     std::size_t size() const { return entries_.size(); }
+    /// Whether nobody asks for any now: what is asked for is there at once, however busy things are.
+    bool at_once() const { return at_once_; }
+    void set_at_once(bool on) { at_once_ = on; }
     /// Forgets the oldest answered tickets whose time has come by then: nobody's next operation is earlier.
     void forget(cycle by) {
         while (!entries_.empty() && known(entries_.front()) && entries_.front().time.last <= by) {
@@ -146,6 +149,7 @@ private:
     std::deque<cycle> parts_;
     std::uint64_t begin_ = 0, parts_begin_ = 0;
     Floors floors_;
+    bool at_once_ = false;
 };
 
 } // namespace sim

@@ -16,6 +16,7 @@ namespace sim {
 struct Leaving {
     std::vector<Request> requests;
     std::uint64_t sequence = 0;
+    std::uint64_t reads_at_once = 0, writes_at_once = 0; // lines, where memory's part takes no time
 };
 
 class TileExit final : public Below {
@@ -29,6 +30,10 @@ public:
     Answer read(const Access& a) override {
         if (to_memory_ && !coherent_)
             attribution_.count_memory_read(a.address, a.bytes, a.at, a.column);
+        if (tickets_.at_once()) [[unlikely]] {
+            ++leaving_.reads_at_once;
+            return {a.at, Cause::memory};
+        }
         Request r = request(a);
         r.write = std::exchange(followed_.write, Request::nothing);
         r.bytes = followed_.bytes;
@@ -51,6 +56,10 @@ public:
     Answer write(const Access& a) override {
         if (to_memory_)
             attribution_.count_memory_write(a.address, a.bytes, a.at, a.column);
+        if (tickets_.at_once()) [[unlikely]] {
+            ++leaving_.writes_at_once;
+            return {a.at, Cause::memory};
+        }
         Request r = request(a);
         r.write = a.address;
         r.bytes = a.bytes;

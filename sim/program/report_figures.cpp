@@ -100,9 +100,10 @@ void add_figures(analysis::Samples& values, const json& report) {
                 rate(number_at(report, at + "misses"),
                      number_at(report, at + "reads") + number_at(report, at + "writes")));
     }
-    for (const auto& [level, band] : report.at("bandwidth").items())
+    // An estimate says nothing of what was busy.
+    for (const auto& [level, band] : report.value("bandwidth", json::object()).items())
         values[lower(level) + "_utilisation"].push_back(band.at("utilisation").get<double>());
-    for (const json& limit : report.at("limits"))
+    for (const json& limit : report.value("limits", json::array()))
         if (limit.at("resource") == report.at("binding"))
             values["binding_share"].push_back(limit.at("share").get<double>());
     double built = 0;
@@ -113,6 +114,8 @@ void add_figures(analysis::Samples& values, const json& report) {
 
 std::string limiter_name(const json& report) {
     // "issue slots: busy for 88 % of the run", or "waiting (memory, 40 % of ...".
+    if (report.contains("estimate"))
+        return "not known of an estimate";
     const auto text = report.at("limiter").get<std::string>();
     const std::string first = text.substr(0, text.find_first_of(":,"));
     constexpr std::string_view waiting = "waiting (";

@@ -17,6 +17,7 @@
 #include "sim/machine/intervals.h"
 #include "sim/machine/machine.h"
 #include "sim/program/calibration.h"
+#include "sim/program/estimates.h"
 #include "sim/program/native_run.h"
 #include "sim/program/provenance.h"
 
@@ -226,12 +227,45 @@ void RunCommand::add_to(CLI::App& app) {
            "--host-threads", host_threads_,
            "threads of the host that tiles run on, which changes no digit of the report; without it, 1")
         ->type_name("N");
+    run.add_option(
+           "--estimate", estimate_,
+           "sample:FRACTION estimates from so much of the time, simulated in detail; elsewhere caches "
+           "are only warmed; every figure comes with its error")
+        ->type_name("HOW");
+    run.add_option("--estimate-seed", seed_, "where samples are taken; without it, 1")->type_name("SEED");
     trace_.add_to(run);
     run.add_flag("--no-native", no_native_,
                  "do not render the frame natively as well, to compare time and picture");
     run.add_flag("--no-calibration", no_calibration_,
                  "do not read and show what the machine's file names as its calibration");
     run.add_flag("--quiet", quiet_, "show no progress");
+}
+
+/// How the run is to be sampled, if it is.
+std::optional<Sampling> RunCommand::sampling(const Machine& machine) const {
+    if (estimate_.empty()) {
+        if (!seed_.empty())
+            throw razor::UserError("--estimate-seed is of no use without --estimate; give both");
+        return std::nullopt;
+    }
+    Sampling s = parse_sampling("--estimate", estimate_);
+    if (!seed_.empty())
+        s.seed = static_cast<std::uint32_t>(razor::parse_whole("--estimate-seed", seed_, {0, 1e9}));
+    if (const std::string why = machine.not_sampled(); !why.empty())
+        throw razor::UserError(
+            fmt::format("--estimate: runs of this machine are not sampled: {}; leave it out, or "
+                        "give another machine",
+                        why));
+    const std::pair<const char*, bool> others[] = {{"--intervals", !intervals_.empty()},
+                                                   {"--frames", !frames_.empty()},
+                                                   {"--tiles", !tiles_.empty()},
+                                                   {"--host-threads", !host_threads_.empty()},
+                                                   {"--trace", trace_.wanted()}};
+    for (const auto& [option, given] : others)
+        if (given)
+            throw razor::UserError(fmt::format(
+                "--estimate samples one whole frame, on one thread of the host; leave out {}", option));
+    return s;
 }
 
 int RunCommand::run() const {
@@ -277,6 +311,8 @@ int RunCommand::run() const {
         std::tie(counted.first_tile, counted.last_tile) =
             razor::parse_span("--tiles", tiles_, {0, static_cast<double>(counted.last_tile)});
     }
+    const std::optional<Sampling> sampling = this->sampling(machine);
+    const bool estimated = sampling && sampling->fraction < 1;
     const std::string scene = razor::to_toml(description);
     TraceSettings trace = trace_.settings();
     for (const std::string& output : outputs_)
@@ -312,6 +348,11 @@ int RunCommand::run() const {
             counted.before = frame.statistics().by_kind;
             frame.take_tiles(counted.first_tile, counted.last_tile + 1);
         };
+    }
+    Estimate estimate;
+    if (sampling) {
+        run_options.sampling = &*sampling;
+        run_options.estimate = &estimate;
     }
     std::optional<Recorder> recorder;
     if (trace_.wanted()) {
@@ -350,6 +391,8 @@ int RunCommand::run() const {
         throw std::logic_error(fmt::format(
             "the simulated picture differs from that of {}; please report this command", native->isa));
 
+    if (estimated)
+        report.cycles = static_cast<std::uint64_t>(std::llround(estimate.cycles.value));
     const razor::FrameStatistics statistics = frame.statistics();
     const razor::OutputGuard guard;
     const razor::ImageAttributes attributes{{"razor.version", std::string(razor::version())},
@@ -371,7 +414,7 @@ int RunCommand::run() const {
                    {"memory_bytes", memory},
                    {"tiles", {counted.first_tile, counted.last_tile}}}},
                  {"scene", scene}};
-        json run = json::parse(print_json(report));
+        json run = estimated ? sampled_json(report, estimate, *sampling) : json::parse(print_json(report));
         json host = run["host"];
         run.erase("host");
         out.update(run);
@@ -392,8 +435,9 @@ int RunCommand::run() const {
     const std::string text =
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
         frame_text(description.settings, workers, counted, statistics, frame.budget(), report) +
-        print_text(report) + (recorder ? trace_.text(*recorder) : "") +
-        (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
+        (estimated ? sampled_text(report, estimate, *sampling) : print_text(report)) +
+        (recorder ? trace_.text(*recorder) : "") + (native ? native_text(*native, report.host_seconds) : "") +
+        code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "razor/program/scene_options.h"
+#include "sim/machine/machine.h"
 #include "sim/program/trace_options.h"
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +29,11 @@ public:
     int run() const;
 
 private:
+    std::optional<Sampling> sampling(const Machine& machine) const;
+
     MachineOptions machine_;
     razor::SceneOptions scene_;
+    std::string estimate_, seed_;
     TraceOptions trace_;
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,

@@ -8,6 +8,7 @@
 #include "razor/scene/ranges.h"
 #include "sim/config/machine_file.h"
 #include "sim/config/parameters.h"
+#include "sim/program/estimates.h"
 #include "sim/program/report_figures.h"
 
 #include <fmt/format.h>
@@ -80,6 +81,11 @@ std::string wrong_setting(std::string_view key, Value& value) {
         });
     if (key == "memory")
         return wrong_text(key, value, [](const std::string& text) { razor::parse_bytes("memory", text); });
+    if (key == "estimate")
+        return wrong_text(key, value, [](const std::string& text) {
+            if (text != "none")
+                parse_sampling("estimate", text);
+        });
     if (key == "share")
         return "share is kdtree.share among the settings of machines; write that";
     if (key == "jitter" || key == "sim.jitter")
@@ -135,7 +141,7 @@ double mean_of(const std::vector<double>& values) {
 
 const std::vector<std::string_view>& run_keys() {
     static const std::vector<std::string_view> keys{"machine", "workers", "host_threads", "frames",
-                                                    "tiles",   "memory",  "seed"};
+                                                    "tiles",   "memory",  "seed",         "estimate"};
     return keys;
 }
 
@@ -200,7 +206,12 @@ std::vector<std::string> MachineStudy::command(const Settings& settings, int see
                                        [&](const razor::SceneKnob& one) { return one.key == key; });
         if (key == "scene" || key == "machine")
             add("--" + key, (folder_ / plain_text(value)).string());
-        else if (key == "host_threads")
+        else if (key == "estimate") {
+            if (plain_text(value) != "none") {
+                add("--estimate", plain_text(value));
+                add("--estimate-seed", fmt::format("{}", std::max(seed, 1)));
+            }
+        } else if (key == "host_threads")
             add("--host-threads", plain_text(value));
         else if (std::find(run_keys().begin(), run_keys().end(), key) != run_keys().end())
             add("--" + key, plain_text(value));

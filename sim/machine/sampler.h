@@ -1,0 +1,100 @@
+// What of a run is simulated in detail, and what that says of all of it. The run's time is cut into periods
+// of equal length; a unit at a place drawn in each is simulated in detail, the rest only warms caches
+// (warming.cpp). Before a unit's measured part lies one in which queues fill that counts in no figure. So
+// units are a stratified random sample (one of each period; Cochran, Sampling Techniques, 1977, chapters 5
+// and 7; SMARTS: Wunderlich et al., ISCA 2003, for one thread). What a unit takes is regressed on what is
+// counted everywhere: instructions of builds, other instructions, misses of L1s, lines from below the tile,
+// operations on shared words. The rest takes, period by period, what the regression says, times what the
+// units around it took of what it said of them.
+#pragma once
+
+#include "sim/core/stalls.h"
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace sim {
+
+/// How a run is to be sampled.
+struct Sampling {
+    double fraction = 0.08; // of the time, simulated in detail: above 0; 1: all, exactly as without sampling
+    std::uint32_t seed = 1; // of the places
+    cycle unit = 20000;     // measured, cycles
+    cycle before = 20000;   // in detail before it, cycles
+    std::vector<bool> builds{}; // by phase: whether work counts as building; none do where it is missing
+    double confidence = 0.95;   // of the intervals
+};
+
+/// What has been done, of all threads.
+struct SampledWork {
+    enum Kind : std::size_t { builds, others, misses, lines, words };
+    static constexpr std::size_t kinds = 5;
+    std::array<double, kinds> of{};
+    double spent = 0; // threads' cycles simulated in detail, but for sleep until a word changes, and idleness
+};
+/// Threads' cycles that one of each takes.
+using SampledCosts = std::array<double, SampledWork::kinds>;
+
+/// A figure of the run and the interval that holds it with the confidence asked for.
+struct Estimated {
+    double value = 0, low = 0, high = 0;
+    /// Half the interval, of the value.
+    double error() const { return value > 0 ? (high - low) / (2 * value) : 0; }
+};
+
+struct Estimate {
+    /// Standard error, relative, of what no sample shows: caches that were warmed in another order, threads
+    /// that met otherwise than in a detailed run. Of runs of many scenes (README.md).
+    static constexpr double unseen = 0.008;
+    Estimated cycles;
+    std::size_t units = 0; // measured
+    double detailed = 0;   // cycles simulated in detail
+    double spread = 0;     // of what units take beside what the regression says, relative
+    SampledCosts costs{};
+    double confidence = 0;
+
+    /// Half the interval of what is counted everywhere, caches being warm in another order; relative.
+    double count_error() const;
+};
+
+class Sampler {
+public:
+    /// `expected`: costs before anything is measured.
+    Sampler(const Sampling& wanted, const SampledCosts& expected);
+
+    /// When the mode changes next.
+    cycle next() const { return next_; }
+    /// The time has come to `t`, at or after next().
+    void come_to(cycle t, const SampledWork& work);
+    bool warms() const { return mode_ == Mode::warms; }
+    const SampledCosts& costs() const { return costs_; }
+    bool builds(std::size_t phase) const { return phase < wanted_.builds.size() && wanted_.builds[phase]; }
+    /// Of a run that ended at cycle `end`, by the threads' clocks.
+    Estimate estimate(cycle end, const SampledWork& work) const;
+
+private:
+    enum class Mode { settles, measures, warms };
+    /// What was passed over since the unit before.
+    struct Gap {
+        std::size_t units; // before it
+        cycle length;      // by the costs known then ...
+        SampledCosts costs;
+        SampledWork work;
+    };
+    void fit();
+    cycle draw();
+    double ratio(std::size_t first, std::size_t last) const;
+
+    Sampling wanted_;
+    SampledCosts expected_, costs_;
+    Mode mode_ = Mode::settles;
+    std::mt19937 random_;
+    cycle next_, began_ = 0, rest_ = 0; // rest_: of the period at hand, after its unit
+    SampledWork at_;                    // when the mode began
+    std::vector<SampledWork> units_;    // what was done in each
+    std::vector<Gap> gaps_;
+};
+
+} // namespace sim

@@ -1,0 +1,173 @@
+// A sampled run's way between the units that are simulated in detail: values are real, every reference goes
+// through TLBs and caches, predictors learn and words pass from thread to thread, but nothing is busy and
+// memory answers at once. What a thread does takes what the sampler says of its kind of work, so that threads
+// meet about as they would. Deviates from the detailed mode in that threads run by turns of some hundred
+// cycles, that rows of memory stay as they are and that stores pass by the store buffer. Traffic is not told
+// apart by what it is of.
+#include "sim/machine/issue.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+namespace {
+
+/// Cycles, at the least, for which one thread after the other runs by itself.
+constexpr cycle turn_cycles = 400;
+
+std::uint32_t in_256ths(double cycles) {
+    return static_cast<std::uint32_t>(std::lround(std::clamp(cycles, 0.0, 1e6) * 256));
+}
+
+} // namespace
+
+/// Where a thread's time has come.
+cycle Engine::passing(const Hart& h) const {
+    return static_cast<cycle>(
+        std::max(static_cast<std::int64_t>(window_end_) - (h.ahead >> 8), static_cast<std::int64_t>(h.now)));
+}
+
+/// The thread has come to the end of the window: others run.
+void Engine::pause(Hart& h) {
+    h.now = passing(h);
+    {
+        Away away(h);
+        h.tile->scheduler.yield(Scheduler::key(h.now, h.number));
+    }
+    if (warming_)
+        come_to(h);
+}
+
+/// A shared word is acted on at once.
+void Engine::begin_passing(Hart& h, bool writes, bool modifies, std::uint64_t address) {
+    pass(h, writes ? store_kind : load_kind, 1);
+    h.ahead -= static_cast<std::int64_t>(word_pace_);
+    h.now = passing(h);
+    translated(h, address, address + 3, h.now);
+    count(h, 1, false);
+    ++h.counters.atomics;
+    h.acting = Due(h.now, Cause::synchronise);
+    h.asked = h.now;
+    if (modifies && writes) {
+        ++h.counters.modifications;
+        h.tile->site = {};
+        Access change{address, line_bytes_, h.now, h.column};
+        change.modify = change.owned = true;
+        change.asker = h.core->l1.number();
+        h.core->words.read(change);
+    }
+    homes_.note(address, h.tile->number, writes ? Homes::Use::writes : Homes::Use::looks);
+}
+
+void Engine::begin_warming() {
+    warming_ = true;
+    buffered_ = false;
+    for (Tile& tile : tiles_) {
+        tile.tickets.set_at_once(true);
+        tile.attribution.set_idle(true);
+    }
+}
+
+/// Threads go on in detail from where they have come.
+void Engine::end_warming() {
+    warming_ = false;
+    buffered_ = config_.core.store_buffer > 0;
+    for (Tile& tile : tiles_) {
+        tile.tickets.set_at_once(false);
+        tile.attribution.set_idle(false);
+    }
+    for (Hart& h : harts_) {
+        if (h.worker < 0 || h.finished || h.waits_for != nullptr)
+            continue;
+        h.bound.later(Due(h.now, Cause::busy));
+        h.issued = std::max(h.issued, h.now);
+        h.accounted = std::max(h.accounted, h.now);
+    }
+}
+
+/// As run_window(), but longer.
+bool Engine::warm_window() {
+    find_active_tiles();
+    const cycle next = next_event();
+    if (next == ~cycle{0})
+        return false;
+    const cycle windows = (turn_cycles + window_cycles_ - 1) / window_cycles_;
+    const cycle begin = std::max(window_end_, next / window_cycles_ * window_cycles_);
+    window_end_ = begin + windows * window_cycles_;
+    set_floors(next);
+    for (Tile& tile : tiles_)
+        tile.earliest = begin > reach_ ? begin - reach_ : 0;
+    for (Hart& h : harts_)
+        come_to(h);
+    run_tiles();
+    if (!failure_)
+        perform_deeds();
+    serve_window();
+    for (Tile* tile : active_) {
+        if (!tile->parked.empty())
+            answer_parked(*tile, window_end_, [](const Hart&) { return true; });
+        forget_tickets(*tile);
+        tile->attribution.publish_notes();
+    }
+    return true;
+}
+
+/// The next window, in the way that the sampler wants.
+bool Engine::run_sampled_window() {
+    if (!(warming_ ? warm_window() : run_window()))
+        return false;
+    if (window_end_ < sampler_->next())
+        return true;
+    sampler_->come_to(window_end_, work_so_far());
+    if (sampler_->warms() != warming_)
+        warming_ ? end_warming() : begin_warming();
+    set_paces();
+    return true;
+}
+
+/// What work takes, from what the sampler knows by now.
+void Engine::set_paces() {
+    const SampledCosts& costs = sampler_->costs();
+    const std::size_t phases = labels_.phases.size();
+    paces_.resize(labels_.columns());
+    for (std::size_t column = 0; column < paces_.size(); ++column)
+        paces_[column] =
+            in_256ths(costs[sampler_->builds(column % phases) ? SampledWork::builds : SampledWork::others]);
+    miss_paces_.fill(in_256ths(costs[SampledWork::misses]));
+    miss_paces_[static_cast<std::size_t>(Cause::memory)] =
+        in_256ths(costs[SampledWork::misses] + costs[SampledWork::lines]);
+    word_pace_ = in_256ths(costs[SampledWork::words]);
+    for (Hart& h : harts_)
+        h.pace = paces_[h.column];
+}
+
+SampledWork Engine::work_so_far() const {
+    SampledWork w;
+    const std::size_t phases = labels_.phases.size();
+    for (const Hart& h : harts_) {
+        cycle without = 0;
+        for (std::size_t i = 0; i < h.columns.size(); ++i) {
+            const Hart::Column& column = h.columns[i];
+            w.of[sampler_->builds(i % phases) ? SampledWork::builds : SampledWork::others] +=
+                static_cast<double>(column.instructions);
+            for (std::size_t c = 0; c < cause_count; ++c)
+                if (c != static_cast<std::size_t>(Cause::idle))
+                    without += column.stack[c];
+        }
+        w.spent += static_cast<double>(without - h.slept);
+        w.of[SampledWork::words] += static_cast<double>(h.counters.atomics);
+    }
+    for (const Tile& tile : tiles_) {
+        for (const Core& core : tile.cores)
+            w.of[SampledWork::misses] += static_cast<double>(core.l1.counters().misses);
+        for (const Cache& cache : tile.caches[tile_levels_ - 1])
+            w.of[SampledWork::lines] += static_cast<double>(cache.counters().misses);
+    }
+    return w;
+}
+
+Estimate Engine::estimate() const {
+    return sampler_->estimate(cycles_, work_so_far());
+}
+
+} // namespace sim
