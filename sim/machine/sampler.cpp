@@ -26,6 +26,10 @@ SampledWork since(const SampledWork& now, const SampledWork& before) {
 /// Of a unit beside the costs expected: how much the least squares trust these.
 constexpr double trust = 0.5;
 
+/// Standard error, relative, of cycles that no sample shows: threads met otherwise than in a detailed run,
+/// and ended otherwise.
+constexpr double unseen_of_cycles = 0.015;
+
 } // namespace
 
 Sampler::Sampler(const Sampling& wanted, const SampledCosts& expected)
@@ -144,7 +148,7 @@ Estimate Sampler::estimate(cycle end, const SampledWork& work) const {
     const boost::math::students_t t(static_cast<double>(std::max<std::size_t>(n, 2) - 1));
     const double quantile = boost::math::quantile(t, 0.5 + wanted_.confidence / 2);
     const double drawn = e.spread / std::sqrt(static_cast<double>(std::max<std::size_t>(n, 1)));
-    const double error = estimated * quantile * std::hypot(drawn, Estimate::unseen);
+    const double error = estimated * quantile * std::hypot(drawn, unseen_of_cycles);
     e.cycles.low = std::max(e.detailed, e.cycles.value - error);
     e.cycles.high = e.cycles.value + error;
     return e;

@@ -45,8 +45,8 @@ struct Estimated {
 };
 
 struct Estimate {
-    /// Standard error, relative, of what no sample shows: caches that were warmed in another order, threads
-    /// that met otherwise than in a detailed run. Of runs of many scenes (README.md).
+    /// Standard error, relative, of what is counted everywhere: caches are warmed in another order than in a
+    /// detailed run. Of runs of four scenes, as are those of cycles, of all that no sample shows (README.md).
     static constexpr double unseen = 0.008;
     Estimated cycles;
     std::size_t units = 0; // measured

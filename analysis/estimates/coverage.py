@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""How far sampled runs are off, how often their intervals hold the truth, and what they cost the host.
+
+    analysis/estimates/coverage.py FOLDER [--machine configs/machines/study.toml] [--scenes configs/scenes/courtyard.toml,...]
+                                   [--fraction 0.06] [--seeds 50] [--program razor-sim] [-- more options of razor-sim run]
+
+Each scene is run once in detail and once for each seed of `--estimate sample:FRACTION`. A row a scene: the mean and the largest
+error of cycles and of bytes from and to DRAM, in how many runs the interval of each holds what the detailed run says, and the
+processor time of a sampled run beside the detailed one (medians). FOLDER keeps each run's report: the same command goes on where
+it was stopped. Exit code: 0; 1 where a run fails; 2 on a mistake; 130 after Ctrl-C.
+"""
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+
+FIGURES = ("cycles", "dram_bytes")
+
+
+def options():
+    own, more = sys.argv[1:], []
+    if "--" in own:
+        at = own.index("--")
+        own, more = own[:at], own[at + 1:]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder")
+    parser.add_argument("--machine", default="configs/machines/study.toml")
+    parser.add_argument("--scenes", default=",".join(f"configs/scenes/{s}.toml" for s in
+                                                     ("courtyard", "interior", "forest", "showcase")))
+    parser.add_argument("--fraction", type=float, default=0.06)
+    parser.add_argument("--seeds", type=int, default=50)
+    parser.add_argument("--program", default="razor-sim")
+    found = parser.parse_args(own)
+    if not 0.001 <= found.fraction < 1 or found.seeds < 1:
+        parser.error("--fraction is from 0.001 to below 1, --seeds at least 1")
+    return found, more
+
+
+def report(name, given, scene, estimate):
+    """The report of one run, from the folder if it is there."""
+    found, more = given
+    file = os.path.join(found.folder, name + ".json")
+    if not os.path.exists(file):
+        command = [found.program, "run", "--quiet", "--no-native", "--no-calibration", "--machine", found.machine, "--scene",
+                   scene, "--json", file, "--report", file[:-5] + ".txt", *estimate, *more]
+        run = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+        if run.returncode != 0:
+            print(f"{name}: {run.stderr.strip()}", file=sys.stderr)
+            sys.exit(130 if run.returncode == 130 else 1)
+    with open(file, encoding="utf-8") as opened:
+        return json.load(opened)
+
+
+def truth(full):
+    line = max((level["line_bytes"] for name, level in full["machine"].items() if name[0] == "l" and name[1:].isdigit()
+                and level.get("size_bytes", 0) > 0), default=64)
+    return {"cycles": full["cycles"], "dram_bytes": line * (full["memory"]["reads"] + full["memory"]["writes"])}
+
+
+def main():
+    given = found, _ = options()
+    os.makedirs(found.folder, exist_ok=True)
+    print(f"{'scene':16} {'runs':>4}" + "".join(f" {name + ', %':>16} {'held':>8}" for name in FIGURES) + f" {'time':>6}")
+    for scene in found.scenes.split(","):
+        name = os.path.splitext(os.path.basename(scene))[0]
+        full = report(name, given, scene, [])
+        right, errors, held, times = truth(full), {f: [] for f in FIGURES}, {f: 0 for f in FIGURES}, []
+        for seed in range(1, found.seeds + 1):
+            one = report(f"{name}-{found.fraction:g}-{seed}", given, scene,
+                         ["--estimate", f"sample:{found.fraction:g}", "--estimate-seed", str(seed)])
+            for figure in FIGURES:
+                value = one["estimate"]["figures"][figure]
+                errors[figure].append(100 * (value["value"] / right[figure] - 1))
+                held[figure] += value["low"] <= right[figure] <= value["high"]
+            times.append(one["host"]["processor_seconds"] / full["host"]["processor_seconds"])
+        row = f"{name:16} {found.seeds:4}"
+        for figure in FIGURES:
+            worst = max(errors[figure], key=abs)
+            row += f" {statistics.mean(errors[figure]):+7.2f} {worst:+8.2f} {held[figure]:4}/{found.seeds:<3}"
+        print(row + f" {statistics.median(times):6.3f}", flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(130)
