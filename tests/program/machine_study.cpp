@@ -88,6 +88,27 @@ TEST_F(MachineStudy, ComparesWithRunsOfTheReference) {
     EXPECT_EQ(results("t"), results("s"));
 }
 
+// A sampled run is a point as any other; all in detail, it is the detailed run.
+TEST_F(MachineStudy, TakesSampledRuns) {
+    std::string content = text("study.toml");
+    content.replace(content.find("sim.quantum = [1, 1000]"), 23,
+                    "estimate = [\"none\", \"sample:0.2\", \"sample:1\"]");
+    content.replace(content.find("l2.size_bytes = [8192, 16384]\n"), 30, "");
+    content.replace(content.find("sim.quantum = 0"), 15, "estimate = \"none\"");
+    folder_.file("estimates.toml", content);
+    const Outcome outcome = simulator("study estimates.toml -o s --quiet");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const nlohmann::json all = points("s");
+    ASSERT_EQ(all.size(), 3U);
+    const auto figure = [&](std::size_t point, const char* name) {
+        return all.at(point)["figures"][name]["median"].get<double>();
+    };
+    EXPECT_EQ(figure(0, "cycles"), figure(2, "cycles"));
+    EXPECT_NE(figure(0, "cycles"), figure(1, "cycles"));
+    EXPECT_NEAR(figure(1, "cycles"), figure(0, "cycles"), 0.3 * figure(0, "cycles"));
+    EXPECT_NEAR(figure(1, "dram_bytes"), figure(0, "dram_bytes"), 0.1 * figure(0, "dram_bytes"));
+}
+
 TEST_F(MachineStudy, SaysWhatIsImpossible) {
     std::string content = text("study.toml");
     content.replace(content.find("[8192, 16384]"), 13, "[8192, 500]");
@@ -103,6 +124,7 @@ TEST_F(MachineStudy, SaysWhatIsImpossible) {
          "bad.toml:3:12: unknown setting l2.size; did you mean l2.size_bytes?"},
         {"kind = \"machine\"\n[knobs]\nsim.quantum = [-1]\n", "bad.toml:3:16: "},
         {"kind = \"machine\"\n[knobs]\nworker = [1]\n", "unknown setting worker; did you mean workers?"},
+        {"kind = \"machine\"\n[knobs]\nestimate = [\"half\"]\n", "sample:FRACTION"},
         {"kind = \"image\"\n[knobs]\nsamples = [1]\n", "use the program that measures others"},
     };
     for (const auto& [bad, says] : cases) {

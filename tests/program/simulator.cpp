@@ -2,7 +2,9 @@
 #include "tests/program/simulator.h"
 #include "razor/image/exr.h"
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -55,6 +57,44 @@ TEST_F(Simulator, SharesTreesAsAsked) {
     }
     EXPECT_EQ(report("a.json").at("renderer").at("tree_of_worker"),
               nlohmann::json::parse("[0, 1, 2, 3, 0, 1, 2, 3]"));
+}
+
+// What is estimated comes with its error, and nothing is told that a sampled run does not know.
+TEST_F(Simulator, EstimatesFromSamples) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"box\"\n");
+    const std::string start =
+        std::string("run --quiet --no-native --scene s.toml --size 48x48 --spp 1 --machine ") + tiny + " ";
+    const Outcome result = simulator(start + "--estimate sample:0.2 --estimate-seed 3 --json a.json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("estimate               sampled: "), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("where the threads' cycles went"), std::string::npos);
+    const nlohmann::json a = report("a.json");
+    const nlohmann::json& e = a.at("estimate");
+    EXPECT_EQ(e.at("seed"), 3);
+    EXPECT_FALSE(a.contains("threads"));
+    for (const auto& [name, figure] : e.at("figures").items()) {
+        EXPECT_LE(figure.at("low"), figure.at("value")) << name;
+        EXPECT_LE(figure.at("value"), figure.at("high")) << name;
+    }
+    const std::pair<const char*, const char*> wrong[] = {
+        {"--estimate half", "give sample:FRACTION"},
+        {"--estimate sample:0", "from 0.001 to 1"},
+        {"--estimate-seed 1", "of no use without --estimate"},
+        {"--estimate sample:0.1 --frames 2", "leave out --frames"},
+        {"--estimate sample:0.1 --host-threads 2", "leave out --host-threads"},
+    };
+    for (const auto& [options, says] : wrong) {
+        SCOPED_TRACE(options);
+        const Outcome outcome = simulator(start + options + " --json wrong.json");
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "wrong.json"));
+    }
+    const Outcome coherent = simulator("run --quiet --scene s.toml --size 8x8 --machine " RAZOR_SOURCE_DIR
+                                       "/configs/machines/xeon-x5355-2s.toml --estimate sample:0.1");
+    EXPECT_EQ(coherent.code, 2);
+    EXPECT_NE(coherent.err.find("coherent"), std::string::npos) << coherent.err;
 }
 
 // The machine compares its picture with a native one without a budget, and fails if they differ.

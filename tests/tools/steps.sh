@@ -19,6 +19,7 @@ not_sanitized+='|NoReportDependsOn|IsAsANewFrame|ClosedFormsPass|SharesTreesAsAs
 not_sanitized+='|LetNoRayThrough/[d-z]|LetNoRayThrough/ch|LetNoRayThrough/cr|HaveTheirMeanWhereItIs|^Emitters.Of|^Emitters.Placed|^Emitters.InMetal|EmittersOf.All|^Paths.Sheen'
 not_sanitized+='|StaysWithinItsMemory|KnowsWhatAFrameTakes|^Study.GoesOn|^Study.Measures|^ProgramTargetError|^Recording.Counts'
 not_sanitized+='|^EdgeChoice|^Emitters.WithMaps|^NearLights|^TargetFrames|^AdaptiveFrames|AreClosedUnderBothSchemes/100|AreClosedUnderBothSchemes/360|ReferenceReplay|^RandomCages|TheSameBytesOnAny|FiltersGiveWhatIsLeft'
+not_sanitized+='|^Sampling.EstimatesCycles|^Sampling.IntervalsHold|^Sampling.AllInDetail|TakesSampledRuns'
 not_sanitized+='|^PathsOf|^Paths.Patterns|^Paths.Bumps|^Paths.Surf|^Paths.Disp|^ManyLights.Matte|^ManyLights.What|^IndependentReplay.TenMillion'
 scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
