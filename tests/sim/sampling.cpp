@@ -54,6 +54,7 @@ TEST(Sampling, WarmingCountsWhatADetailedRunCounts) {
     };
     const Case cases[] = {{"plain", {}},
                           {"reference", {"sim.mode=reference", "memory.controller=queued"}},
+                          {"spilling", {"core.vector_registers=2"}},
                           {"through", {"l1.write_policy=through", "l1.write_miss=around"}},
                           {"inclusive", {"l2.inclusion=inclusive"}},
                           {"exclusive", {"l2.inclusion=exclusive"}},
