@@ -101,9 +101,11 @@ void add_figures(analysis::Samples& values, const json& report) {
                      number_at(report, at + "reads") + number_at(report, at + "writes")));
     }
     // An estimate says nothing of what was busy.
-    for (const auto& [level, band] : report.value("bandwidth", json::object()).items())
+    const json bandwidth = report.value("bandwidth", json::object());
+    for (const auto& [level, band] : bandwidth.items())
         values[lower(level) + "_utilisation"].push_back(band.at("utilisation").get<double>());
-    for (const json& limit : report.value("limits", json::array()))
+    const json limits = report.value("limits", json::array());
+    for (const json& limit : limits)
         if (limit.at("resource") == report.at("binding"))
             values["binding_share"].push_back(limit.at("share").get<double>());
     double built = 0;
