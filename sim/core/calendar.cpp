@@ -59,6 +59,16 @@ Calendar::Slot Calendar::find_run_after(Slot from, Slot next, std::uint32_t leng
 
 /// Of several words, the first of which, `number`, has `free` slots to take.
 Calendar::Span Calendar::take_across(std::uint64_t number, std::uint64_t free, std::uint32_t count) {
+    if (free != 0) { // mostly the next one has the rest
+        const auto here = static_cast<std::uint32_t>(std::popcount(free));
+        const std::uint64_t next = ~word(number + 1);
+        if (static_cast<std::uint32_t>(std::popcount(next)) >= count - here) {
+            const std::uint64_t taken = lowest(next, count - here);
+            word(number) |= free;
+            word(number + 1) |= taken;
+            return {number * 64 + static_cast<unsigned>(std::countr_zero(free)), last_of(number + 1, taken)};
+        }
+    }
     Slot first = no_slot;
     for (;; free = ~word(++number)) {
         note_full(number, word(number));

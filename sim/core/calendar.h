@@ -73,6 +73,20 @@ public:
         w |= taken;
         return {s.number * 64 + static_cast<unsigned>(std::countr_zero(free)), last_of(s.number, taken)};
     }
+    /// Takes the first `count` free slots, up to 64, from `from` on, where 64 slots from a multiple of 64 on
+    /// hold all of them and none is later than `latest`; if not, false, and none is taken.
+    [[gnu::always_inline]] bool take_near(Slot from, std::uint32_t count, Slot latest, Span& taken) {
+        const Start s = start(from);
+        std::uint64_t& w = word(s.number);
+        const std::uint64_t free = ~w & s.open;
+        if (static_cast<std::uint32_t>(std::popcount(free)) < count || s.number * 64 + 63 > latest)
+            [[unlikely]]
+            return false;
+        const std::uint64_t bits = lowest(free, count);
+        w |= bits;
+        taken = {s.number * 64 + static_cast<unsigned>(std::countr_zero(free)), last_of(s.number, bits)};
+        return true;
+    }
     /// Its bits from cycle `t` on come to the host's caches.
     void prefetch(cycle t) const { __builtin_prefetch(&words_[((t << shift_) / 64) & mask_]); }
     /// Frees a slot that was taken.

@@ -102,12 +102,34 @@ inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, b
                           Data& data) {
     std::uint64_t high = address + bytes - 1;
     if (address >> line_shift_ == high >> line_shift_) [[likely]] {
-        touch_line(h, address, bytes, write, 1, slots_of(bytes), from, data);
+        const std::uint32_t slots = slots_of(bytes);
+        if (!touch_present<1>(h, address >> line_shift_, write, 1, slots, from, data))
+            touch_line(h, address, bytes, write, 1, slots, from, data);
         return;
     }
     for (std::uint64_t line = address >> line_shift_; line <= high >> line_shift_; ++line) {
         const std::uint64_t low = std::max(address, line << line_shift_);
         touch_line(h, low, bytes_in(low, high), write, 1, slots_in(line, address, high), from, data);
+    }
+}
+
+/// All lanes, of pieces within a line each.
+void Engine::touch_whole(Hart& h, std::uint64_t address, bool write, cycle from, Data& data) {
+    const std::uint32_t slots = slots_of(piece_lanes_ * 4);
+    if (whole_lines_ != 0 && (address & (line_bytes_ - 1)) == 0) {
+        const std::uint32_t pieces = line_bytes_ >> piece_shift_;
+        const std::uint64_t line = address >> line_shift_;
+        if (whole_lines_ == 2 ? touch_present<2>(h, line, write, pieces, pieces * slots, from, data)
+                              : touch_present<1>(h, line, write, pieces, pieces * slots, from, data))
+            return;
+    }
+    const std::uint64_t end = address + width * 4;
+    while (address < end) {
+        const std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
+        const auto pieces = static_cast<std::uint32_t>(next - address) >> piece_shift_;
+        touch_line(h, address, static_cast<std::uint32_t>(next - address), write, pieces, pieces * slots,
+                   from, data);
+        address = next;
     }
 }
 
@@ -117,15 +139,7 @@ void Engine::touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bo
                          Data& data) {
     const std::uint32_t bytes = piece_lanes_ * 4;
     if (lanes == all_lanes && (address & (bytes - 1)) == 0 && bytes <= line_bytes_) [[likely]] {
-        const std::uint32_t slots = slots_of(bytes);
-        const std::uint64_t end = address + width * 4;
-        while (address < end) {
-            const std::uint64_t next = std::min(end, (address | (line_bytes_ - 1)) + 1);
-            const auto pieces = static_cast<std::uint32_t>(next - address) >> piece_shift_;
-            touch_line(h, address, static_cast<std::uint32_t>(next - address), write, pieces, pieces * slots,
-                       from, data);
-            address = next;
-        }
+        touch_whole(h, address, write, from, data);
         return;
     }
     std::uint64_t piece_mask = ~std::uint64_t{0} >> (64 - piece_lanes_);
@@ -170,6 +184,19 @@ inline void Engine::write_lanes(Hart& h, std::uint64_t address, std::uint64_t la
     else
         touch_lanes(h, address, lanes, true, from, data);
 }
+/// A place of a whole value on the stack, which lies as lines do.
+inline void Engine::read_spilled(Hart& h, std::uint64_t place, std::uint64_t lanes, cycle from, Data& data) {
+    if (lanes == all_lanes && whole_lines_ != 0 && !buffered_) [[likely]]
+        touch_whole(h, place, false, from, data);
+    else
+        read_lanes(h, place, lanes, from, data);
+}
+inline void Engine::write_spilled(Hart& h, std::uint64_t place, std::uint64_t lanes, cycle from, Data& data) {
+    if (lanes == all_lanes && whole_lines_ != 0 && !buffered_) [[likely]]
+        touch_whole(h, place, true, from, data);
+    else
+        write_lanes(h, place, lanes, from, data);
+}
 
 /// Lanes anywhere: for each machine instruction every distinct line once, or (core.gather = "lane") every
 /// lane.
@@ -179,21 +206,32 @@ void Engine::touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* i
     auto address_of = [&](std::uint32_t lane) {
         return address + static_cast<std::uint64_t>(std::int64_t{index[lane]} * 4);
     };
+    std::array<std::uint64_t, width> accessed, lines; // NOLINT: filled as far as used
+    std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < width; i += piece_lanes_) {
-        std::array<std::uint64_t, 64> seen, first; // NOLINT: filled as far as used
-        std::uint32_t distinct = 0;
+        const std::uint32_t begin = count;
         for (std::uint32_t lane = i; lane < i + piece_lanes_; ++lane) {
             if ((lanes >> lane & 1U) == 0)
                 continue;
             const std::uint64_t at = address_of(lane), line = at >> line_shift_;
-            auto* end = seen.begin() + distinct;
-            if (by_lane || std::find(seen.begin(), end, line) == end) {
-                first[distinct] = at;
-                seen[distinct++] = line;
+            auto* end = lines.begin() + count;
+            if (by_lane || std::find(lines.begin() + begin, end, line) == end) {
+                accessed[count] = at;
+                lines[count++] = line;
             }
         }
-        for (std::uint32_t k = 0; k < distinct; ++k)
-            touch_line(h, first[k], 4, write, 1, 1, from, data);
+    }
+    for (std::uint32_t k = 0; k < count;) {
+        std::uint32_t same = k + 1; // those of one line, one after the other
+        while (same < count && lines[same] == lines[k])
+            ++same;
+        const std::uint32_t run = same - k;
+        if (touch_present<1>(h, lines[k], write, run, run, from, data)) {
+            k = same;
+            continue;
+        }
+        for (; k < same; ++k)
+            touch_line(h, accessed[k], 4, write, 1, 1, from, data);
     }
 }
 
@@ -260,7 +298,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
         ++h.counters.spill_stores;
         Issued at = issue(h, vector_kind(store_kind), pieces, now);
         Data data;
-        write_lanes(h, place, lanes, translated(h, place, last, at.first), data);
+        write_spilled(h, place, lanes, translated(h, place, last, at.first), data);
         if (data.held == Cause::stores) [[unlikely]]
             h.bound.later(Due(data.granted, data.held));
         stored(h, data);
@@ -275,7 +313,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
         from = issue(h, vector_kind(load_kind), pieces, now).first;
     }
     Data data;
-    read_lanes(h, place, lanes, translated(h, place, last, from), data);
+    read_spilled(h, place, lanes, translated(h, place, last, from), data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else if (!warming_)
@@ -285,7 +323,7 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
 stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector) {
     charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
-    Issued at = issue(h, load_kind, ready);
+    Issued at = issue_here(h, load_kind, ready);
     Data data;
     std::uint64_t a = address(p);
     const cycle from = translated(h, a, a + bytes - 1, at.first);

@@ -117,11 +117,11 @@ constexpr std::size_t extract_kind = vector_kind(static_cast<std::size_t>(operat
 }
 
 /// Among scalars.
-inline stamp Engine::compute_scalar(Hart& h, std::size_t kind, Due ready) {
+[[gnu::always_inline]] inline stamp Engine::compute_scalar(Hart& h, std::size_t kind, Due ready) {
     settle(h, ready);
     if (scalar_moves_ != 0) [[unlikely]]
         charge(h, scalar_moves_, begin(h));
-    const Issued at = issue(h, kind, ready);
+    const Issued at = issue_here(h, kind, ready);
     finish_issue(h, at, 0);
     count(h, 1, false);
     stamp r;
@@ -213,7 +213,7 @@ void Engine::branch(Hart& h, site where, Due ready, bool taken) {
         return;
     }
     settle(h, ready);
-    Issued at = issue(h, branch_class, ready);
+    Issued at = issue_here(h, branch_class, ready);
     finish_issue(h, at, 0);
     count(h, 1, false);
     ++h.counters.branches;

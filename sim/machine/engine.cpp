@@ -39,6 +39,15 @@ std::uint64_t spill_bytes_of(const Config& config) {
     return (wide(config.core.spill_slots) * width * 4 + 4095) / 4096 * 4096;
 }
 
+/// Of the L1s, where all lanes are one or two lines whose slots of the ports one word of a calendar can hold.
+std::uint32_t lines_of_all_lanes(const Config& config) {
+    const std::uint32_t bytes = width * 4, line = narrow(config.l1.line_bytes);
+    const std::uint32_t piece = bytes / std::max(1U, width / narrow(config.core.lanes));
+    const std::uint32_t slots = bytes / piece * std::max(1U, piece / narrow(config.l1.port_bytes));
+    const bool whole = bytes == line || bytes == 2 * line;
+    return whole && piece <= line && slots <= 64 ? bytes / line : 0;
+}
+
 bool uses_strides(const Config& config) {
     for (unsigned level = 0; level < config.cache_levels(); ++level)
         if (config.cache(level).prefetcher == "stride")
@@ -64,15 +73,15 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
       issue_width_(narrow(config.core.issue_width)), line_bytes_(narrow(config.l1.line_bytes)),
-      line_shift_(log2(config.l1.line_bytes)), port_byte_shift_(log2(config.l1.port_bytes)),
-      l1_latency_(wide(config.l1.latency)), tile_levels_(config.tile_levels()),
-      cache_levels_(config.cache_levels()), pairing_(config.core.pairing),
+      whole_lines_(lines_of_all_lanes(config)), line_shift_(log2(config.l1.line_bytes)),
+      port_byte_shift_(log2(config.l1.port_bytes)), l1_latency_(wide(config.l1.latency)),
+      tile_levels_(config.tile_levels()), cache_levels_(config.cache_levels()), pairing_(config.core.pairing),
       overhead_(in_1024ths(config.core.scalar_overhead)), scalar_moves_(in_1024ths(config.core.scalar_moves)),
       vector_moves_(in_1024ths(config.core.vector_moves)),
       memory_operands_(narrow(config.core.memory_operands)), registers_(config.core.vector_registers > 0),
       by_register_(registers_ && config.core.broadcasts == "register"), strides_(uses_strides(config)),
-      notes_sites_(strides_ || options.recorder != nullptr), lane_gather_(config.core.gather == "lane"),
-      lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
+      notes_sites_(strides_ || options.recorder != nullptr), notes_accesses_(notes_sites_),
+      lane_gather_(config.core.gather == "lane"), lane_scatter_(lane_gather_ || config.lanes.scatter == "on"),
       lane_shuffle_(config.lanes.shuffle == "on"), skip_idle_(config.core.skip_idle == "on"),
       folding_(config.core.address_folding == "on"), buffered_(config.core.store_buffer > 0),
       masked_by_lane_(config.lanes.masked == "on"), idle_lanes_(config.lanes.idle == "test"),

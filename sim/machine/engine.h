@@ -221,6 +221,8 @@ private:
     void account_issue(Hart& h, Issued at, std::uint32_t instructions, Due ready) const;
     cycle come_to_issue(Hart& h, Due ready);
     void note_issue(Hart& h, std::size_t kind, std::uint32_t instructions, Issued at, Due ready);
+    Issued issue_here(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
+    Issued issue_here(Hart& h, std::size_t kind, Due ready);
     Issued issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
     Issued issue(Hart& h, std::size_t kind, Due ready);
     Issued issue_all(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready);
@@ -233,6 +235,12 @@ private:
     void touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from, Data& data);
     void touch_line(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, std::uint32_t accesses,
                     std::uint32_t slots, cycle& from, Data& data);
+    template <std::uint32_t lines>
+    bool touch_present(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots,
+                       cycle from, Data& data) const;
+    void read_spilled(Hart& h, std::uint64_t place, std::uint64_t lanes, cycle from, Data& data);
+    void write_spilled(Hart& h, std::uint64_t place, std::uint64_t lanes, cycle from, Data& data);
+    void touch_whole(Hart& h, std::uint64_t address, bool write, cycle from, Data& data);
     void note_touch(const Hart& h, std::uint64_t address, std::uint32_t bytes, bool write,
                     std::uint32_t accesses, cycle at, traces::Part part) const;
     traces::Part meet_site(Hart& h) const;
@@ -381,6 +389,7 @@ private:
     unsigned piece_shift_;      // of their bytes
     unsigned issue_shift_, port_shift_;
     std::uint32_t issue_width_, line_bytes_;
+    std::uint32_t whole_lines_; // that all lanes take, where they are one or two whole lines; else 0
     unsigned line_shift_, port_byte_shift_;
     std::uint64_t l1_latency_;
     unsigned tile_levels_, cache_levels_; // of caches: within a tile, in all
@@ -395,8 +404,8 @@ private:
     Pairing pairing_;
     std::uint32_t overhead_, scalar_moves_, vector_moves_; // 1/1024 instructions
     std::uint32_t memory_operands_;
-    bool registers_, by_register_, strides_, notes_sites_, lane_gather_, lane_scatter_, lane_shuffle_,
-        skip_idle_, folding_, buffered_;
+    bool registers_, by_register_, strides_, notes_sites_, notes_accesses_, lane_gather_, lane_scatter_,
+        lane_shuffle_, skip_idle_, folding_, buffered_;
     bool masked_by_lane_, idle_lanes_;
     struct LanePath { // config's, narrowed
         std::uint32_t piece_instructions, piece_references, gather_instructions;

@@ -95,7 +95,8 @@ inline void Engine::note_issue(Hart& h, std::size_t kind, std::uint32_t instruct
         account_issue(h, at, instructions, ready);
 }
 
-inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
+[[gnu::always_inline]] inline Issued Engine::issue_here(Hart& h, std::size_t kind, std::uint32_t instructions,
+                                                        Due ready) {
     if (warming_) [[unlikely]]
         return pass(h, kind, instructions);
     const cycle t = come_to_issue(h, ready);
@@ -111,7 +112,7 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instruction
 }
 
 /// ... of a single instruction.
-inline Issued Engine::issue(Hart& h, std::size_t kind, Due ready) {
+[[gnu::always_inline]] inline Issued Engine::issue_here(Hart& h, std::size_t kind, Due ready) {
     if (warming_) [[unlikely]]
         return pass(h, kind, 1);
     const cycle t = come_to_issue(h, ready);
@@ -124,10 +125,20 @@ inline Issued Engine::issue(Hart& h, std::size_t kind, Due ready) {
     return {at, at};
 }
 
+/// By a call: where that is no more than a small part of what is done.
+[[gnu::noinline]] inline Issued Engine::issue(Hart& h, std::size_t kind, std::uint32_t instructions,
+                                              Due ready) {
+    return issue_here(h, kind, instructions, ready);
+}
+[[gnu::noinline]] inline Issued Engine::issue(Hart& h, std::size_t kind, Due ready) {
+    return issue_here(h, kind, ready);
+}
+
 /// More than a calendar takes at once.
-inline Issued Engine::issue_all(Hart& h, std::size_t kind, std::uint32_t instructions, Due ready) {
+[[gnu::always_inline]] inline Issued Engine::issue_all(Hart& h, std::size_t kind, std::uint32_t instructions,
+                                                       Due ready) {
     constexpr std::uint32_t most = 64;
-    Issued at = issue(h, kind, std::min(instructions, most), ready);
+    Issued at = issue_here(h, kind, std::min(instructions, most), ready);
     while (instructions > most)
         [[unlikely]] {
             instructions -= most;
@@ -194,6 +205,31 @@ inline void Engine::pass_site(Hart& h) const {
     if (strides_ && h.site.first && h.site.number != SiteAtHand::none)
         h.site.number = h.tile->load_sites.number(h.place);
     h.site.first = false;
+}
+
+/// What most accesses are, at once: hits, through ports that are free soon. Of each of so many adjacent lines
+/// `accesses`, which take `slots` of the ports. False where anything else is to be done or noted: then
+/// nothing has happened.
+template <std::uint32_t lines>
+[[gnu::always_inline]] inline bool Engine::touch_present(Hart& h, std::uint64_t line, bool write,
+                                                         std::uint32_t accesses, std::uint32_t slots,
+                                                         cycle from, Data& data) const {
+    Core& core = *h.core;
+    std::array<CacheArray::Place, lines> places; // NOLINT: filled where it is used
+    if (notes_accesses_ || !core.l1.find_present(line, places))
+        return false;
+    Calendar::Span s; // NOLINT: likewise
+    if (!core.ports.take_near(from << port_shift_, lines * slots, (from + port_backlog) << port_shift_, s))
+        return false;
+    core.l1.counters().busy_cycles += lines * slots;
+    core.l1.use_present(line, places, write, accesses, h.column);
+    data.first = std::min(data.first, (s.first >> port_shift_) + l1_latency_);
+    const cycle last = (s.last >> port_shift_) + l1_latency_;
+    if (last > data.last || (last == data.last && Cause::l1 > data.from)) {
+        data.last = last;
+        data.from = Cause::l1;
+    }
+    return true;
 }
 
 /// `accesses` of a line, of so many bytes in all from the address on.

@@ -61,6 +61,7 @@ void Engine::begin_passing(Hart& h, bool writes, bool modifies, std::uint64_t ad
 
 void Engine::begin_warming() {
     warming_ = true;
+    notes_accesses_ = true; // by way of warm_line()
     buffered_ = false;
     for (Tile& tile : tiles_) {
         tile.tickets.set_at_once(true);
@@ -71,6 +72,7 @@ void Engine::begin_warming() {
 /// Threads go on in detail from where they have come.
 void Engine::end_warming() {
     warming_ = false;
+    notes_accesses_ = notes_sites_;
     buffered_ = config_.core.store_buffer > 0;
     for (Tile& tile : tiles_) {
         tile.tickets.set_at_once(false);

@@ -16,7 +16,7 @@ public:
     Attribution(LineMap& map, std::uint32_t tile, std::size_t columns);
 
     /// The cell of an access to an L1, whose line counts as touched.
-    Traffic& touch(std::uint64_t address, std::size_t column) {
+    [[gnu::always_inline]] Traffic& touch(std::uint64_t address, std::size_t column) {
         if (idle_) [[unlikely]]
             return spill_[column];
         LineMap::Line* line = map_.line(address);

@@ -26,6 +26,7 @@
 #include "sim/memory/pool.h"
 #include "sim/memory/prefetcher.h"
 
+#include <array>
 #include <bit>
 #include <memory>
 #include <vector>
@@ -45,6 +46,30 @@ public:
         counters_.hits += accesses;
         count_accesses(line, write, accesses, column);
         return {t + latency_, Cause::l1};
+    }
+    /// Of an L1: whether as many adjacent lines as there are places, from this number on, are all here, and
+    /// are not on their way, so that accesses are hits and nothing else; where they are then. Changes
+    /// nothing.
+    template <std::size_t count>
+    bool find_present(std::uint64_t line, std::array<CacheArray::Place, count>& places) const {
+        if (special_) [[unlikely]]
+            return false;
+        for (std::size_t i = 0; i < count; ++i)
+            if (!array_.find_present(line + i, places[i]))
+                return false;
+        return true;
+    }
+    /// `accesses` accesses to each of these lines.
+    template <std::size_t count>
+    void use_present(std::uint64_t line, const std::array<CacheArray::Place, count>& places, bool write,
+                     std::uint32_t accesses, std::size_t column) {
+        counters_.hits += count * accesses;
+        (write ? counters_.writes : counters_.reads) += count * accesses;
+        for (std::size_t i = 0; i < count; ++i) {
+            array_.use(places[i], write);
+            Traffic& cell = attribution_->touch((line + i) << line_shift_, column);
+            (write ? cell.l1_writes : cell.l1_reads) += accesses;
+        }
     }
     /// `upper` lies directly above this one.
     void add_above(Cache& upper) {

@@ -52,6 +52,41 @@ public:
                 return entry(line, w + static_cast<std::uint32_t>(std::countr_zero(equal)));
         return none;
     }
+    /// Where a line is; of use as long as nothing else is done to the array.
+    struct Place {
+        std::byte* set;
+        std::uint32_t way;
+    };
+    /// Whether the line is there and not on its way; where it is then.
+    [[gnu::always_inline]] bool find_present(std::uint64_t line, Place& at) const {
+        std::byte* const set = set_of(line);
+        const std::uint64_t wanted = line >> set_bits_;
+        if (wanted >= empty) [[unlikely]]
+            return false;
+        auto way = static_cast<std::uint32_t>(set[order_at_]);
+        if (tag_at(set, way) != wanted) {
+            const auto narrow = static_cast<std::uint32_t>(wanted);
+            std::uint32_t group = 0, equal = equal_tags(set, narrow);
+            while (equal == 0) {
+                if ((group += 4) >= ways_)
+                    return false;
+                equal = equal_tags(set + group * 4, narrow);
+            }
+            way = group + static_cast<std::uint32_t>(std::countr_zero(equal));
+        }
+        at = {set, way};
+        return !in_flight(set + flags_at_, way);
+    }
+    /// It is used.
+    void use(Place at, bool write) {
+        if (write) {
+            std::uint64_t dirty;
+            std::memcpy(&dirty, at.set + flags_at_, 8);
+            dirty |= std::uint64_t{1} << at.way;
+            std::memcpy(at.set + flags_at_, &dirty, 8);
+        }
+        touch(at.set + order_at_, at.way);
+    }
     /// Whether the line is the one that was used last in its set, and not on its way: then it is used again.
     bool use_recent(std::uint64_t line, bool write) {
         std::byte* set = base_ + (line & mask_) * stride_;
@@ -67,35 +102,7 @@ public:
         return true;
     }
     /// Makes the entry the most recently used of its set.
-    void touch(Entry e) {
-        std::byte* order = base_ + (e >> 6U) * stride_ + order_at_;
-        auto way = static_cast<std::byte>(e & 63U);
-        if (order[0] == way)
-            return;
-        if (replacement_ != Replacement::lru) [[unlikely]] {
-            touch_other(order, e & 63U);
-            return;
-        }
-        if (std::endian::native == std::endian::little && ways_ <= 8) {
-            // All at once: bytes below that of the way move up by one. The bytes above are other ways or
-            // unused.
-            constexpr std::uint64_t ones = 0x0101010101010101U, tops = ones << 7U;
-            std::uint64_t all;
-            std::memcpy(&all, order, 8);
-            std::uint64_t differ = all ^ ones * (e & 63U);
-            auto top = static_cast<unsigned>(std::countr_zero((differ - ones) & ~differ & tops));
-            std::uint64_t moved = (std::uint64_t{2} << top) - 1; // up to and with the way's byte
-            all = (all & ~moved) | (all << 8U & moved) | (e & 63U);
-            std::memcpy(order, &all, 8);
-            return;
-        }
-        std::size_t i = 1;
-        while (order[i] != way)
-            ++i;
-        for (; i > 0; --i)
-            order[i] = order[i - 1];
-        order[0] = way;
-    }
+    void touch(Entry e) { touch(base_ + (e >> 6U) * stride_ + order_at_, e & 63U); }
     /// The entry that a line would take: an empty one, or the one that replacement chooses in its set.
     Entry victim(std::uint64_t line) const {
         if (replacement_ != Replacement::lru) [[unlikely]]
@@ -157,6 +164,33 @@ public:
 private:
     static constexpr std::uint32_t empty = ~std::uint32_t{0};
 
+    void touch(std::byte* order, std::uint32_t way) {
+        if (order[0] == static_cast<std::byte>(way))
+            return;
+        if (replacement_ != Replacement::lru) [[unlikely]] {
+            touch_other(order, way);
+            return;
+        }
+        if (std::endian::native == std::endian::little && ways_ <= 8) {
+            // All at once: bytes below that of the way move up by one. The bytes above are other ways or
+            // unused.
+            constexpr std::uint64_t ones = 0x0101010101010101U, tops = ones << 7U;
+            std::uint64_t all;
+            std::memcpy(&all, order, 8);
+            std::uint64_t differ = all ^ ones * way;
+            auto top = static_cast<unsigned>(std::countr_zero((differ - ones) & ~differ & tops));
+            std::uint64_t moved = (std::uint64_t{2} << top) - 1; // up to and with the way's byte
+            all = (all & ~moved) | (all << 8U & moved) | way;
+            std::memcpy(order, &all, 8);
+            return;
+        }
+        std::size_t i = 1;
+        while (order[i] != static_cast<std::byte>(way))
+            ++i;
+        for (; i > 0; --i)
+            order[i] = order[i - 1];
+        order[0] = static_cast<std::byte>(way);
+    }
     void touch_other(std::byte* order, std::uint32_t way);
     Entry other_victim(std::uint64_t line) const;
     void note_fill(Entry e);

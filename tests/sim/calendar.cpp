@@ -13,6 +13,7 @@ namespace {
 // Requests spread farther and farther apart and the earliest moves on.
 TEST(Calendar, EqualsASetOfSlots) {
     std::mt19937 random(11);
+    int taken_near = 0, refused_near = 0;
     for (unsigned per_cycle : {1U, 3U}) {
         cycle earliest = 0;
         Calendar calendar("test", earliest, per_cycle);
@@ -54,7 +55,26 @@ TEST(Calendar, EqualsASetOfSlots) {
                 }
             } else {
                 auto count = static_cast<std::uint32_t>(1 + random() % 64);
-                Calendar::Span span = calendar.take(from, count);
+                Calendar::Span span{};
+                if (random() % 2 == 0) { // only if they are near
+                    count = 1 + count / 8;
+                    const Calendar::Slot latest = from + random() % 400;
+                    std::uint64_t last = from;
+                    for (std::uint32_t k = 0; k < count; ++k, ++last)
+                        while (!free(last))
+                            ++last;
+                    while (!free(want))
+                        ++want;
+                    const bool near = want / 64 == (last - 1) / 64 && want / 64 * 64 + 63 <= latest;
+                    const bool took = calendar.take_near(from, count, latest, span);
+                    // words without a free slot may be passed or not
+                    ASSERT_TRUE(took == near || (near && from / 64 != want / 64)) << i;
+                    (took ? taken_near : refused_near) += 1;
+                    if (!took)
+                        continue;
+                } else {
+                    span = calendar.take(from, count);
+                }
                 for (std::uint32_t k = 0; k < count; ++k, ++want) {
                     while (!free(want))
                         ++want;
@@ -68,6 +88,8 @@ TEST(Calendar, EqualsASetOfSlots) {
             earliest += random() % 70; // most slots are taken
         }
     }
+    EXPECT_GT(taken_near, 1000);
+    EXPECT_GT(refused_near, 1000);
 }
 
 // Many ask for runs in the same crowded cycles, in which some are given back: what a calendar remembers to be
