@@ -184,7 +184,6 @@ private:
             used.insert(mesh.face_materials.begin(), mesh.face_materials.end());
             if (mesh.face_materials.empty())
                 used.insert(mesh.material);
-            maps_of(mesh);
         }
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const Material& m = scene_.materials[i];
@@ -203,31 +202,6 @@ private:
                         "darker than they are",
                         scene_.settings.diffuse_bounces),
                     "give it at most 0.9, which no real surface but fresh snow has");
-        }
-    }
-
-    void maps_of(const Mesh& mesh) {
-        if (!mesh.face_texcoords.empty())
-            return;
-        std::set<int> own(mesh.face_materials.begin(), mesh.face_materials.end());
-        if (own.empty())
-            own.insert(mesh.material);
-        for (const int i : own) {
-            if (i < 0 || static_cast<std::size_t>(i) >= scene_.materials.size())
-                continue;
-            const Material& m = scene_.materials[static_cast<std::size_t>(i)];
-            visit_material_maps(
-                [&](std::string_view map, const TextureMap& texture) {
-                    if (texture.texture < 0 ||
-                        scene_.textures[static_cast<std::size_t>(texture.texture)].pattern)
-                        return;
-                    add(Severity::warning, "no_texcoords", fmt::format("mesh '{}'", printable(mesh.name, 60)),
-                        fmt::format("it has no texture coordinates, and its material '{}' has an {}",
-                                    printable(m.name, 60), map),
-                        "all of it shows one place of the texture",
-                        "export it with texture coordinates, or take a pattern");
-                },
-                m);
         }
     }
 

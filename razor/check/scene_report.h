@@ -39,7 +39,7 @@ struct PrecisionBudget {
 std::vector<PrecisionBudget> precision_of(const Scene& scene);
 
 /// All there is to say, by kind: precision, levels, zero_area_light, dark_light, light_range, no_light,
-/// albedo_one, unused_material, no_texcoords. The meshes must be valid.
+/// albedo_one, unused_material. The meshes must be valid.
 std::vector<SceneFinding> findings_of(const Scene& scene);
 
 /// What a frame of the whole picture will take, in bytes.

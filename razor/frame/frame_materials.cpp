@@ -37,6 +37,16 @@ template <class Visit> void each_material(const Scene& scene, const Instance& i,
         known(material);
 }
 
+/// " (1 of 2 faces, from face 1 on)"; nothing where one material is everybody's.
+std::string faces_of(const Mesh& mesh, const Instance& i, std::size_t material) {
+    const auto& faces = mesh.face_materials;
+    const auto first = std::find(faces.begin(), faces.end(), static_cast<int>(material));
+    if (i.material >= 0 || first == faces.end())
+        return "";
+    return fmt::format(" ({} of {} faces, from face {} on)", std::count(first, faces.end(), *first),
+                       faces.size(), first - faces.begin());
+}
+
 /// What takes an instance's own coordinates to its mesh's. Of what has collapsed there is none: all zeros.
 SolidRecord solid_record(const Instance& i, const glm::dvec3& mesh_origin) {
     SolidRecord r{};
@@ -113,10 +123,10 @@ void Frame::Impl::take_materials(const Scene& scene) {
         if (textured == used.size() || texture_cage_of[mesh] >= 0)
             continue;
         if (own.face_texcoords.empty())
-            throw UserError(
-                fmt::format("{}: mesh '{}' has no texture coordinates, but its material '{}' has a "
-                            "texture; give it another material or a mesh with coordinates",
-                            scene.name, own.name, scene.materials[textured].name));
+            throw UserError(fmt::format(
+                "{}: mesh '{}' has no texture coordinates, but its material '{}'{} has a "
+                "texture; give it another material or a mesh with coordinates",
+                scene.name, own.name, scene.materials[textured].name, faces_of(own, i, textured)));
         texture_cage_of[mesh] = static_cast<int>(meshes.size());
         meshes.push_back(texture_cage(own));
         const bool displaced = geometry.displacements[mesh] > 0;

@@ -158,6 +158,21 @@ TEST_F(CheckScene, FindsMaterialsThatDoTooMuchOrNothing) {
     EXPECT_EQ(albedo_one("--diffuse-bounces 0"), 0);
 }
 
+TEST_F(CheckScene, NamesFacesWithAPictureAndNoTextureCoordinates) {
+    ASSERT_EQ(razor("render --size 4x4 --spp 1 --quiet -o p.png").code, 0);
+    folder_.file("m.mtl", "newmtl plain\nKd 1 0 0\nnewmtl painted\nKd 1 1 1\nmap_Kd p.png\n");
+    const auto outcome = [&](const std::string& last_face) {
+        folder_.file("m.obj",
+                     "mtllib m.mtl\nusemtl plain\n" + std::string(square) + "v 2 0 0\nv 2 1 0\n" + last_face);
+        return razor("check m.obj --no-floor --size 32x32 --scheme bilinear");
+    };
+    const Outcome painted = outcome("usemtl painted\nf 2 5 6 3\n");
+    EXPECT_EQ(painted.code, 2);
+    EXPECT_NE(painted.err.find("'painted' (1 of 2 faces, from face 1 on) has a texture"), std::string::npos)
+        << painted.err;
+    EXPECT_EQ(outcome("f 2 5 6 3\n").code, 0);
+}
+
 /// Against what a frame did build.
 TEST_F(CheckScene, KnowsWhatAFrameTakes) {
     for (const char* size : {"256x256", "512x384"}) {
