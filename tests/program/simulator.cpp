@@ -276,7 +276,7 @@ TEST_F(Simulator, NoiseMovesCyclesAlone) {
     for (const char* workers : {"--workers 1", "--workers 8"}) {
         std::optional<Film> picture;
         std::set<std::uint64_t> cycles, vops;
-        for (const char* seed : {"", "--jitter 1", "--jitter 2"}) {
+        for (const char* seed : {"", "--jitter 1", "--jitter 2", "--jitter 3", "--jitter 4"}) {
             SCOPED_TRACE(seed);
             const Outcome result = simulator(start + workers + " " + seed);
             ASSERT_EQ(result.code, 0) << result.err;
@@ -291,7 +291,8 @@ TEST_F(Simulator, NoiseMovesCyclesAlone) {
             for (const Plane& plane : picture->planes)
                 EXPECT_EQ(film.find(plane.name)->values, plane.values) << plane.name;
         }
-        EXPECT_EQ(cycles.size(), 3U) << workers;
+        // Two seeds may end alike: who waits for a refresh of DRAM goes on at its end, whatever came before.
+        EXPECT_GE(cycles.size(), 4U) << workers;
         if (std::string(workers) == "--workers 1") {
             EXPECT_EQ(vops.size(), 1U);
         }
