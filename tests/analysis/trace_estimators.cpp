@@ -60,7 +60,7 @@ TEST(Estimators, WindowsBeginAsTheyAreTold) {
     for (std::uint64_t i = 0; i < 400000; ++i)
         touches.push_back(i % 100);
     const Lines sizes = {64, 128};
-    for (const std::uint64_t ways : {0, 2}) {
+    for (const std::uint64_t ways : {0U, 2U}) {
         Sampling s = sampling(Method::windows, 0.1, 7);
         const auto kept = estimate(touches, sizes, ways, s);
         EXPECT_EQ(kept->looked_at(), 40000U);
