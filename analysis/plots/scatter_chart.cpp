@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace analysis {
 namespace {
@@ -35,7 +38,7 @@ struct Span {
                (to - from) * std::clamp((std::log10(std::max(value, 1e-300)) - low) / (high - low), 0.0, 1.0);
     }
     /// Multiples 1 to 9 of powers of ten, and whether each is to be named: powers, and 2 and 5 where the axis
-    /// is short.
+    /// is short. Where less than two of them lie on it, round numbers that are equally far apart.
     std::vector<std::pair<double, bool>> ticks() const {
         std::vector<std::pair<double, bool>> out;
         const bool few = high - low < 2;
@@ -46,12 +49,42 @@ struct Span {
                 if (log >= low && log <= high)
                     out.emplace_back(at, m == 1 || (few && (m == 2 || m == 5)) || high - low < 0.6);
             }
+        const auto named = [](const auto& tick) { return tick.second; };
+        return std::count_if(out.begin(), out.end(), named) < 2 ? even_ticks() : out;
+    }
+    std::vector<std::pair<double, bool>> even_ticks() const {
+        std::vector<std::pair<double, bool>> out;
+        const double from = std::pow(10, low), to = std::pow(10, high);
+        const double least = (to - from) / 5, power = std::pow(10, std::floor(std::log10(least)));
+        double step = 10 * power;
+        for (const int m : {5, 2, 1})
+            if (m * power >= least)
+                step = m * power;
+        for (double at = std::ceil(from / step) * step; at <= to; at += step)
+            out.emplace_back(at, true);
         return out;
     }
 };
 
+/// A name of several settings on lines of its own, each as long as there is room for.
+std::vector<std::string> legend_lines(std::string_view name) {
+    constexpr std::size_t most = 30;
+    std::vector<std::string> lines;
+    while (name.size() > most) {
+        const std::size_t comma = name.rfind(", ", most - 1);
+        if (comma == std::string_view::npos) {
+            lines.push_back(std::string(name.substr(0, most - 3)) + "...");
+            return lines;
+        }
+        lines.emplace_back(name.substr(0, comma + 1));
+        name.remove_prefix(comma + 2);
+    }
+    lines.emplace_back(name);
+    return lines;
+}
+
 std::string tick_text(double value) {
-    return value >= 1e-3 && value < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.0e}", value);
+    return value >= 1e-3 && value < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.3g}", value);
 }
 
 bool is_shown(const ScatterChart::Mark& m) {
@@ -101,6 +134,7 @@ Svg ScatterChart::drawing() const {
         steps.emplace_back(sx(x), sy(y));
     }
     out.polyline(steps, front_colour);
+    double legend = top;
     for (std::size_t i = 0; i < series.size(); ++i) {
         std::vector<std::pair<double, double>> line;
         for (const Mark& m : series[i].marks)
@@ -117,11 +151,12 @@ Svg ScatterChart::drawing() const {
                 out.line(sx(m.x), sy(std::max(m.y_low, 1e-300)), sx(m.x), sy(m.y_high), colour(i));
             out.circle(sx(m.x), sy(m.y), 4, m.filled ? colour(i) : "white", colour(i), m.name);
         }
-        const double y = top + static_cast<double>(i) * 17;
-        out.rectangle(x1 + 14, y, 11, 11, colour(i));
-        out.text(x1 + 30, y + 10,
-                 series[i].name.size() <= 30 ? series[i].name : series[i].name.substr(0, 27) + "...",
-                 Svg::Anchor::start, 11);
+        out.rectangle(x1 + 14, legend, 11, 11, colour(i));
+        for (const std::string& text : legend_lines(series[i].name)) {
+            out.text(x1 + 30, legend + 10, text, Svg::Anchor::start, 11);
+            legend += 13;
+        }
+        legend += 4;
     }
     out.line(x0, y1, x1, y1, ink);
     out.line(x0, y0, x0, y1, ink);

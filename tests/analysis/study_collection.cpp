@@ -65,6 +65,20 @@ TEST_F(StudyCollection, TablesEveryPoint) {
     EXPECT_EQ(json["points"][4]["failed"], "it fell over");
 }
 
+// An axis with no multiple of a power of ten on it, and names too long for a line.
+TEST(Scatter, NamesTicksOfAnyAxisAndAllOfEachSeries) {
+    ScatterChart chart;
+    chart.series.push_back({"sim.mode fast, memory.controller queued", {{}, {}}, false});
+    chart.series[0].marks[0].x = 1.31e7;
+    chart.series[0].marks[1].x = 1.72e7;
+    chart.series[0].marks[0].y = chart.series[0].marks[1].y = 0.01;
+    const std::string svg = chart.drawing().str();
+    EXPECT_NE(svg.find(">1.4e+07</text>"), std::string::npos) << svg;
+    EXPECT_NE(svg.find(">1.6e+07</text>"), std::string::npos);
+    EXPECT_NE(svg.find(">sim.mode fast,</text>"), std::string::npos);
+    EXPECT_NE(svg.find(">memory.controller queued</text>"), std::string::npos);
+}
+
 TEST_F(StudyCollection, PlotsAreLogarithmicAndShowTheFront) {
     const ScatterChart& chart = all_.plots.at(0).chart;
     EXPECT_EQ(chart.front, (std::vector<std::pair<double, double>>{{1, 8}, {2, 4}}));
