@@ -6,12 +6,14 @@
 
 Each scene is run once in detail and once for each seed of `--estimate sample:FRACTION`. A row a scene: the mean and the largest
 error of cycles and of bytes from and to DRAM, in how many runs the interval of each holds what the detailed run says, and the
-processor time of a sampled run beside the detailed one (medians). FOLDER keeps each run's report: the same command goes on where
-it was stopped. Exit code: 0; 1 where a run fails; 2 on a mistake; 130 after Ctrl-C.
+processor time of a sampled run beside the detailed one (medians). FOLDER keeps each run's report under its command: the same one
+goes on where it was stopped. Exit code: 0; 1 where a run fails; 2 on a mistake; 130 after Ctrl-C.
 """
 import argparse
+import hashlib
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -31,21 +33,25 @@ def options():
                                                      ("courtyard", "interior", "forest", "showcase")))
     parser.add_argument("--fraction", type=float, default=0.06)
     parser.add_argument("--seeds", type=int, default=50)
-    parser.add_argument("--program", default="razor-sim")
+    parser.add_argument("--program", default=shutil.which("razor-sim") or "build/release/sim/program/razor-sim")
     found = parser.parse_args(own)
     if not 0.001 <= found.fraction < 1 or found.seeds < 1:
         parser.error("--fraction is from 0.001 to below 1, --seeds at least 1")
+    if shutil.which(found.program) is None:
+        parser.error(f"{found.program} is no program; name razor-sim's place by --program")
     return found, more
 
 
 def report(name, given, scene, estimate):
     """The report of one run, from the folder if it is there."""
     found, more = given
-    file = os.path.join(found.folder, name + ".json")
+    command = [found.program, "run", "--quiet", "--no-native", "--no-calibration", "--machine", found.machine, "--scene", scene,
+               *estimate, *more]
+    key = hashlib.sha256("\0".join(command[1:]).encode()).hexdigest()[:12]
+    file = os.path.join(found.folder, f"{name}-{key}.json")
     if not os.path.exists(file):
-        command = [found.program, "run", "--quiet", "--no-native", "--no-calibration", "--machine", found.machine, "--scene",
-                   scene, "--json", file, "--report", file[:-5] + ".txt", *estimate, *more]
-        run = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+        run = subprocess.run([*command, "--json", file, "--report", file[:-5] + ".txt"], stderr=subprocess.PIPE, text=True,
+                             check=False)
         if run.returncode != 0:
             print(f"{name}: {run.stderr.strip()}", file=sys.stderr)
             sys.exit(130 if run.returncode == 130 else 1)
