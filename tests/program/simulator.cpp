@@ -91,8 +91,9 @@ TEST_F(Simulator, EstimatesFromSamples) {
         EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
         EXPECT_FALSE(std::filesystem::exists(folder_ / "wrong.json"));
     }
-    const Outcome coherent = simulator("run --quiet --scene s.toml --size 8x8 --machine " RAZOR_SOURCE_DIR
-                                       "/configs/machines/xeon-x5355-2s.toml --estimate sample:0.1");
+    const Outcome coherent =
+        simulator("run --quiet --scene s.toml --size 8x8 --estimate sample:0.1 --machine " +
+                  quoted_argument(RAZOR_SOURCE_DIR "/configs/machines/xeon-x5355-2s.toml"));
     EXPECT_EQ(coherent.code, 2);
     EXPECT_NE(coherent.err.find("coherent"), std::string::npos) << coherent.err;
 }
