@@ -14,11 +14,16 @@ namespace {
 
 using Lookup = Constraint::Lookup;
 
-/// A part of an expression: a number, or whether something holds (0 or 1).
+using Value = std::function<double(const Lookup&)>;
+
+/// A part of an expression: a number, or whether something holds (0 or 1). Those that hold it share it.
 struct Part {
     bool truth = false;
-    std::function<double(const Lookup&)> value;
+    std::shared_ptr<const Value> value;
 };
+
+/// So that neither parsing nor evaluating takes more stack than there surely is.
+constexpr std::size_t most_characters = 4096;
 
 bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -27,10 +32,18 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
+Part part(bool truth, Value value) {
+    return {truth, std::make_shared<const Value>(std::move(value))};
+}
+template <class Apply> Part applied(bool truth, const Part& a, Apply apply) {
+    return part(truth, [x = a.value, apply](const Lookup& lookup) {
+        return static_cast<double>(apply((*x)(lookup)));
+    });
+}
 template <class Apply> Part joined(bool truth, const Part& a, const Part& b, Apply apply) {
-    return {truth, [x = a.value, y = b.value, apply](const Lookup& lookup) {
-                return static_cast<double>(apply(x(lookup), y(lookup)));
-            }};
+    return part(truth, [x = a.value, y = b.value, apply](const Lookup& lookup) {
+        return static_cast<double>(apply((*x)(lookup), (*y)(lookup)));
+    });
 }
 
 /// By recursive descent, a function a rule of the header's grammar.
@@ -39,6 +52,10 @@ public:
     Parser(std::string_view text, std::vector<std::string>& keys) : text_(text), keys_(keys) {}
 
     Part parse() {
+        if (text_.size() > most_characters)
+            throw StudyError(
+                fmt::format("\"{}...\" has {} characters, and {} are read; write it in several conditions",
+                            text_.substr(0, 40), text_.size(), most_characters));
         Part out = condition();
         skip();
         if (at_ < text_.size())
@@ -106,7 +123,7 @@ private:
         const std::size_t at = at_;
         const Part inner = negation();
         need(inner, inner, true, at);
-        return joined(true, inner, inner, [](double a, double) { return a == 0; });
+        return applied(true, inner, [](double a) { return a == 0; });
     }
     Part test() {
         const Part left = sum();
@@ -172,7 +189,7 @@ private:
             const std::size_t at = at_;
             const Part inner = factor();
             need(inner, inner, false, at);
-            return joined(false, inner, inner, [](double a, double) { return -a; });
+            return applied(false, inner, [](double a) { return -a; });
         }
         if (take("(")) {
             Part inner = condition();
@@ -192,7 +209,7 @@ private:
         std::string name(text_.substr(begin, at_ - begin));
         if (std::find(keys_.begin(), keys_.end(), name) == keys_.end())
             keys_.push_back(name);
-        return {false, [name = std::move(name)](const Lookup& lookup) { return lookup(name); }};
+        return part(false, [name = std::move(name)](const Lookup& lookup) { return lookup(name); });
     }
     Part number() {
         double value = 0;
@@ -206,7 +223,7 @@ private:
                 value *= bytes;
                 break;
             }
-        return {false, [value](const Lookup&) { return value; }};
+        return part(false, [value](const Lookup&) { return value; });
     }
 
     /// Both sides must be of this kind.
@@ -230,7 +247,7 @@ Constraint::Constraint(std::string_view text) : text_(text) {
 }
 
 bool Constraint::holds(const Lookup& lookup) const {
-    return value_(lookup) != 0;
+    return (*value_)(lookup) != 0;
 }
 
 } // namespace analysis

@@ -5,7 +5,7 @@
 //     sum        = product { ("+" | "-") product };  product = factor { ("*" | "/" | "%") factor }
 //     factor     = [ "-" ] ( NUMBER [ "KiB" | "MiB" | "GiB" ] | KEY | "(" sum ")" )
 //
-// Numbers are doubles; `%` is what std::fmod leaves.
+// Numbers are doubles; `%` is what std::fmod leaves. At most 4,096 characters.
 #pragma once
 
 #include <functional>
@@ -31,7 +31,7 @@ public:
 private:
     std::string text_;
     std::vector<std::string> keys_; // each once
-    std::function<double(const Lookup&)> value_;
+    std::shared_ptr<const std::function<double(const Lookup&)>> value_;
 };
 
 } // namespace analysis

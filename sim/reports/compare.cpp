@@ -135,6 +135,38 @@ void check_one_design(std::span<const ReportFile> reports) {
     }
 }
 
+using Pointer = json::json_pointer;
+
+/// What is read of a report has the type it is read by, where it is there: the first part that has not, or
+/// none.
+std::string misfit(const json& report) {
+    const auto wrong = [&report](const Pointer& at, bool (*fits)(const json&)) {
+        return report.contains(at) && !fits(report.at(at));
+    };
+    constexpr auto object = [](const json& j) { return j.is_object(); };
+    constexpr auto text = [](const json& j) { return j.is_string(); };
+    constexpr auto number = [](const json& j) { return j.is_number(); };
+    for (const char* part : {"/machine", "/options", "/stack"})
+        if (wrong(Pointer(part), object))
+            return part;
+    for (const char* part : {"/scene", "/mode"})
+        if (wrong(Pointer(part), text))
+            return part;
+    if (wrong("/machine/l1/line_bytes"_json_pointer, number))
+        return "/machine/l1/line_bytes";
+    if (!report.contains("traffic"))
+        return {};
+    if (!report.at("traffic").is_array())
+        return "/traffic";
+    for (std::size_t row = 0; row < report.at("traffic").size(); ++row) {
+        const std::string at = fmt::format("/traffic/{}", row);
+        if (wrong(Pointer(at), object) || wrong(Pointer(at + "/structure"), text) ||
+            wrong(Pointer(at + "/memory_reads"), number) || wrong(Pointer(at + "/memory_writes"), number))
+            return at;
+    }
+    return {};
+}
+
 } // namespace
 
 double FigureChange::ratio() const {
@@ -149,11 +181,23 @@ ReportFile read_report(const std::string& file) {
     std::ifstream in(file);
     if (!in)
         throw ConfigError(fmt::format("{}: cannot be read; give a report of razor-sim run --json", file));
-    ReportFile r{file, json::parse(in, nullptr, false)};
+    const auto nests = [&file](int depth, json::parse_event_t, json&) {
+        if (depth > 64)
+            throw ConfigError(fmt::format("{}: nests more than 64 deep, which no report does; write one with "
+                                          "razor-sim run --json {}",
+                                          file, file));
+        return true;
+    };
+    ReportFile r{file, json::parse(in, nests, false)};
     if (r.json.is_discarded() || !r.json.is_object() || r.json.value("program", json()) != "razor-sim" ||
         !r.json.contains("cycles") || !r.json.contains("machine"))
         throw ConfigError(fmt::format(
             "{}: no report of a simulated run; write one with razor-sim run --json {}", file, file));
+    if (const std::string part = misfit(r.json); !part.empty())
+        throw ConfigError(
+            fmt::format("{}: its {} is not what razor-sim writes there; write the report anew with "
+                        "razor-sim run --json {}",
+                        file, part, file));
     return r;
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 namespace sim::test {
 namespace {
@@ -87,6 +88,35 @@ TEST(CompareReports, KnowWhatRunsOfOneDesignDifferBy) {
 TEST(CompareReports, AreOfReports) {
     EXPECT_THROW(read_report("/nowhere/report.json"), ConfigError);
     EXPECT_THROW(read_report(RAZOR_SOURCE_DIR "/README.md"), ConfigError);
+}
+
+TEST(CompareReports, NamePartsThatNoRunWrites) {
+    const std::pair<std::string, std::string> cases[] = {
+        {R"("machine":1)", "/machine"},
+        {R"("machine":{"l1":{"line_bytes":"many"}})", "/machine/l1/line_bytes"},
+        {R"("machine":{},"options":[])", "/options"},
+        {R"("machine":{},"stack":3)", "/stack"},
+        {R"("machine":{},"scene":3)", "/scene"},
+        {R"("machine":{},"mode":[])", "/mode"},
+        {R"("machine":{},"traffic":{})", "/traffic"},
+        {R"("machine":{},"traffic":[{"structure":"grids"},4])", "/traffic/1"},
+        {R"("machine":{},"traffic":[{"structure":4}])", "/traffic/0"},
+        {R"("machine":{},"traffic":[{"memory_reads":"4"}])", "/traffic/0"},
+        {R"("machine":{},"traffic":[{"memory_writes":null}])", "/traffic/0"},
+        {R"("machine":)" + std::string(100000, '[') + std::string(100000, ']'), "nests more than 64 deep"},
+    };
+    const std::string file = testing::TempDir() + "misfit.json";
+    for (const auto& [part, named] : cases) {
+        std::ofstream(file) << R"({"program":"razor-sim","cycles":1,)" << part << "}";
+        try {
+            read_report(file);
+            ADD_FAILURE() << part.substr(0, 80);
+        } catch (const ConfigError& error) {
+            EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+        }
+    }
+    std::ofstream(file) << R"({"program":"razor-sim","cycles":1,"machine":{}})";
+    EXPECT_EQ(read_report(file).json.at("cycles"), 1);
 }
 
 TEST(FlatReports, NameThingsByWhatTheyAre) {

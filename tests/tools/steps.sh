@@ -25,12 +25,13 @@ scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
 fuzz_seconds=10
+fuzz_seed=${fuzz_seed:-1}
 
 step_lines=()
 failed_steps=0
 test_reports=()
 
-rm -f build/*/tests.xml
+rm -f build/*/tests.xml build/fuzz/findings
 
 # step NAME COMMAND...: runs the command, notes how it ended; a failure fails the whole run at its end.
 step() {
@@ -82,12 +83,26 @@ summary() {
         fi
     done
     if ((failed_steps > 0)); then
+        what_failed
         printf '%d of %d steps FAILED\n' $failed_steps ${#step_lines[@]}
     else
         printf 'all %d steps ok\n' ${#step_lines[@]}
     fi
     printf 'tests: %d passed, %d failed, %d skipped\n' $passed $failed $skipped
     exit $((failed_steps > 0))
+}
+
+# Again at the end, where it is looked for: the tests that failed, and what fuzzers found.
+what_failed() {
+    local folder
+    for folder in release asan-ubsan; do
+        if [[ -e build/$folder/tests.xml ]]; then
+            sed -n -E 's/.*<testcase name="([^"]*)".* status="fail".*/FAILED test \1/p' "build/$folder/tests.xml"
+        fi
+    done
+    if [[ -e build/fuzz/findings ]]; then
+        sed 's/^/FAILED /' build/fuzz/findings
+    fi
 }
 
 # count_tests FILE: tests, failures, disabled and skipped ones of ctest's JUnit report.
@@ -160,10 +175,12 @@ compare_compilers() {
     tests/kernels/compare_compilers.sh build/release build/asan-ubsan
 }
 
-# As many at once as there are processors.
+# As many at once as there are processors. Always from the same seed: what one commit passes and the next does not is the
+# code's doing, not chance's. (By hand: fuzz_seed=next fuzz goes on with other mutations.)
 fuzz() {
+    rm -f build/fuzz/findings
     find build/asan-ubsan/tests/fuzz -maxdepth 1 -name 'fuzz_*' -type f -executable -print0 | sort -z |
-        xargs -0 -n 1 -P "$(nproc)" bash -c 'source tests/tools/fuzz.sh; fuzz_one "$0" '$fuzz_seconds
+        xargs -0 -n 1 -P "$(nproc)" bash -c 'source tests/tools/fuzz.sh; fuzz_one "$0" '"$fuzz_seconds $fuzz_seed"
 }
 
 build_for_threads() {
