@@ -78,13 +78,13 @@ int Frame::Impl::map_bits_of(const Instance& i) const {
 }
 
 std::int32_t Frame::Impl::shading_of(const Scene& scene, const Instance& i) const {
-    const int texcoords = shades_by_texture[static_cast<std::size_t>(i.mesh)] ? 2 : 0;
+    const auto mesh = static_cast<std::size_t>(i.mesh);
     int bits = scene.settings.shading == Shading::hits ? 0 : map_bits_of(i), arrays = 0;
     if ((bits >> map_bump & 1) != 0)
         bits |= 1 << map_normal;
     for (int map = 0; map < map_count; ++map)
         arrays += (bits >> map & 1) != 0 ? shaded_arrays(map) : 0;
-    return pack_shading(texcoords, arrays, bits);
+    return pack_shading(shades_by_texture[mesh], shades_by_rest[mesh], arrays, bits);
 }
 
 void Frame::Impl::take_materials(const Scene& scene) {
@@ -110,6 +110,7 @@ void Frame::Impl::take_materials(const Scene& scene) {
     }
     texture_cage_of.assign(scene_meshes, -1);
     shades_by_texture.assign(scene_meshes, false);
+    shades_by_rest.assign(scene_meshes, false);
     for (const Instance& i : geometry.instances) {
         const auto mesh = static_cast<std::size_t>(i.mesh);
         const Mesh& own = scene.meshes[mesh];
@@ -119,6 +120,8 @@ void Frame::Impl::take_materials(const Scene& scene) {
                 textured = m;
             if (materials.needs_texcoords[m])
                 shades_by_texture[mesh] = true;
+            if (materials.needs_points[m])
+                shades_by_rest[mesh] = !own.rest.empty();
         });
         if (textured == used.size() || texture_cage_of[mesh] >= 0)
             continue;
@@ -145,7 +148,8 @@ void Frame::Impl::place_materials(const Scene& scene) {
     int shaded = 0;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n)
         shaded = std::max(shaded, shaded_arrays_in(shading_of(scene, geometry.instances[n])));
-    header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded);
+    const bool rest = std::find(shades_by_rest.begin(), shades_by_rest.end(), true) != shades_by_rest.end();
+    header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded, rest);
     if (plan.look == look_matte && !materials.one_sided && materials.displacements.empty())
         return;
     const auto copy = [&](const auto& table, auto& to, const char* structure) {

@@ -198,6 +198,8 @@ void Frame::Impl::place_points(const Scene& scene) {
         first += t.points.size();
     }
     header->points.set(region<float>("control points", -1, total.points * 3));
+    if (std::find(shades_by_rest.begin(), shades_by_rest.end(), true) != shades_by_rest.end())
+        header->rest_points.set(region<float>("control points", -1, total.points * 3));
     fill_meshes(scene);
     for (std::size_t cage = scene_meshes; cage < meshes.size(); ++cage) {
         float* xyz = header->points.get() + 3 * first_point[cage];
@@ -215,6 +217,12 @@ void Frame::Impl::fill_points(const Scene& scene, std::size_t mesh) {
         for (int k = 0; k < 3; ++k)
             *xyz++ = static_cast<float>(p[k]);
     }
+    if (!shades_by_rest[mesh])
+        return;
+    xyz = header->rest_points.get() + 3 * first_point[mesh];
+    for (const glm::dvec3& p : scene.meshes[mesh].rest)
+        for (int k = 0; k < 3; ++k)
+            *xyz++ = static_cast<float>(p[k]);
 }
 
 void Frame::Impl::fill_meshes(const Scene& scene) {

@@ -62,6 +62,7 @@ struct Frame::Impl {
     std::vector<int> face_map_bits;   // of each mesh of the scene whose faces have materials: of all of them
     std::vector<int> texture_cage_of; // of each mesh of the scene, -1: none
     std::vector<bool> shades_by_texture; // likewise; else its cage is for displacement alone
+    std::vector<bool> shades_by_rest;    // likewise, patterns of objects, and it changes its shape
     MaterialTables materials;
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
     FrameOptions options;

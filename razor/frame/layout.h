@@ -506,9 +506,12 @@ struct FrameHeader {
     isa::ref<MaterialRecord> materials; // where the plan needs them; likewise:
     isa::ref<MapRecord> maps;
     isa::ref<TextureRecord> textures;
-    isa::ref<SolidRecord> solids;  // of each instance, where some texture is a pattern of objects; else null
-    isa::ref<SkyRecord> sky_map;   // null: the sky is the same everywhere
-    isa::ref<std::int32_t> texels; // of all textures
+    isa::ref<SolidRecord> solids; // of each instance, where some texture is a pattern of objects; else null
+    /// Parallel to `points`, in their meshes' coordinates: where points are of meshes that change their shape
+    /// (Mesh::rest) and have patterns of objects, which stay on the surface so. Null: no mesh has both.
+    isa::ref<float> rest_points;
+    isa::ref<SkyRecord> sky_map;           // null: the sky is the same everywhere
+    isa::ref<std::int32_t> texels;         // of all textures
     isa::ref<std::int32_t> face_materials; // of every face
     /// Null if nothing is displaced. Otherwise: of each instance by how much at most, in its mesh's units,
     /// and of each cluster by how much at most any instance of it is. 0: not at all.

@@ -45,13 +45,18 @@ constexpr int shaded_arrays(int map) {
 }
 inline constexpr int most_shaded_arrays = 11;
 
-/// InstanceRecord::shading: arrays of texture coordinates that follow the normals of a block, 0 or 2; arrays
-/// of what is shaded that follow those, in the order of MaterialMap; the bits.
-constexpr std::int32_t pack_shading(int texcoords, int arrays, int bits) {
-    return texcoords | arrays << 4 | bits << 8;
+/// InstanceRecord::shading: which arrays follow the normals of a block. Two of texture coordinates; three of
+/// where vertices are while the mesh is at rest (FrameHeader::rest_points); those of what is shaded, in the
+/// order of MaterialMap; whose bits.
+constexpr std::int32_t pack_shading(bool texcoords, bool rest, int arrays, int bits) {
+    return (texcoords ? 2 : 0) | (rest ? 4 : 0) | arrays << 4 | bits << 8;
 }
 template <class Int> constexpr Int texcoord_arrays(Int shading) {
-    return shading & 15;
+    return shading & 2;
+}
+template <class Int> constexpr Int rest_arrays(Int shading) {
+    Int some = (shading >> 2) & 1;
+    return some * 3;
 }
 template <class Int> constexpr Int shaded_arrays_in(Int shading) {
     return (shading >> 4) & 15;

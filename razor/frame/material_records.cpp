@@ -89,7 +89,7 @@ public:
     void add(const Material& m, bool used) {
         MaterialRecord r = material_record(m);
         const auto maps = maps_of(m);
-        bool texcoords = false;
+        bool texcoords = false, points = false;
         for (std::size_t k = 0; used && k < maps.size(); ++k)
             if (maps[k]->texture >= 0) {
                 r.map[k] = static_cast<std::int32_t>(t.maps.size());
@@ -97,7 +97,7 @@ public:
                 r.map_bits |= 1 << k;
                 const std::optional<Pattern>& pattern = pattern_of(*maps[k]);
                 if (pattern && pattern->space == PatternSpace::object)
-                    t.solid = true;
+                    points = t.solid = true;
                 else
                     texcoords = true;
             }
@@ -110,6 +110,7 @@ public:
             add_sheen(r);
         t.map_bits.push_back(r.map_bits);
         t.needs_texcoords.push_back(texcoords);
+        t.needs_points.push_back(points);
         const double bound = used ? displacement_bound(scene_, static_cast<int>(t.materials.size())) : 0;
         t.displaced.push_back(bound > 0);
         if (bound > 0) {

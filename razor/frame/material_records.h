@@ -14,7 +14,8 @@ struct MaterialTables {
     Look look = look_matte;
     std::vector<int> map_bits;         // of each material, the maps that it has: 1 << MaterialMap
     std::vector<bool> needs_texcoords; // likewise, whether some of them is other than a pattern of objects
-    bool solid = false;                // some map is a pattern of objects
+    std::vector<bool> needs_points;    // likewise, whether some of them is a pattern of objects
+    bool solid = false;                // any of all
     std::vector<bool> displaced;       // likewise, whether tessellation has one
     std::vector<DisplacementRecord> displacements;
     std::vector<MaterialRecord> materials;

@@ -59,11 +59,15 @@ enum BlendSlot : int {
     slot_normals = 3, // a BuildState
     slot_longest = 4, // 4 sides: log2 of their sub-edges on one edge, as packets test them
     slot_block = 16,  // laid out as a block
-    slot_texcoords = slot_block + blend_floats,     // u, v, one row_vertices each, where some mesh has them
-    slot_shaded = slot_texcoords + 2 * row_vertices // likewise what is shaded, of the camera's field
+    slot_texcoords = slot_block + blend_floats,      // u, v, one row_vertices each, where some mesh has them
+    slot_shaded = slot_texcoords + 2 * row_vertices, // likewise what is shaded, of the camera's field
+    slot_rest = slot_shaded + most_shaded_arrays * row_vertices // likewise x, y, z at rest
 };
-constexpr int slot_floats(bool texcoords, int shaded) {
-    return shaded > 0 ? slot_shaded + shaded * row_vertices : texcoords ? slot_shaded : slot_texcoords;
+constexpr int slot_floats(bool texcoords, int shaded, bool rest) {
+    return rest         ? slot_rest + 3 * row_vertices
+           : shaded > 0 ? slot_shaded + shaded * row_vertices
+           : texcoords  ? slot_shaded
+                        : slot_texcoords;
 }
 inline constexpr int line_floats_log2 = 4;
 static_assert(4 << line_floats_log2 == line_bytes);

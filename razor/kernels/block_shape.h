@@ -57,13 +57,14 @@ inline Shape block_shape(const Dicing& d) {
     words = words + select(d.displaced, sint(1), sint(0)); // see kept_deviation()
     // Normals; what lies on vertices besides follows them, and brings them along where they are not needed.
     // Flat patches have no vertices inside, so nothing is shaded at theirs.
-    sint texcoords = texcoord_arrays(d.shading);
-    sbool plain = flat & (texcoords == 0);
+    sint attributes = texcoord_arrays(d.shading);
+    attributes = attributes + rest_arrays(d.shading);
+    sbool plain = flat & (attributes == 0);
     s.normals_at = select(plain, sint(0), words);
     words = words + select(plain, sint(0), vertex_words);
-    words = words + s.stride * texcoords;
+    words = words + s.stride * attributes;
     s.shaded_at = 0;
-    if (branch(d.shading > texcoords)) {
+    if (branch(d.shading > 15)) {
         sint arrays = select(flat, sint(0), shaded_arrays_in(d.shading));
         words = words + s.stride * arrays;
         s.shaded_at = select(arrays > 0, words, sint(0));

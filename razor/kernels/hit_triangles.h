@@ -70,10 +70,10 @@ struct Attribute {
     pointer<float> own, out;
     sint arrays = 0;
 };
-/// Texture coordinates; and what is shaded, which is there once this returns, if the camera's field is the
-/// slot's.
+/// Texture coordinates; places at rest; and what is shaded, which is there once this returns, if the camera's
+/// field is the slot's.
 inline void find_attributes(const Context& c, pointer<BlockHeader> block, pointer<float> normals,
-                            pointer<float> slot, Attribute (&found)[2]) {
+                            pointer<float> slot, Attribute (&found)[3]) {
     sint instance = load(field(block, &BlockHeader::instance));
     sint shading = load(field(c.instances + instance, &InstanceRecord::shading));
     sint stride = load(field(block, &BlockHeader::stride));
@@ -83,10 +83,11 @@ inline void find_attributes(const Context& c, pointer<BlockHeader> block, pointe
     shaded = shaded & (number == camera_number);
     if (branch(shaded))
         found[1] = {ensure_shaded(c, block, normals, shading), slot + slot_shaded, shaded_arrays_in(shading)};
+    found[2] = {rest_at(normals, stride, shading), slot + slot_rest, rest_arrays(shading)};
 }
 
 /// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them;
-/// Mapped: also texture coordinates and what is shaded.
+/// Mapped: also texture coordinates, places at rest and what is shaded.
 template <bool Mapped>
 inline void blend_normals(const Context& c, sint line, pointer<float> normals, pointer<float> slot) {
     pointer<float> area = slot + slot_block;
@@ -103,7 +104,7 @@ inline void blend_normals(const Context& c, sint line, pointer<float> normals, p
         store(x + stride + vertex, n.y);
         store(x + stride * 2 + vertex, n.z);
     }
-    Attribute attribute[2];
+    Attribute attribute[3];
     if constexpr (Mapped) {
         find_attributes(c, block, normals, slot, attribute);
         for (const Attribute& a : attribute)
@@ -206,9 +207,13 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
     TriangleWords t = locate(c, h, hit);
     vfloat zero(0.0F);
     vvec none_yet{zero, zero, zero};
-    Corners k{none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, none_yet, zero, zero, {}, {}, {}};
+    Corners k;
+    k.a = k.b = k.c = k.at_a = k.at_b = k.at_c = k.normal = none_yet;
+    k.sway = k.sway_above = zero;
     if constexpr (Mapped) {
         k.map_a = k.map_b = k.map_c = {zero, zero};
+        k.rest_a = k.rest_b = k.rest_c = none_yet;
+        k.has_rest = vmask(false);
         known = nothing_shaded();
     }
     vint first_word = h.block << 4;
@@ -252,6 +257,14 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
                 gather_texcoord(texcoords, at.c, t.stride, here, k.map_c);
             }
         };
+        [[maybe_unused]] const auto find_rest = [&](pointer<float> rest) {
+            if (branch(rest_arrays(shading) != 0)) {
+                k.has_rest = k.has_rest | here;
+                k.rest_a = select(here, gather_vec(rest, at.a, t.stride, here), k.rest_a);
+                k.rest_b = select(here, gather_vec(rest, at.b, t.stride, here), k.rest_b);
+                k.rest_c = select(here, gather_vec(rest, at.c, t.stride, here), k.rest_c);
+            }
+        };
         if (branch(lane < -1)) {
             BlockPair p = block_pair<Mapped>(c, block, lane, normals_at);
             Scale scale = scale_of(c, r);
@@ -264,6 +277,7 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
             k.normal = select(here, blend(k.at_a, k.at_b, k.at_c, h), k.normal);
             if constexpr (Mapped) { // as they are at the anchors
                 find_texcoords(normals + stride * 3);
+                find_rest(rest_at(normals, stride, shading));
                 if (branch(on_grid)) {
                     pointer<float> shaded = ensure_shaded(c, header, normals, shading);
                     find_shaded(shaded, stride, shading, h, at, here, known);
@@ -272,15 +286,19 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
             continue;
         }
         [[maybe_unused]] pointer<float> texcoords = normals;
+        [[maybe_unused]] pointer<float> rest = normals;
         [[maybe_unused]] pointer<float> shaded = normals;
-        if constexpr (Mapped)
+        if constexpr (Mapped) {
             texcoords = normals + stride * 3;
+            rest = rest_at(normals, stride, shading);
+        }
         if (branch(lane >= 0)) {
             pointer<float> slot = blended_slot(c, lane, block);
             vertices = slot + (slot_block + block_header_words);
             if (branch(normals_at != 0))
                 normals = blended_normals<Mapped>(c, block, normals, slot);
             texcoords = slot + slot_texcoords;
+            rest = slot + slot_rest;
             shaded = slot + slot_shaded;
         } else if constexpr (Mapped) {
             if (branch(on_grid))
@@ -288,6 +306,7 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
         }
         if constexpr (Mapped) {
             find_texcoords(texcoords);
+            find_rest(rest);
             if (branch(on_grid))
                 find_shaded(shaded, stride, shading, h, at, here, known);
         }

@@ -130,6 +130,12 @@ inline vfloat slope_along(const Context& c, const vint& map, const Mapping& at, 
         vfloat zero(0.0F);
         vint record = solid_of(at.instance);
         vvec moved = to_object(solids, record, way * step, zero, m);
+        pointer<float> rest = load(field(c.frame, &FrameHeader::rest_points));
+        if (branch(!is_null(rest))) {
+            vfloat along_u = dot(way, at.dual_u) * step;
+            vfloat along_v = dot(way, at.dual_v) * step;
+            moved = select(at.has_rest, madd(along_v, at.rest_v, at.rest_u * along_u), moved);
+        }
         next.solid = at.solid + moved;
     }
     vfloat rise = height_at(c, map, next, m) - height;

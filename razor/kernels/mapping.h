@@ -30,6 +30,8 @@ struct Corners {
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
     vfloat sway, sway_above;       // of the block's finest vertices; of those of the next coarser level
     vpoint map_a, map_b, map_c;    // texture coordinates, where they are asked for and there are any
+    vmask has_rest;                // where textures are asked for, and the mesh changes its shape:
+    vvec rest_a, rest_b, rest_c;   // the corners while it is at rest, in the mesh's coordinates
 };
 /// The target edge length that each ray asks for `way` from its field's origin (see target_at()).
 inline vfloat asked_at(const Rays& r, const vvec& way) {
@@ -53,6 +55,10 @@ struct Mapping {
     vvec solid;        // the point, in its object
     vfloat solid_area; // `asked`, in the object's units
     vvec solid_spread; // how far a square on the surface reaches along the object's axes, by its side
+    // Where some mesh with such a texture changes its shape:
+    vmask has_rest;
+    vvec rest_u, rest_v; // two sides of the triangle at rest ...
+    vvec dual_u, dual_v; // ... and by what a direction on the surface has how much of each
 };
 
 /// Points of instances, or with `rest` 0 directions, in their objects.
@@ -76,10 +82,40 @@ inline vint solid_of(const vint& instance) {
     return instance >> 1;
 }
 
+/// How far a square of side 1 and that normal reaches along each axis.
+inline vvec spread_of(const vvec& normal) {
+    vfloat one(1.0F);
+    vvec spread;
+    spread.x = sqrt(max(one - normal.x * normal.x, 0.0F));
+    spread.y = sqrt(max(one - normal.y * normal.y, 0.0F));
+    spread.z = sqrt(max(one - normal.z * normal.z, 0.0F));
+    return spread;
+}
+
+/// Likewise of hits on meshes that change their shape: where they are at rest, so that patterns stay on the
+/// surface (known as reference positions, or Pref).
+inline void map_rest(const Corners& k, const Hits& h, const vvec& edge1, const vvec& edge2, Mapping& map) {
+    map.has_rest = k.has_rest;
+    map.rest_u = k.rest_b - k.rest_a;
+    map.rest_v = k.rest_c - k.rest_a;
+    vvec area = cross(edge1, edge2);
+    vfloat square = max(dot(area, area), 1.0e-36F);
+    vfloat per_square = reciprocal(square);
+    map.dual_u = cross(edge2, area) * per_square;
+    map.dual_v = cross(area, edge1) * per_square;
+    vvec rest_area = cross(map.rest_u, map.rest_v);
+    vfloat growth = sqrt(dot(rest_area, rest_area) * per_square); // of areas
+    map.solid = select(k.has_rest, blend(k.rest_a, k.rest_b, k.rest_c, h), map.solid);
+    map.solid_area = select(k.has_rest, map.asked * growth, map.solid_area);
+    vfloat zero(0.0F);
+    vvec spread = spread_of(normalise(rest_area, {zero, zero, zero}));
+    map.solid_spread = select(k.has_rest, spread, map.solid_spread);
+}
+
 /// Where points lie in their objects, if some texture is a pattern of those. `p`, and two sides of the
-/// triangles that they lie on: instances' coordinates.
-inline void map_solid(const Context& c, const vint& instance, const vvec& p, const vvec& edge1,
-                      const vvec& edge2, const vmask& m, Mapping& map) {
+/// triangles `k` that they lie on: instances' coordinates.
+inline void map_solid(const Context& c, const vint& instance, const Corners& k, const Hits& h, const vvec& p,
+                      const vvec& edge1, const vvec& edge2, const vmask& m, Mapping& map) {
     map.instance = instance;
     pointer<SolidRecord> solids = load(field(c.frame, &FrameHeader::solids));
     if (branch(is_null(solids)))
@@ -91,11 +127,10 @@ inline void map_solid(const Context& c, const vint& instance, const vvec& p, con
     vfloat zero(0.0F);
     vvec along1 = to_object(solids, record, edge1, zero, m);
     vvec along2 = to_object(solids, record, edge2, zero, m);
-    vvec normal = normalise(cross(along1, along2), {zero, zero, zero});
-    vfloat one(1.0F);
-    map.solid_spread.x = sqrt(max(one - normal.x * normal.x, 0.0F));
-    map.solid_spread.y = sqrt(max(one - normal.y * normal.y, 0.0F));
-    map.solid_spread.z = sqrt(max(one - normal.z * normal.z, 0.0F));
+    map.solid_spread = spread_of(normalise(cross(along1, along2), {zero, zero, zero}));
+    pointer<float> rest = load(field(c.frame, &FrameHeader::rest_points));
+    if (branch(!is_null(rest)))
+        map_rest(k, h, edge1, edge2, map);
 }
 
 inline Mapping map_hit(const Corners& k, const Hits& h, const vvec& edge1, const vvec& edge2,

@@ -1,6 +1,6 @@
 // Shading normals of a block's vertices, made when the first camera ray is shaded there: limit normals from
 // derivative pages, or those of the bilinear patch. Flat patches have none, unless they have texture
-// coordinates: their triangles' normals serve.
+// coordinates or are asked where they are at rest: their triangles' normals serve.
 #pragma once
 
 #include "razor/kernels/displaced_normals.h"
@@ -30,6 +30,33 @@ inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_st
     }
 }
 
+/// The arrays of where a block's vertices are while its mesh is at rest, `normals` being its own.
+inline pointer<float> rest_at(pointer<float> normals, sint stride, sint shading) {
+    sint before = texcoord_arrays(shading) + 3;
+    return normals + before * stride;
+}
+
+/// Makes them: x[stride], y[stride], z[stride].
+inline void make_rest(const Context& c, const Cage& g, const Dicing& d, const Block& b, pointer<float> out) {
+    Cage rest = g;
+    rest.points = load(field(c.frame, &FrameHeader::rest_points));
+    rest.place.moved = false;
+    Block to = b;
+    to.x = out;
+    if (branch(d.kind == static_cast<int>(PatchKind::catmull_clark))) {
+        sint face_class = load(field(g.faces + d.face, &FaceRecord::face_class));
+        sint first = load(field(g.faces + d.face, &FaceRecord::control_first));
+        sint controls = load(field(g.faces + d.face, &FaceRecord::control_count));
+        sint index = block_page_index(g, face_class, d.sub, d.nu, d.nv, b.column, b.row);
+        pointer<float> weights = page_weights(c, g, face_class, PageKind::block, index);
+        weigh_all(rest, weights, page_stride(b.stride), first, controls, b.stride, out, b.stride);
+    } else if (branch(is_flat(d))) {
+        place_flat(rest, d, to);
+    } else {
+        place_bilinear(c, rest, d, to);
+    }
+}
+
 [[gnu::noinline]] inline void make_normals(const Context& c, sint line, pointer<BlockHeader> header,
                                            sint normals_at) {
     phase_scope phase(phase_shade);
@@ -49,6 +76,8 @@ inline void weigh_derivatives(const Cage& g, pointer<float> weights, sint row_st
         sint shift = load(field(c.instances + instance, &InstanceRecord::texture_faces));
         make_texcoords(c, g, d, b, shift, out + b.stride * 3);
     }
+    if (branch(rest_arrays(d.shading) != 0))
+        make_rest(c, g, d, b, rest_at(out, b.stride, d.shading));
     if (branch(g.displaced)) {
         make_displaced_normals(c, g, d, b, out);
         return;

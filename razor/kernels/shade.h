@@ -183,7 +183,7 @@ template <Look L>
             beyond.material = select(of_face, face_material(c, h, record, of_face), beyond.material);
         beyond.known.normal = beyond.known.normal * side;
         beyond.known.share = share_of_vertices(c, block, target, s.hit);
-        map_solid(c, record, p, edge1, edge2, s.hit, beyond.map);
+        map_solid(c, record, k, h, p, edge1, edge2, s.hit, beyond.map);
     }
     p = p + lift_of(k, h, p, side);
     p = p + origin;

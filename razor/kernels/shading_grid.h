@@ -28,6 +28,7 @@ inline sbool has_shaded_grid(const Context& c, pointer<BlockHeader> block, sint 
 /// The arrays of what is shaded, `normals` being those of the block: static ones, and the state behind them.
 inline pointer<float> shaded_at(pointer<float> normals, sint stride, sint shading) {
     sint before = texcoord_arrays(shading) + 3;
+    before = before + rest_arrays(shading);
     return normals + before * stride;
 }
 
@@ -62,8 +63,9 @@ inline GridPoints grid_points(pointer<BlockHeader> block, sint from) {
 }
 
 /// The triangles that vertices make with those beside them, as if rays had hit them there.
-inline Corners grid_corners(pointer<float> vertices, pointer<float> normals, sint stride, sint texcoords,
+inline Corners grid_corners(pointer<float> vertices, pointer<float> normals, sint stride, sint shading,
                             const GridPoints& p, const vmask& m) {
+    sint texcoords = texcoord_arrays(shading);
     Corners k;
     k.a = gather_vertex(vertices, stride, p.at, m);
     k.b = gather_vertex(vertices, stride, p.beside, m);
@@ -77,6 +79,14 @@ inline Corners grid_corners(pointer<float> vertices, pointer<float> normals, sin
         k.map_a = {gather(u, p.at, m), gather(v, p.at, m)};
         k.map_b = {gather(u, p.beside, m), gather(v, p.beside, m)};
         k.map_c = {gather(u, p.above, m), gather(v, p.above, m)};
+    }
+    k.has_rest = vmask(false);
+    if (branch(rest_arrays(shading) != 0)) {
+        pointer<float> rest = rest_at(normals, stride, shading);
+        k.has_rest = m;
+        k.rest_a = gather_vertex(rest, stride, p.at, m);
+        k.rest_b = gather_vertex(rest, stride, p.beside, m);
+        k.rest_c = gather_vertex(rest, stride, p.above, m);
     }
     return k;
 }
@@ -130,11 +140,13 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
     for (sint from = 0; branch(from < stride); from += isa::width) {
         vmask m = first_lanes(stride - from);
         GridPoints points = grid_points(block, from);
-        Corners k = grid_corners(vertices, normals, stride, texcoord_arrays(shading), points, m);
+        Corners k = grid_corners(vertices, normals, stride, shading, points, m);
         Mapping at = map_vertices(c, k, k.a + origin, absolute);
         vvec beside = k.b - k.a;
         vvec above = k.c - k.a;
-        map_solid(c, vint(instance << 5), k.a, beside, above, m, at);
+        Hits vertex;
+        vertex.u = vertex.v = vfloat(0.0F);
+        map_solid(c, vint(instance << 5), k, vertex, k.a, beside, above, m, at);
         Materials of = materials_of(c, vint(material), m);
         tally(c.counters->shading_evaluations, count(m));
         tally(c.counters->grid_evaluations, count(m));
