@@ -9,7 +9,7 @@
 namespace razor::ISA_TARGET {
 inline namespace morph_kernel {
 
-/// The largest target edge length in the block's box.
+/// The largest target edge length in the block's box; roundings as of targets_in() (fields.h).
 inline sfloat largest_target(const Field& f, pointer<BlockHeader> block) {
     svec low = load_svec(field(block, &BlockHeader::box_low));
     svec high = load_svec(field(block, &BlockHeader::box_high));
@@ -26,7 +26,7 @@ inline sfloat largest_target(const Field& f, pointer<BlockHeader> block) {
     sfloat y = select(shrinks, near_y, far_y);
     sfloat z = select(shrinks, near_z, far_z);
     sfloat square = fma(x, x, fma(y, y, z * z));
-    sfloat outward = select(shrinks, sfloat(1.0F - 1.0e-6F), sfloat(1.0F + 1.0e-6F));
+    sfloat outward = select(shrinks, sfloat(few_down), sfloat(few_up));
     sfloat distance = sqrt(square) * outward;
     distance = max(distance - f.radius, 0.0F);
     // The slope's term is largest at one of two opposite corners.
@@ -46,8 +46,8 @@ inline sfloat largest_target(const Field& f, pointer<BlockHeader> block) {
         size = size + max(-less, more);
     }
     sfloat blurred = max(one, -other);
-    blurred = fma(size, 1.0e-6F, blurred);
-    sfloat target = fma(f.growth, distance, blurred) * (1.0F + 1.0e-6F);
+    blurred = fma(size, few_roundings, blurred);
+    sfloat target = fma(f.growth, distance, blurred) * few_up;
     return max(target, least_target);
 }
 

@@ -228,7 +228,7 @@ inline void bound_surface(const Block& b, const svec& deviation) {
         sfloat least = reduce_min(low);
         sfloat most = reduce_max(high);
         sfloat size = max(-least, most);
-        sfloat slack = fma(size, 1.0e-6F, wider[k]); // owners' points differ from ours by rounding
+        sfloat slack = fma(size, few_roundings, wider[k]); // owners' points differ from ours by rounding
         least = least - slack;
         most = most + slack;
         store(field(b.header, &BlockHeader::box_low) + k, least);
@@ -354,7 +354,7 @@ inline svec deviation_of(const Context& c, const Cage& g, const Dicing& finer, p
     Box box = box_of(block);
     sfloat size = largest_component_of(box.low);
     size = max(largest_component_of(box.high), size);
-    sfloat rounding = size * 1.0e-6F;
+    sfloat rounding = size * few_roundings;
     Dicing d = finer;
     d.nu = d.nu - 1;
     d.nv = d.nv - 1;

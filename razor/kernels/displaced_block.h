@@ -224,7 +224,7 @@ inline sfloat rounding_in(const Box& box) {
     svec low{abs(box.low.x), abs(box.low.y), abs(box.low.z)};
     svec high{abs(box.high.x), abs(box.high.y), abs(box.high.z)};
     sfloat size = largest(low);
-    return max(largest(high), size) * 1.0e-6F;
+    return max(largest(high), size) * few_roundings;
 }
 
 /// The vertices of a block, its sides where their owners have them. If there are finer ones, how far they can

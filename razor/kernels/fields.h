@@ -99,7 +99,8 @@ inline Span span_of(const vfloat& origin, const vfloat& low, const vfloat& high)
 }
 
 /// Bounds of |base + slope . (place - origin)| over a box, one a lane; `margin`: what roundings may add to
-/// it.
+/// it. Of each term here 5 at most (difference, product, three sums), of each in target_at() 5 likewise (8 on
+/// sse4): of the sizes of all terms together.
 struct Blur {
     vfloat least, most, margin;
 };
@@ -123,14 +124,17 @@ inline Blur blur_in(const Fields& f, const vvec& low, const vvec& high) {
         size = size + max(-less, more);
     }
     Blur b;
-    b.margin = size * 1.0e-6F;
+    b.margin = size * few_roundings;
     b.most = max(most, -least);
     b.least = max(max(least, -most), 0.0F);
     return b;
 }
 
 /// Bounds of each field's target edge lengths in a box (scene coordinates), rounded outward. Least is no more
-/// than any target there, by more than what positions are rounded by; most no less.
+/// than any target there, by more than what positions are rounded by; most no less. A distance here has 4.5
+/// roundings (of each square its difference, twice, and up to 3 sums or products, of which the root leaves
+/// half; the root; the product with what makes it more or less), on sse4 5.5, and no more in target_at();
+/// what comes of it has 3 on either side.
 struct Targets {
     vfloat least, most;
 };
@@ -145,11 +149,11 @@ inline Targets targets_in(const Context& c, const FieldBounds& all, const svec& 
     vfloat near = sqrt(fma(x.near, x.near, fma(y.near, y.near, z.near * z.near)));
     vfloat far = sqrt(fma(x.far, x.far, fma(y.far, y.far, z.far * z.far)));
     vfloat wide = vfloat(slack);
-    near = fma(near, vfloat(1.0F - 1.0e-6F), -wide) - f.radius;
+    near = fma(near, vfloat(few_down), -wide) - f.radius;
     near = max(near, vfloat(0.0F));
-    far = fma(far, vfloat(1.0F + 1.0e-6F), wide) - f.radius;
+    far = fma(far, vfloat(few_up), wide) - f.radius;
     far = max(far, vfloat(0.0F));
-    Blur blur{f.base, f.base, abs(f.base) * 1.0e-6F};
+    Blur blur{f.base, f.base, abs(f.base) * few_roundings};
     if (branch(all.sloped)) {
         // Positions are off by their slack.
         vvec room{wide, wide, wide};
@@ -163,15 +167,16 @@ inline Targets targets_in(const Context& c, const FieldBounds& all, const svec& 
     vfloat less = min(at_near, at_far) + blur.least;
     vfloat more = max(at_near, at_far) + blur.most;
     vfloat margin = blur.margin;
-    t.least = fma(less, vfloat(1.0F - 1.0e-6F), -margin);
-    t.most = fma(more, vfloat(1.0F + 1.0e-6F), margin);
+    t.least = fma(less, vfloat(few_down), -margin);
+    t.most = fma(more, vfloat(few_up), margin);
     vfloat floor(least_target);
     t.least = max(t.least, floor);
     t.most = max(t.most, floor);
     return t;
 }
 
-/// Bounds of all fields' |base + slope . (place - origin)| over a box, their roundings included.
+/// Bounds of all fields' |base + slope . (place - origin)| over a box, their roundings included: those of
+/// blur_in(), one more of each term for the slack.
 struct CommonBlur {
     sfloat least, most;
 };
@@ -198,7 +203,7 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
         most = most + more;
         size = size + max(-less, more);
     }
-    sfloat margin = size * 2.0e-6F;
+    sfloat margin = size * more_roundings;
     CommonBlur blur;
     blur.most = max(most, -least) + margin;
     blur.least = max(max(least, -most) - margin, 0.0F);
@@ -219,7 +224,7 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
         sfloat far = max(before, after);
         furthest = fma(far, far, furthest);
     }
-    sfloat far = sqrt(furthest) * (1.0F + 2.0e-6F) + slack;
+    sfloat far = sqrt(furthest) * more_up + slack;
     return max(far - f.least_radius, 0.0F);
 }
 /// From no field's origin any place in the box is nearer.
@@ -236,7 +241,7 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
         sfloat near = max(max(before, after), 0.0F);
         nearest = fma(near, near, nearest);
     }
-    sfloat near = sqrt(nearest) * (1.0F - 2.0e-6F) - slack;
+    sfloat near = sqrt(nearest) * more_down - slack;
     return max(near - f.most_radius, 0.0F);
 }
 
@@ -263,7 +268,7 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
         least = least_blur_in(f, low, high, slack);
     sfloat distance = branch(f.least_growth < 0.0F) ? furthest_of_shrinking(f, low, high, slack)
                                                     : nearest_in(f, low, high, slack);
-    return fma(f.least_growth, distance, least) * (1.0F - 2.0e-6F);
+    return fma(f.least_growth, distance, least) * more_down;
 }
 
 /// No field's target edge length in the box is more.
@@ -272,7 +277,7 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
     sfloat most = f.most_base;
     if (branch(f.sloped))
         most = most_blur_in(f, low, high, slack);
-    constexpr float up = 1.0F + 2.0e-6F;
+    constexpr float up = more_up;
     if (branch(f.most_growth <= 0.0F))
         return most * up;
     sfloat distance = furthest_in(f, low, high, slack);

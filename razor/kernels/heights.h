@@ -9,6 +9,7 @@
 #pragma once
 
 #include "razor/kernels/pattern_value.h"
+#include "razor/kernels/rounding.h"
 #include "razor/kernels/texels.h"
 #include "razor/kernels/texture_face.h"
 
@@ -191,7 +192,7 @@ inline sfloat height_change(const Displacing& d, sfloat du, sfloat dv, sfloat re
         sfloat y = abs(row.y);
         sfloat size = abs(row.z) + 1.0F;
         size = fma(x + y, reach, size);
-        sfloat rounding = size * 2.0e-6F;
+        sfloat rounding = size * more_roundings;
         return fma(x, du, fma(y, dv, rounding));
     };
     sfloat change = along(d.row_u) * slope_u;

@@ -9,8 +9,11 @@ namespace razor::ISA_TARGET {
 inline namespace animate_kernel {
 
 inline constexpr float hull_growth = 1.0F / 256.0F;
-/// More than rounding moves a point by, relative to the largest number on its way: some sixteen roundings.
-inline constexpr float hull_rounding = 1.0e-6F;
+/// More than rounding moves a point by, relative to the largest number on its way. A sum over n control
+/// points has n roundings: of regular faces 16. Where n is more, beside points of high valence, hull_growth
+/// is more than the rest unless the box is smaller than 256 n u of its largest coordinate (1/330, where n is
+/// 200).
+inline constexpr float hull_rounding = few_roundings;
 
 struct Hulls {
     vvec low, high;

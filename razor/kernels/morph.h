@@ -6,6 +6,7 @@
 #pragma once
 
 #include "razor/frame/transition.h"
+#include "razor/kernels/rounding.h"
 #include "razor/kernels/vec.h"
 
 namespace razor::ISA_TARGET {
