@@ -15,7 +15,7 @@ namespace razor {
 void InfoCommand::add_to(CLI::App& app) {
     command_ = app.add_subcommand(
         "info", "list a scene's meshes, instances, materials, textures and lights, and what "
-                "cameras, lights and animations glTF files hold");
+                "cameras, lights and animations glTF files and what tags MD3 files hold");
     scene_.add_to(*command_, "scene");
     command_->add_option("--json", json_, "write it for programs")->type_name("FILE.json");
 }
@@ -35,11 +35,12 @@ int InfoCommand::run() const {
         nlohmann::ordered_json report{{"program", "razor"}, {"version", version()}};
         report.update(json_of(scene, use));
         report["gltf_files"] = json_of(files);
+        report["tags"] = json_of_tags(moving);
         report["notes"] = notes;
         // Names need not be UTF-8.
         write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
-    fmt::print("{}{}", text_of(scene, use), text_of(files));
+    fmt::print("{}{}{}", text_of(scene, use), text_of(files), text_of_tags(moving));
     for (const std::string& note : notes) {
         fmt::print("not read: {}\n", note);
     }

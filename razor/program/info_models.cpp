@@ -94,4 +94,30 @@ nlohmann::ordered_json json_of(const std::vector<GltfContents>& files) {
     return list;
 }
 
+std::string text_of_tags(const SceneDescription& description) {
+    std::string text;
+    for (const MeshDescription& mesh : description.meshes) {
+        if (!mesh.tags)
+            continue;
+        text += fmt::format("tags of {}:", printable(mesh.name, 100));
+        for (std::size_t t = 0; t < mesh.tags->count(); ++t)
+            text += fmt::format("{} {}", t == 0 ? "" : ",", printable(mesh.tags->name(t), 100));
+        text += '\n';
+    }
+    return text;
+}
+
+nlohmann::ordered_json json_of_tags(const SceneDescription& description) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const MeshDescription& mesh : description.meshes) {
+        if (!mesh.tags)
+            continue;
+        nlohmann::ordered_json names = nlohmann::ordered_json::array();
+        for (std::size_t t = 0; t < mesh.tags->count(); ++t)
+            names.push_back(mesh.tags->name(t));
+        list.push_back({{"mesh", mesh.name}, {"file", mesh.file}, {"tags", std::move(names)}});
+    }
+    return list;
+}
+
 } // namespace razor

@@ -1,4 +1,5 @@
-// What the glTF files of a scene hold that scene files may choose by name: cameras, lights, animations.
+// What the models of a scene hold that scene files may choose by name: cameras, lights and animations of glTF
+// files, tags of MD3 files.
 #pragma once
 
 #include "razor/scene/description.h"
@@ -17,5 +18,9 @@ std::vector<GltfContents> contents_of(const SceneDescription& description);
 /// Nothing where there are none.
 std::string text_of(const std::vector<GltfContents>& files);
 nlohmann::ordered_json json_of(const std::vector<GltfContents>& files);
+
+/// Tags of the meshes that have some. Nothing where there are none.
+std::string text_of_tags(const SceneDescription& description);
+nlohmann::ordered_json json_of_tags(const SceneDescription& description);
 
 } // namespace razor

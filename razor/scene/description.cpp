@@ -1,5 +1,6 @@
 #include "razor/scene/description.h"
 
+#include "razor/scene/attachment.h"
 #include "razor/scene/error.h"
 #include "razor/scene/material_fields.h"
 #include "razor/scene/text_file.h"
@@ -184,9 +185,10 @@ private:
     }
 
     void add_objects(std::size_t group, const std::vector<ObjectDescription>& objects) {
-        for (const ObjectDescription& object : objects) {
+        for (std::size_t o = 0; o < objects.size(); ++o) {
+            const ObjectDescription& object = objects[o];
             Placement placement{.name = object.name,
-                                .local = object.transform,
+                                .local = stated_place(description_, objects, o),
                                 .copies = object.copies,
                                 .spacing = object.spacing,
                                 .level_offset = object.level_offset,

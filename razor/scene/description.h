@@ -7,6 +7,7 @@
 #include "razor/scene/animation/keys.h"
 #include "razor/scene/animation/moving_cage.h"
 #include "razor/scene/animation/playback.h"
+#include "razor/scene/animation/tags.h"
 #include "razor/scene/from_model.h"
 #include "razor/scene/graph/flatten.h"
 #include "razor/scene/instance_table.h"
@@ -14,6 +15,7 @@
 #include "razor/scene/scene.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -43,6 +45,7 @@ struct MeshDescription {
     // if any.
     std::shared_ptr<const Mesh> source;
     std::shared_ptr<const MovingCage> motion;
+    std::shared_ptr<const Tags> tags; // of MD3 models that have some, of the frames played
     std::shared_ptr<const Mesh> cage; // when the scene begins, or at playback.moment; before scale and so on
 };
 
@@ -55,6 +58,13 @@ struct LightsFromModel {
 /// Whether the cage has other shapes at other moments.
 bool changes_shape(const MeshDescription& mesh);
 
+/// Where an object hangs: on a tag of the mesh that another object of its list places (attachment.h).
+struct Attachment {
+    std::string object, tag; // names
+    // The same by number, which readers find: in the list, of its mesh in the scene, in the mesh's tags.
+    std::size_t carrier = 0, mesh = 0, tag_number = 0;
+};
+
 /// Puts a mesh, a group, or all rows of a table of instances somewhere, once or as a regular array.
 struct ObjectDescription {
     std::string name;
@@ -63,7 +73,8 @@ struct ObjectDescription {
     std::shared_ptr<const InstanceTable> table; // as read from there
     std::string material;                       // of all below that states none itself; empty: as it has
     Transform transform;
-    TransformKeys keys;          // of the transform, which is no matrix then
+    TransformKeys keys; // of the transform, which is no matrix then
+    std::optional<Attachment> attachment;
     glm::ivec3 copies{1, 1, 1};  // see Placement
     glm::dvec3 spacing{0, 0, 0}; // units of the group that holds the object
     int level_offset = 0;
@@ -112,7 +123,7 @@ SceneGraph build_graph(const SceneDescription& description);
 /// Of that number, where the scene has it.
 Mesh build_mesh(const SceneDescription& description, std::size_t mesh);
 
-/// What keys say is left out: see animation/pose.h.
+/// What keys say is left out: see animation/pose.h. Tags are where they are when the scene begins.
 Scene build_scene(const SceneDescription& description);
 
 /// What of its models' files was not read though it would be seen, a line each.

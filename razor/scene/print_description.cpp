@@ -61,6 +61,10 @@ void print_object(std::string& text, const ObjectDescription& object, std::strin
     } else {
         fmt::format_to(out, "mesh = {}\n", toml_text(object.mesh));
     }
+    if (object.attachment) {
+        fmt::format_to(out, "attach = {}\ntag = {}\n", toml_text(object.attachment->object),
+                       toml_text(object.attachment->tag));
+    }
     if (!object.material.empty()) {
         fmt::format_to(out, "material = {}\n", toml_text(object.material));
     }

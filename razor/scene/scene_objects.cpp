@@ -2,6 +2,7 @@
 
 #include "razor/scene/animation/read_keys.h"
 #include "razor/scene/error.h"
+#include "razor/scene/read_attachment.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/toml_words.h"
 
@@ -30,10 +31,7 @@ public:
             group_names_.push_back(read_group_name(group));
         }
         for (std::size_t g = 0; g < groups.size(); ++g) {
-            GroupDescription group{group_names_[g], {}};
-            for (TomlTable& object : groups[g].tables("object")) {
-                group.objects.push_back(read_object(std::move(object)));
-            }
+            GroupDescription group{group_names_[g], read_list(groups[g])};
             groups[g].finish();
             if (group.objects.empty()) {
                 groups[g].fail("name",
@@ -43,9 +41,7 @@ public:
             }
             scene_.groups.push_back(std::move(group));
         }
-        for (TomlTable& object : root.tables("object")) {
-            scene_.objects.push_back(read_object(std::move(object)));
-        }
+        scene_.objects = read_list(root);
         if (!scene_.groups.empty() || !scene_.objects.empty()) {
             check(root, groups);
         }
@@ -84,6 +80,18 @@ private:
         return std::string(words[table.choice(key, 0, words)]);
     }
 
+    /// Of a group, or of the scene.
+    std::vector<ObjectDescription> read_list(TomlTable& owner) {
+        const std::vector<TomlTable> tables = owner.tables("object");
+        std::vector<ObjectDescription> objects;
+        objects.reserve(tables.size());
+        for (const TomlTable& table : tables) {
+            objects.push_back(read_object(table));
+        }
+        resolve_attachments(tables, scene_, objects);
+        return objects;
+    }
+
     ObjectDescription read_object(TomlTable table) {
         ObjectDescription object;
         object.name = table.text("name", "");
@@ -102,6 +110,7 @@ private:
             table.fail("matrix",
                        "an object with a matrix and keys; write scale, rotate and translate instead");
         }
+        object.attachment = read_attachment(table);
         object.copies = table.whole_vector("array", object.copies, copies_range);
         object.spacing = table.vector("spacing", object.spacing, coordinate_range);
         object.level_offset = table.whole("level_offset", object.level_offset, level_offset_range);

@@ -1,6 +1,7 @@
 // razor info: what it lists of a scene, for people and for programs.
 #include "tests/program/run.h"
 #include "tests/scene/gltf_writer.h"
+#include "tests/scene/md3_writer.h"
 #include "tests/scene/picture_writer.h"
 
 #include <nlohmann/json.hpp>
@@ -93,6 +94,20 @@ TEST_F(Info, TellsWhatGltfFilesHold) {
         EXPECT_EQ(json[0]["animations"][0]["seconds"], 1.25);
     }
     EXPECT_EQ(info("o.obj").out.find("glTF"), std::string::npos);
+}
+
+TEST_F(Info, ListsTags) {
+    folder_.file("m.md3", write_md3(two_surfaces(), 2, {{"tag_head", {{}, {}}}, {"tag_weapon", {{}, {}}}}));
+    const Outcome result = info("m.md3 --json i.json");
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("\ntags of m: tag_head, tag_weapon\n"), std::string::npos) << result.out;
+    std::ifstream file(folder_ / "i.json");
+    const auto json = nlohmann::json::parse(file)["tags"];
+    ASSERT_EQ(json.size(), 1U);
+    EXPECT_EQ(json[0]["mesh"], "m");
+    EXPECT_EQ(json[0]["file"], (folder_ / "m.md3").string());
+    EXPECT_EQ(json[0]["tags"], nlohmann::json::array({"tag_head", "tag_weapon"}));
+    EXPECT_EQ(info("o.obj").out.find("tags of"), std::string::npos);
 }
 
 TEST_F(Info, TakesModelsAndNamesMistakes) {

@@ -66,6 +66,22 @@ TEST(Md3Damage, RefusesOtherFiles) {
     }
 }
 
+TEST(Md3Damage, DamagedTagsAreNamed) {
+    const int size = static_cast<int>(small_file().size());
+    expect_part(message_with(80, -1), "m.md3: states -1 tags from byte 220 on (at bytes 80 and 96); ");
+    expect_part(message_with(96, least_int), "m.md3: states 1 tags from byte -2147483648 on");
+    expect_part(
+        message_with(80, largest_int),
+        fmt::format("m.md3: 2147483647 tags of 2 frames from byte 220 on do not fit into its {} bytes; ",
+                    size));
+    expect_part(message_with(96, size - 2 * 112 + 1), "m.md3: 1 tags of 2 frames from byte ");
+    expect_part(message_with(96, largest_int), "m.md3: 1 tags of 2 frames from byte 2147483647 on");
+    expect_part(message_with(220 + 112, 'X'),
+                "m.md3: the tag 'UUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUUU' is called "
+                "'X' in frame 1 (at byte 332); ");
+    EXPECT_EQ(message_with(80, 0), ""); // none: wherever they begin
+}
+
 TEST(Md3Damage, DamagedHeadersAreNamed) {
     const std::size_t size = small_file().size();
     EXPECT_EQ(message_with(76, 0), "m.md3: has no frames; export it with one at least");

@@ -46,6 +46,23 @@ TEST(Md3Reader, ReadsEveryNumber) {
     EXPECT_TRUE(sound(model));
 }
 
+TEST(Md3Reader, ReadsTags) {
+    const std::string full(64, 'n'); // no zero byte ends it
+    const std::string bytes = write_md3(
+        two_surfaces(), 2,
+        {{"tag_a", {{{1, 2, 3}}, {{-4, 5, 0.5F}, {0, 1, 0, -1, 0, 0, 0, 0, 1}}}}, {full, {{{7, 7, 7}}, {}}}});
+    const Md3Model model = parse_md3(bytes, "m.md3");
+    ASSERT_EQ(model.tags.size(), 2U);
+    EXPECT_EQ(model.tags[0].name, "tag_a");
+    EXPECT_EQ(model.tags[0].frames,
+              (std::vector<Affine>{{glm::dmat3(1), {1, 2, 3}},
+                                   {glm::dmat3({0, 1, 0}, {-1, 0, 0}, {0, 0, 1}), {-4, 5, 0.5}}}));
+    EXPECT_EQ(model.tags[1].name, full);
+    EXPECT_EQ(model.tags[1].frames, (std::vector<Affine>{{glm::dmat3(1), {7, 7, 7}}, {}}));
+    EXPECT_EQ(model.cage.points, parse_md3(small_file(), "m.md3").cage.points);
+    EXPECT_EQ(parse_md3(small_file(), "m.md3").tags.size(), 1U);
+}
+
 TEST(Md3Reader, FacesTurnCounterClockwise) {
     const Md3Model model = parse_md3(small_file(), "m.md3");
     for (const std::size_t face : {0U, 1U}) { // the quad, in the format clockwise seen from z above

@@ -78,16 +78,46 @@ inline std::string write_surface(const Md3SurfaceData& data) {
     return bytes + triangles + shaders + texcoords + points;
 }
 
-/// With one tag, and frame boxes of zeros.
-inline std::string write_md3(const std::vector<Md3SurfaceData>& surfaces, std::size_t frame_count) {
+/// A tag in one frame.
+struct Md3TagData {
+    std::array<float, 3> origin{};
+    std::array<float, 9> axes{1, 0, 0, 0, 1, 0, 0, 0, 1}; // where x goes, y, z
+};
+
+struct Md3TagFrames {
+    std::string name;
+    std::vector<Md3TagData> frames;
+};
+
+/// Of all frames, one frame after the other.
+inline std::string write_tags(const std::vector<Md3TagFrames>& tags, std::size_t frame_count) {
+    std::string bytes;
+    for (std::size_t f = 0; f < frame_count; ++f) {
+        for (const Md3TagFrames& tag : tags) {
+            bytes += padded(tag.name, 64);
+            for (const float x : tag.frames.at(f).origin) {
+                append(bytes, std::bit_cast<std::int32_t>(x));
+            }
+            for (const float x : tag.frames.at(f).axes) {
+                append(bytes, std::bit_cast<std::int32_t>(x));
+            }
+        }
+    }
+    return bytes;
+}
+
+/// With frame boxes of zeros, and these tags; without any with one of no use.
+inline std::string write_md3(const std::vector<Md3SurfaceData>& surfaces, std::size_t frame_count,
+                             const std::vector<Md3TagFrames>& tag_frames = {}) {
     const std::string frames(56 * frame_count, '\0');
-    const std::string tags(112 * frame_count, '\x55');
+    const std::string tags =
+        tag_frames.empty() ? std::string(112 * frame_count, '\x55') : write_tags(tag_frames, frame_count);
     std::string bytes = "IDP3";
     append(bytes, 15);
     bytes += padded("models/test.md3", 64);
     append(bytes, 0); // flags
     append(bytes, static_cast<std::int32_t>(frame_count));
-    append(bytes, 1); // tags
+    append(bytes, tag_frames.empty() ? 1 : static_cast<std::int32_t>(tag_frames.size()));
     append(bytes, static_cast<std::int32_t>(surfaces.size()));
     append(bytes, 0); // skins
     append(bytes, 108);

@@ -1,6 +1,7 @@
 #include "razor/scene/animation/moving_scene.h"
 
 #include "razor/scene/animation/pose.h"
+#include "razor/scene/attachment.h"
 
 #include <array>
 #include <cstring>
@@ -32,10 +33,13 @@ bool same_transform(const Transform& a, const Transform& b) {
                         std::array{b.scale, b.rotate, b.translate});
 }
 
-/// `Description`: a scene's, const or not.
+// `Description`: a scene's, const or not.
+
+template <class Description> auto& list_of(Description& scene, const PlacementName& name) {
+    return name.group < 0 ? scene.objects : scene.groups[at(name.group)].objects;
+}
 template <class Description> auto& object_of(Description& scene, const PlacementName& name) {
-    auto& objects = name.group < 0 ? scene.objects : scene.groups[at(name.group)].objects;
-    return objects[at(name.placement)];
+    return list_of(scene, name)[at(name.placement)];
 }
 
 } // namespace
@@ -43,7 +47,7 @@ template <class Description> auto& object_of(Description& scene, const Placement
 MovingScene::MovingScene(SceneDescription moving) : moving_(std::move(moving)) {
     const auto list = [&](const std::vector<ObjectDescription>& objects, std::int32_t group) {
         for (std::size_t i = 0; i < objects.size(); ++i)
-            if (objects[i].keys.any())
+            if (objects[i].keys.any() || objects[i].attachment)
                 objects_.push_back({group, static_cast<std::int32_t>(i)});
     };
     list(moving_.objects, -1);
@@ -107,17 +111,13 @@ void MovingScene::move(const PlacementName& object, double seconds) {
                                     : scene_.graph.groups.front().placements.size() - moving_.objects.size());
     const PlacementName placed = object.group < 0 ? PlacementName{0, before + object.placement}
                                                   : PlacementName{object.group + 1, object.placement};
-    move(object_of(posed_, object), object_of(moving_, object), placed, seconds);
-}
-
-void MovingScene::move(ObjectDescription& posed, const ObjectDescription& moving, const PlacementName& name,
-                       double seconds) {
-    const Transform transform = transform_at(moving, seconds);
+    const Transform transform = place_at(moving_, list_of(moving_, object), at(object.placement), seconds);
+    ObjectDescription& posed = object_of(posed_, object);
     if (same_transform(transform, posed.transform))
         return;
     posed.transform = transform;
-    scene_.graph.groups[at(name.group)].placements[at(name.placement)].local = transform;
-    changes_->placements.push_back(name);
+    scene_.graph.groups[at(placed.group)].placements[at(placed.placement)].local = transform;
+    changes_->placements.push_back(placed);
 }
 
 void MovingScene::move_mesh(std::size_t mesh, double seconds) {

@@ -36,15 +36,13 @@ public:
 private:
     void begin(double seconds);
     void move(const PlacementName& object, double seconds);
-    void move(ObjectDescription& posed, const ObjectDescription& moving, const PlacementName& name,
-              double seconds);
     void move_mesh(std::size_t mesh, double seconds);
 
     SceneDescription moving_, posed_;
     Scene scene_;
     std::optional<SceneChanges> changes_;
     bool begun_ = false;
-    // What has keys, or other shapes: objects of a group (-1: of none) by number.
+    // What has keys, hangs on others, or has other shapes: objects of a group (-1: of none) by number.
     std::vector<PlacementName> objects_;
     std::vector<std::size_t> meshes_;
     std::vector<PlacementName> edited_; // likewise; since the last moment

@@ -1,5 +1,6 @@
 #include "razor/scene/animation/pose.h"
 
+#include "razor/scene/attachment.h"
 #include "razor/scene/error.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/models/cage_source.h"
@@ -20,9 +21,14 @@ template <class Value> void follow(Value& value, const Track<Value>& track, cons
         value = track.at(t, timing);
 }
 
-void pose(ObjectDescription& object, double t) {
-    object.transform = transform_at(object, t);
-    object.keys = {};
+/// `posed`: a list of objects of the posed scene, `moving`: the same of the other one.
+void pose(std::vector<ObjectDescription>& posed, const SceneDescription& description,
+          const std::vector<ObjectDescription>& moving, double t) {
+    for (std::size_t o = 0; o < posed.size(); ++o) {
+        posed[o].transform = place_at(description, moving, o, t);
+        posed[o].keys = {};
+        posed[o].attachment.reset();
+    }
 }
 
 void pose(Camera& camera, const CameraKeys& keys, double t) {
@@ -131,11 +137,9 @@ SceneDescription pose_at(const SceneDescription& description, double t) {
     for (std::size_t m = 0; m < d.meshes.size(); ++m)
         if (changes_shape(d.meshes[m]))
             d.meshes[m] = mesh_at(description, m, t);
-    for (ObjectDescription& o : d.objects)
-        pose(o, t);
-    for (GroupDescription& g : d.groups)
-        for (ObjectDescription& o : g.objects)
-            pose(o, t);
+    pose(d.objects, description, description.objects, t);
+    for (std::size_t g = 0; g < d.groups.size(); ++g)
+        pose(d.groups[g].objects, description, description.groups[g].objects, t);
     pose_view(d, description, t);
     return d;
 }

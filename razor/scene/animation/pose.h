@@ -15,7 +15,7 @@ SceneDescription pose_at(const SceneDescription& description, double seconds);
 SceneDescription pose_of_frame(const SceneDescription& description, int frame);
 
 // pose_at() part by part: an object, a mesh, camera and lights together (and what is wrong with these).
-Transform transform_at(const ObjectDescription& object, double seconds);
+Transform transform_at(const ObjectDescription& object, double seconds); // attachment.h says where that is
 MeshDescription mesh_at(const SceneDescription& description, std::size_t mesh, double seconds);
 void pose_view(SceneDescription& posed, const SceneDescription& moving, double seconds);
 

@@ -32,6 +32,12 @@ std::string key_of(const MeshDescription& mesh) {
                        static_cast<int>(p.timing.interpolation), p.timing.cycle, mesh.crease_angle, p.clip);
 }
 
+/// Leaves what belongs to frames first to last, of which there are more or as many.
+template <class Frame> void keep(std::vector<Frame>& frames, const std::pair<int, int>& kept) {
+    frames.erase(frames.begin() + kept.second + 1, frames.end());
+    frames.erase(frames.begin(), frames.begin() + kept.first);
+}
+
 CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
@@ -43,13 +49,16 @@ CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
         throw UserError(fmt::format("{}: has no frame {}; give frames from 0 to {}",
                                     printable(mesh.file, 1000), p.frames->second, last));
     entry.source = std::make_shared<const Mesh>(std::move(model.cage));
+    for (TagFrames& tag : model.tags)
+        keep(tag.frames, *p.frames);
+    if (!model.tags.empty())
+        entry.tags = std::make_shared<const Tags>(std::move(model.tags), p.frame_rate, p.timing);
     if (p.frames->first == p.frames->second) {
         entry.source =
             moved(*entry.source, std::move(model.frames[static_cast<std::size_t>(p.frames->first)]));
         return entry;
     }
-    model.frames.erase(model.frames.begin() + p.frames->second + 1, model.frames.end());
-    model.frames.erase(model.frames.begin(), model.frames.begin() + p.frames->first);
+    keep(model.frames, *p.frames);
     entry.motion =
         std::make_shared<const PointFrames>(entry.source, std::move(model.frames), p.frame_rate, p.timing);
     return entry;
@@ -109,6 +118,7 @@ void load_cage(MeshDescription& mesh, CageCache& cages) {
             entry = read(mesh, cages.textures);
         mesh.source = entry.source;
         mesh.motion = entry.motion;
+        mesh.tags = entry.tags;
         // Start, speed and moment are the mesh's own.
         mesh.playback.frames = entry.playback.frames;
         mesh.playback.clip = entry.playback.clip;

@@ -18,6 +18,7 @@ struct CageCache {
         Playback playback{}; // as asked for, and what was left open
         std::shared_ptr<const Mesh> source{};
         std::shared_ptr<const MovingCage> motion{};
+        std::shared_ptr<const Tags> tags{};
     };
     std::unordered_map<std::string, Entry> entries;
     TextureCache textures;

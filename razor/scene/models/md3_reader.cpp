@@ -23,7 +23,8 @@ constexpr std::string_view damaged = "the file is cut off or damaged, so export 
 
 /// Where the fields of the file's header lie, in bytes from its beginning.
 namespace header {
-constexpr std::uint64_t version = 4, frames = 76, surfaces = 84, surfaces_at = 100, end = 104, bytes = 108;
+constexpr std::uint64_t version = 4, frames = 76, tags = 80, surfaces = 84, tags_at = 96, surfaces_at = 100,
+                        end = 104, bytes = 108;
 } // namespace header
 
 /// The same of a surface's header. Offsets in it count from the surface's beginning.
@@ -31,6 +32,11 @@ namespace surface {
 constexpr std::uint64_t name = 4, name_bytes = 64, frames = 72, vertices = 80, triangles = 84,
                         triangles_at = 88, texcoords_at = 96, points_at = 100, end = 104, bytes = 108;
 } // namespace surface
+
+/// The same of a tag.
+namespace tag {
+constexpr std::uint64_t name_bytes = 64, origin = 64, axes = 76, bytes = 112;
+} // namespace tag
 
 constexpr std::uint64_t triangle_bytes = 12; // 3 vertex indices
 constexpr std::uint64_t texcoord_bytes = 8;  // s, t: float
@@ -55,6 +61,7 @@ public:
                 all_.corners.size() / 3));
         }
         model.cage.name = name_;
+        model.tags = read_tags();
         return model;
     }
 
@@ -101,6 +108,49 @@ private:
         return as_size(count);
     }
 
+    /// All tags of frame 0, then all of frame 1 ...
+    std::vector<TagFrames> read_tags() const {
+        const std::int32_t count = integer(header::tags), at = integer(header::tags_at);
+        if (count < 0 || at < 0) {
+            fail(fmt::format("states {} tags from byte {} on (at bytes {} and {}); {}", count, at,
+                             header::tags, header::tags_at, damaged));
+        }
+        if (count == 0) {
+            return {};
+        }
+        const std::uint64_t begin = as_size(at), frame_bytes = as_size(count) * tag::bytes;
+        if (begin > bytes_.size() || all_.frame_count > (bytes_.size() - begin) / frame_bytes) {
+            fail(fmt::format("{} tags of {} frames from byte {} on do not fit into its {} bytes; {}", count,
+                             all_.frame_count, begin, bytes_.size(), damaged));
+        }
+        std::vector<TagFrames> tags(as_size(count));
+        for (std::uint64_t t = 0; t < tags.size(); ++t) {
+            tags[t].name = text(begin + t * tag::bytes, tag::name_bytes);
+            for (std::uint64_t f = 0; f < all_.frame_count; ++f) {
+                tags[t].frames.push_back(read_tag(begin + f * frame_bytes + t * tag::bytes, f, tags[t].name));
+            }
+        }
+        return tags;
+    }
+
+    /// Stored are the origin and where the three axes of what is attached go.
+    Affine read_tag(std::uint64_t at, std::uint64_t frame, const std::string& name) const {
+        if (const std::string found = text(at, tag::name_bytes); found != name) {
+            fail(fmt::format(
+                "the tag '{}' is called '{}' in frame {} (at byte {}); export all frames with the "
+                "same tags",
+                printable(name, 100), printable(found, 100), frame, at));
+        }
+        const auto vector = [&](std::uint64_t from) {
+            return glm::dvec3(real(from), real(from + 4), real(from + 8));
+        };
+        Affine place{glm::dmat3(0), vector(at + tag::origin)};
+        for (int axis = 0; axis < 3; ++axis) {
+            place.linear[axis] = vector(at + tag::axes + 12 * static_cast<std::uint64_t>(axis));
+        }
+        return place;
+    }
+
     /// Adds the vertices and triangles of surface `number` at byte `at`; how many bytes it takes.
     std::uint64_t read_surface(std::uint64_t number, std::uint64_t at) {
         Surface s{at, 0, fmt::format("surface {} of {} at byte {}", number + 1, surface_count_, at)};
@@ -112,9 +162,9 @@ private:
             fail(fmt::format("{}: begins with '{}', not with '{}'; {}", s.label, printable(found), magic,
                              damaged));
         }
-        const std::string_view name = bytes_.substr(at + surface::name, surface::name_bytes);
-        s.label = fmt::format("surface {} of {} ('{}', at byte {})", number + 1, surface_count_,
-                              printable(name.substr(0, name.find('\0')), surface::name_bytes), at);
+        s.label =
+            fmt::format("surface {} of {} ('{}', at byte {})", number + 1, surface_count_,
+                        printable(text(at + surface::name, surface::name_bytes), surface::name_bytes), at);
         s.bytes = field(s, "size", surface::end);
         if (s.bytes < surface::bytes || s.bytes > bytes_.size() - at) {
             fail(fmt::format("{}: states a size of {} bytes, where {} to {} are possible; {}", s.label,
@@ -230,6 +280,12 @@ private:
         return byte(at) | byte(at + 1) << 8 | byte(at + 2) << 16 | byte(at + 3) << 24;
     }
     std::int32_t integer(std::uint64_t at) const { return static_cast<std::int32_t>(word(at)); }
+    double real(std::uint64_t at) const { return std::bit_cast<float>(word(at)); }
+    /// Up to a zero byte, or all.
+    std::string text(std::uint64_t at, std::uint64_t most_bytes) const {
+        const std::string_view field = bytes_.substr(at, most_bytes);
+        return std::string(field.substr(0, field.find('\0')));
+    }
 
     [[noreturn]] void fail(const std::string& what) const {
         throw UserError(fmt::format("{}: {}", file_name_, what));

@@ -10,12 +10,16 @@
 //
 // Of stored normals those of frame 0 say, if that is asked for, which edges are hard: these become creases.
 //
-// Passed over: boxes of frames, tags (where other models are attached), shaders and skins.
+// Also read: tags, the places where other models are attached, in every frame. Whether their axes are any is
+// asked of those that are used (razor/scene/animation/tags.h).
+//
+// Passed over: boxes of frames, shaders and skins.
 // Coarser levels of detail are files of their own (_1.md3, _2.md3). Which frames make which movement, and at
 // what rate, stands in the game's animation.cfg, which is not read. The limits of the game (1024 frames, 32
 // surfaces, 4096 vertices a surface) are not enforced.
 #pragma once
 
+#include "razor/scene/animation/tags.h"
 #include "razor/scene/models/hard_edges.h"
 #include "razor/scene/scene.h"
 
@@ -30,6 +34,7 @@ namespace razor {
 struct Md3Model {
     Mesh cage;
     std::vector<std::vector<glm::dvec3>> frames; // one or more, each as long as cage.points
+    std::vector<TagFrames> tags;                 // of as many frames, in the order of the file
 };
 
 /// Reads `path`; the cage is named by the file's stem. `crease_degrees`: see hard_edges(). Throws UserError:
