@@ -205,5 +205,21 @@ public:
     kind_scope& operator=(const kind_scope&) = delete;
     ~kind_scope() {}
 };
+/// Likewise: for whom they are, each active lane for a number of its own, such as that of a pixel.
+class owner_scope {
+public:
+    owner_scope(const vint&, const vmask&) {}
+    owner_scope(const owner_scope&) = delete;
+    owner_scope& operator=(const owner_scope&) = delete;
+    ~owner_scope() {}
+};
+/// Likewise: of those, for these lanes' alone; where no lane is active, for all of them as before.
+class lane_scope {
+public:
+    explicit lane_scope(const vmask&) {}
+    lane_scope(const lane_scope&) = delete;
+    lane_scope& operator=(const lane_scope&) = delete;
+    ~lane_scope() {}
+};
 
 } // namespace ISA_NATIVE

@@ -249,5 +249,28 @@ public:
 private:
     std::int32_t before_;
 };
+class owner_scope {
+public:
+    owner_scope(const vint& owner, const vmask& m) {
+        auto each = values::detail::spread(access::value(owner));
+        before_ = timing::set_owners(each.v, detail::lanes(m));
+    }
+    owner_scope(const owner_scope&) = delete;
+    owner_scope& operator=(const owner_scope&) = delete;
+    ~owner_scope() { timing::restore_owners(before_); }
+
+private:
+    std::uint64_t before_;
+};
+class lane_scope {
+public:
+    explicit lane_scope(const vmask& m) : before_(timing::narrow_owners(detail::lanes(m))) {}
+    lane_scope(const lane_scope&) = delete;
+    lane_scope& operator=(const lane_scope&) = delete;
+    ~lane_scope() { timing::restore_owners(before_); }
+
+private:
+    std::uint64_t before_;
+};
 
 } // namespace isa::simulated

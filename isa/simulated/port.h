@@ -100,6 +100,12 @@ void request_page(void* service, std::int32_t space, std::int32_t kind, std::int
 std::int32_t set_phase(std::int32_t phase);
 /// Sets the kind of work likewise.
 std::int32_t set_kind(std::int32_t kind);
+/// Whom they are for likewise: lane i of `lanes` works for owner[i], a number of the caller's; returns a word for whom
+/// they were for, to be restored. Takes no time.
+std::uint64_t set_owners(const std::int32_t* owner, std::uint64_t lanes);
+/// ... of the same owners those of these lanes; of all, as before, where there are none.
+std::uint64_t narrow_owners(std::uint64_t lanes);
+void restore_owners(std::uint64_t before);
 /// Traffic to these bytes counts under this level from now on, or under that of what lies at `other`. Takes no time.
 void note_level(const void* p, std::uint64_t bytes, std::int32_t level);
 void note_level_of(const void* p, std::uint64_t bytes, const void* other);

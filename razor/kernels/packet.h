@@ -15,6 +15,7 @@ inline Hits trace_packet(const Context& c, const Rays& r) {
     tally(own.counters->packets, 1);
     tally(own.counters->rays, count(r.active));
     kind_scope kind(Kind);
+    lane_scope lanes(r.active);
     return trace<F, AnyHit>(own, r);
 }
 

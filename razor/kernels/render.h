@@ -282,6 +282,7 @@ template <Features F, class Sampler> [[gnu::noinline]] inline void render_tile(c
             inside = inside & (row < vint(y1));
             vint pixel = row * vint(width);
             pixel = pixel + column;
+            owner_scope owners(pixel, inside);
             vint place = pixel + vint(seed);
             PixelSums sums = no_sums();
             WeightedSums weighted_sums;

@@ -131,6 +131,20 @@ std::pair<int, int> parse_span(std::string_view option, std::string_view text, R
     return span;
 }
 
+std::pair<double, double> parse_bounds(std::string_view option, std::string_view text) {
+    constexpr Range values{-1e30, 1e30};
+    const std::size_t colon = text.find(':');
+    if (colon == std::string_view::npos)
+        throw UserError(
+            fmt::format("{} '{}' is not possible; give LOW:HIGH, for example 0:40", option, printable(text)));
+    const std::pair bounds(
+        parse_number(fmt::format("the low end of {}", option), text.substr(0, colon), values),
+        parse_number(fmt::format("the high end of {}", option), text.substr(colon + 1), values));
+    if (!(bounds.first < bounds.second))
+        throw UserError(fmt::format("{} '{}' ends before it begins; give LOW:HIGH", option, printable(text)));
+    return bounds;
+}
+
 std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
     constexpr std::pair<std::string_view, int> units[] = {{"KiB", 10}, {"MiB", 20}, {"GiB", 30}};
     for (const auto& [unit, log2] : units) {

@@ -28,6 +28,8 @@ std::array<int, 4> parse_four(std::string_view option, std::string_view text, Ra
 /// "3..17" (or with another word between) as first and last, each in the range, in order.
 std::pair<int, int> parse_span(std::string_view option, std::string_view text, Range range,
                                std::string_view between = "..");
+/// "0:40" as two numbers of which the first is less.
+std::pair<double, double> parse_bounds(std::string_view option, std::string_view text);
 /// "256MiB" as bytes: a whole number, or one with a fraction, and KiB, MiB or GiB; at least 64 KiB, at most
 /// 1024 GiB. Throws UserError.
 std::uint64_t parse_bytes(std::string_view option, std::string_view text);

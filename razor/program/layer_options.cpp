@@ -12,12 +12,6 @@
 #include <algorithm>
 
 namespace razor {
-namespace {
-
-constexpr Range values_range{-1e30, 1e30};
-
-} // namespace
-
 void LayerOptions::add_to(CLI::App& render) {
     render
         .add_option("--layers", layers_,
@@ -69,16 +63,8 @@ std::string LayerOptions::shown_name() const {
 std::optional<ValueRange> LayerOptions::stated_range() const {
     if (range_.empty())
         return {};
-    const std::size_t colon = range_.find(':');
-    if (colon == std::string::npos)
-        throw UserError(
-            fmt::format("--range '{}' is not possible; give LOW:HIGH, for example 0:40", printable(range_)));
-    const std::string_view text = range_;
-    const ValueRange range{parse_number("the low end of --range", text.substr(0, colon), values_range),
-                           parse_number("the high end of --range", text.substr(colon + 1), values_range)};
-    if (!(range.low < range.high))
-        throw UserError(fmt::format("--range '{}' ends before it begins; give LOW:HIGH", printable(range_)));
-    return range;
+    const auto [low, high] = parse_bounds("--range", range_);
+    return ValueRange{low, high};
 }
 
 Film LayerOptions::shown(const Film& film) const {

@@ -8,6 +8,7 @@
 #include "sim/core/stalls.h"
 #include "sim/core/store_buffer.h"
 #include "sim/machine/report.h"
+#include "sim/memory/owner_costs.h"
 #include "sim/memory/prefetcher.h"
 
 #include <memory>
@@ -47,7 +48,7 @@ struct alignas(64) Hart {
         Stack stack{};
     };
     Column* at = nullptr;   // of columns ...
-    std::size_t column = 0; // ... this one, of its kind of work and phase
+    std::size_t column = 0; // ... this one, of its kind of work and phase; above them its party
     std::size_t pending_count = 0;
     cycle stored = 0; // when all stores so far are in the L1, but for what open tickets stand for
     std::uint64_t spill_base = 0;
@@ -89,6 +90,10 @@ struct alignas(64) Hart {
     // Between before_atomic and after_atomic.
     Due acting;
     cycle asked = 0; // for the word's line
+    // If costs are shared among owners (memory/owner_costs.h): whom it works for, and what its column had
+    // when it entered it or was charged for it.
+    std::size_t party = 0;
+    ThreadCost charged;
     // While it sleeps.
     const std::int32_t* waits_for = nullptr;
     std::uint64_t slept = 0;           // cycles, so far
@@ -119,6 +124,7 @@ struct alignas(64) Hart {
         column = next;
         at = &columns[next];
     }
+    ThreadCost cost_of_column() const;
 };
 
 } // namespace sim

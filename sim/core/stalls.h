@@ -53,6 +53,11 @@ inline constexpr std::array<CauseName, cause_count> causes = {{
     {"idle", "without work: no worker, or the worker had returned"},
 }};
 
+/// Whether a thread waits for caches, memory or translation then, or for room on the way there.
+inline bool is_of_memory(Cause c) {
+    return (c >= Cause::l1 && c <= Cause::mshrs) || c == Cause::tlb || c == Cause::stores;
+}
+
 /// Whether a machine with so many levels of caches, with TLBs or none, coherent or not, has the cause.
 inline bool has_cause(std::size_t cause, unsigned cache_levels, bool tlb, bool coherent) {
     if (cause == static_cast<std::size_t>(Cause::tlb))

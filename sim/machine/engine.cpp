@@ -152,6 +152,11 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
         }
     }
     trace();
+    if (options.owners != nullptr) {
+        options.owners->begin(tiles_.size(), width, labels_.phases.size());
+        for (Tile& tile : tiles_)
+            tile.attribution.charge(*options.owners);
+    }
     for (Tile& tile : tiles_) {
         order_.push_back(&tile);
         follow_events(tile);

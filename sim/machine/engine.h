@@ -71,6 +71,10 @@ public:
                       std::int32_t index);
     std::size_t set_phase(Hart& h, std::size_t phase);
     std::size_t set_kind(Hart& h, std::size_t kind);
+    // --- whom work is for (owners.cpp)
+    std::size_t set_owners(Hart& h, const std::int32_t* owner, std::uint64_t lanes);
+    std::size_t narrow_owners(Hart& h, std::uint64_t lanes);
+    void restore_owners(Hart& h, std::size_t before);
     void note_level(Hart& h, const void* p, std::uint64_t bytes, int level) const;
     void note_level_of(Hart& h, const void* p, std::uint64_t bytes, const void* other) const;
     /// Returns when the ticket is answered.
@@ -343,10 +347,18 @@ private:
     void move_looks(const Hart& sleeper, cycle since, std::uint64_t looks);
     [[noreturn]] static void outside(const void* p);
     void enter(Hart& h, std::size_t column) const {
+        if (options_.owners != nullptr) [[unlikely]] {
+            enter_for(h, column, h.party);
+            return;
+        }
         h.enter(column);
         if (!paces_.empty())
             h.pace = paces_[column];
     }
+    void enter_for(Hart& h, std::size_t column, std::size_t party) const;
+    void charge_owners(Hart& h) const;
+    void begin_owners();
+    void finish_owners(Report& r);
     static void check_label(const char* what, std::size_t number, std::size_t count);
 
     void describe_kinds();

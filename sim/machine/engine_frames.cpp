@@ -37,6 +37,7 @@ void Engine::begin_counting() {
     lines_.forget_touched();
     if (recorder_ != nullptr)
         recorder_->start(cycles_);
+    begin_owners();
     intervals_.begin(cycles_, sums());
     if (intervals_.wanted())
         for (Hart& h : harts_)
@@ -81,6 +82,7 @@ Report Engine::run() {
     }
     beyond_->finish();
     Report r = report();
+    finish_owners(r);
     r.all_vops = r.core.vops;
     r.all_instructions = r.core.instructions;
     if (parts > 1)

@@ -48,6 +48,19 @@ void add_intervals(Explanations& out) {
                        fmt::format("all threads, in the interval: {}", c.meaning)});
 }
 
+/// Absent where costs were not shared among owners.
+void add_owners(Explanations& out) {
+    for (const OwnerFigure& f : owner_figures(most_levels)) {
+        const std::string path = "owners." + f.name,
+                          unit = f.of_traffic != nullptr || f.name == "instructions" ? "" : "cycles";
+        out.push_back(
+            {path + ".owners", unit,
+             fmt::format("{}, of all owners of lanes together (pixels); absent without --costs", f.meaning)});
+        out.push_back({path + ".builds", unit, fmt::format("of these, in phases that build: {}", f.meaning)});
+        out.push_back({path + ".nobody", unit, fmt::format("{}, which no lane's owner caused", f.meaning)});
+    }
+}
+
 Explanations make() {
     Explanations out;
     for (const Parameter& p : parameters())
@@ -124,6 +137,7 @@ Explanations make() {
     add("touched_lines[].structure", "", "of data");
     add("touched_lines[].lines", "", "different lines accessed by just these kinds and phases");
     add("touched_lines[].by.*[]", "", "a kind's phases that accessed them");
+    add_owners(out);
     add("threads[].tile", "", "its tile");
     add("threads[].core", "", "its core, numbered through all tiles");
     add("threads[].thread", "", "its number in the core");

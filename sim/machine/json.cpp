@@ -212,6 +212,8 @@ std::string print_json(const Report& r, bool with_host) {
     out["energy"] = energy(r);
     out["traffic"] = traffic(r);
     out["touched_lines"] = touched(r);
+    for (const OwnerSum& s : r.owners)
+        out["owners"][s.name] = {{"owners", s.owners}, {"builds", s.builds}, {"nobody", s.nobody}};
     out["threads"] = threads(r);
     if (with_host)
         out["host"] = {

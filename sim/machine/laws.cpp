@@ -5,7 +5,7 @@
 #include "sim/memory/line_map.h"
 #include "sim/network/topology.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
@@ -442,6 +442,30 @@ void check_intervals(const Report& r, const CacheCounters& l1, const CacheCounte
         equal("the CPI stack = sum over intervals", stack[cause], sum.stack[cause]);
 }
 
+/// What is charged to owners, and what is nobody's, is all that there is.
+void check_owners(const Report& r) {
+    if (r.owners.empty())
+        return;
+    ThreadCost all;
+    const Stack stack = r.stack();
+    for (std::size_t cause = 0; cause < cause_count; ++cause) {
+        all.cycles += stack[cause];
+        all.stalled += is_of_memory(static_cast<Cause>(cause)) ? stack[cause] : 0;
+    }
+    all.waiting = stack[static_cast<std::size_t>(Cause::synchronise)];
+    all.instructions = r.core.instructions;
+    const std::vector<OwnerFigure> figures = owner_figures(r.config.cache_levels());
+    equal("a sum over owners for each figure", r.owners.size(), figures.size());
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+        const OwnerFigure& f = figures[i];
+        const OwnerSum& sum = r.owners[i];
+        const std::uint64_t expected = f.of_thread != nullptr ? all.*f.of_thread : total(r, f.of_traffic);
+        equal(fmt::format("{} = sum over owners + nobody's", f.name).c_str(), expected,
+              sum.owners + sum.nobody);
+        at_most("builds for owners <= all for owners", sum.builds, sum.owners);
+    }
+}
+
 /// Whether all threads are ordered operation by operation: tiles are not, and neither are those that come
 /// back from memory in the middle of a window that has been run.
 bool exact(Config c) {
@@ -466,6 +490,7 @@ void check_laws(const Report& r) {
     check_network(r);
     check_jitter(r, l1);
     check_intervals(r, l1, r.l2_total());
+    check_owners(r);
     if (exact(r.config))
         equal("no read of the future where threads are ordered exactly", r.core.causality_waits, 0);
 }

@@ -44,11 +44,13 @@ struct RunOptions {
     std::vector<Network::Sent>* messages = nullptr;
     /// Records what counts; the caller finishes it.
     Recorder* recorder = nullptr;
+    /// Is given what work and traffic that count cost whom they were for.
+    OwnerCosts* owners = nullptr;
     /// Ends the run at the next window's beginning once it is true.
     const std::atomic<bool>* stop = nullptr;
     /// If it is given, the run is sampled (sampler.h): the report counts what was done, but for time, and
     /// laws are checked only where all was simulated in detail. One frame, one thread of the host, no
-    /// recorder, no intervals.
+    /// recorder, no intervals, no owners.
     const Sampling* sampling = nullptr;
     Estimate* estimate = nullptr; // of a sampled run
 };

@@ -6,6 +6,7 @@
 #include "sim/core/stalls.h"
 #include "sim/memory/coherence_counters.h"
 #include "sim/memory/counters.h"
+#include "sim/memory/owner_costs.h"
 #include "sim/memory/traffic.h"
 #include "sim/network/counters.h"
 
@@ -144,6 +145,7 @@ struct Report {
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<TrafficRow> traffic;            // where there was any
     std::vector<TouchedLines> touched;          // of the structures but `spill`
+    std::vector<OwnerSum> owners;               // none without RunOptions::owners
     cycle interval = 0;                         // cycles of an interval; 0: none were kept
     std::vector<Interval> intervals; // of the run, the last one from its end until memory was quiet
     std::uint64_t all_vops = 0, all_instructions = 0; // warm-up included

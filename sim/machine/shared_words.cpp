@@ -312,16 +312,16 @@ void Engine::check_label(const char* what, std::size_t number, std::size_t count
 std::size_t Engine::set_phase(Hart& h, std::size_t phase) {
     std::size_t phases = labels_.phases.size();
     check_label("phase", phase, phases);
-    std::size_t before = h.column % phases;
-    enter(h, h.column - before + phase);
+    const std::size_t column = plain_column(h.column), before = column % phases;
+    enter(h, column - before + phase);
     return before;
 }
 
 std::size_t Engine::set_kind(Hart& h, std::size_t kind) {
     std::size_t phases = labels_.phases.size();
     check_label("kind", kind, labels_.kinds.size());
-    std::size_t before = h.column / phases;
-    enter(h, kind * phases + h.column % phases);
+    const std::size_t column = plain_column(h.column), before = column / phases;
+    enter(h, kind * phases + column % phases);
     return before;
 }
 
@@ -373,6 +373,15 @@ std::int32_t set_phase(std::int32_t phase) {
 std::int32_t set_kind(std::int32_t kind) {
     return static_cast<std::int32_t>(
         sim::running_engine->set_kind(*sim::running_hart, static_cast<std::size_t>(kind)));
+}
+std::uint64_t set_owners(const std::int32_t* owner, std::uint64_t lanes) {
+    return sim::running_engine->set_owners(*sim::running_hart, owner, lanes);
+}
+std::uint64_t narrow_owners(std::uint64_t lanes) {
+    return sim::running_engine->narrow_owners(*sim::running_hart, lanes);
+}
+void restore_owners(std::uint64_t before) {
+    sim::running_engine->restore_owners(*sim::running_hart, before);
 }
 void note_level(const void* p, std::uint64_t bytes, std::int32_t level) {
     sim::running_engine->note_level(*sim::running_hart, p, bytes, level);

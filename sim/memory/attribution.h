@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/memory/line_map.h"
+#include "sim/memory/owner_costs.h"
 #include "sim/trace/tap.h"
 
 #include <cstdlib>
@@ -17,8 +18,11 @@ public:
 
     /// The cell of an access to an L1, whose line counts as touched.
     [[gnu::always_inline]] Traffic& touch(std::uint64_t address, std::size_t column) {
-        if (idle_) [[unlikely]]
-            return spill_[column];
+        if (unusual_) [[unlikely]] {
+            column = plain_column(column);
+            if (idle_)
+                return spill_[column];
+        }
         LineMap::Line* line = map_.line(address);
         if (line == nullptr)
             return spill_[column];
@@ -27,10 +31,19 @@ public:
     }
     /// The cell of anything else that happens to the line there.
     Traffic& cell(std::uint64_t address, std::size_t column) {
-        if (idle_) [[unlikely]]
-            return spill_[column];
+        if (unusual_) [[unlikely]] {
+            column = plain_column(column);
+            if (idle_)
+                return spill_[column];
+        }
         LineMap::Line* line = map_.line(address);
         return line == nullptr ? spill_[column] : cells(line->kind(tile_))[column];
+    }
+    /// One of these there, which whoever it is for is charged with.
+    void count(std::uint64_t address, std::uint64_t Traffic::*what, std::size_t column) {
+        ++(cell(address, column).*what);
+        if (unusual_ && owners_ != nullptr) [[unlikely]]
+            owners_->count(tile_, column, what);
     }
     void note_level(std::uint64_t address, std::uint64_t bytes, int level) {
         if (!idle_)
@@ -42,15 +55,23 @@ public:
     }
     /// Memory is asked for so many bytes of a line at cycle `t`, or is given them.
     void count_memory_read(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
-        ++cell(address, column).memory_reads;
+        count(address, &Traffic::memory_reads, column);
         note(TraceLevel::memory, traces::Kind::read, address, bytes, t, column, tile_);
     }
     void count_memory_write(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
-        ++cell(address, column).memory_writes;
+        count(address, &Traffic::memory_writes, column);
         note(TraceLevel::memory, traces::Kind::write, address, bytes, t, column, tile_);
     }
     /// From now on nobody asks what belongs to what, until it is said again.
-    void set_idle(bool on) { idle_ = on; }
+    void set_idle(bool on) {
+        idle_ = on;
+        unusual_ = idle_ || owners_ != nullptr;
+    }
+    /// Columns name parties there, to which misses and traffic of memory are charged.
+    void charge(OwnerCosts& owners) {
+        owners_ = &owners;
+        unusual_ = true;
+    }
     /// References of the tile are noted there, if any are.
     void trace(TraceTap& tap) { tap_ = &tap; }
     /// What happens at a level is noted for a trace of that level.
@@ -90,6 +111,8 @@ private:
     std::vector<LineMap::Line*> notes_;
     Traffic* spill_;
     bool idle_ = false;
+    bool unusual_ = false; // idle, or with owners
+    OwnerCosts* owners_ = nullptr;
     TraceTap* tap_ = nullptr;
 };
 

@@ -437,7 +437,7 @@ Answer Cache::send_on(const Access& a, cycle down) {
 
 void Cache::count_miss(const Access& a) {
     ++counters_.misses;
-    ++(attribution_->cell(a.address, a.column).*traffic_.misses);
+    attribution_->count(a.address, traffic_.misses, a.column);
 }
 
 /// What has been asked below, for a trace of this level.

@@ -27,6 +27,13 @@ json of_figures(const std::vector<EstimatedFigure>& figures) {
 
 } // namespace
 
+std::vector<bool> building_phases() {
+    std::vector<bool> builds(razor::phase_count);
+    for (int phase : {razor::phase_animate, razor::phase_build, razor::phase_tessellate})
+        builds[static_cast<std::size_t>(phase)] = true;
+    return builds;
+}
+
 Sampling parse_sampling(std::string_view option, std::string_view text) {
     constexpr std::string_view how = "sample:";
     if (!text.starts_with(how))
@@ -34,9 +41,7 @@ Sampling parse_sampling(std::string_view option, std::string_view text) {
             "{}: \"{}\" is no way to estimate; give sample:FRACTION, such as sample:0.1", option, text));
     Sampling s;
     s.fraction = razor::parse_number(option, text.substr(how.size()), {0.001, 1});
-    s.builds.resize(razor::phase_count);
-    for (int phase : {razor::phase_animate, razor::phase_build, razor::phase_tessellate})
-        s.builds[static_cast<std::size_t>(phase)] = true;
+    s.builds = building_phases();
     return s;
 }
 

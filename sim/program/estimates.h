@@ -11,6 +11,9 @@
 
 namespace sim {
 
+/// By phase of a frame, whether work in it builds what rays meet.
+std::vector<bool> building_phases();
+
 /// `sample:0.1` as a fraction. `option` names it in messages. Throws razor::UserError.
 Sampling parse_sampling(std::string_view option, std::string_view text);
 

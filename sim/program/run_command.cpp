@@ -234,6 +234,7 @@ void RunCommand::add_to(CLI::App& app) {
         ->type_name("HOW");
     run.add_option("--estimate-seed", seed_, "where samples are taken; without it, 1")->type_name("SEED");
     trace_.add_to(run);
+    costs_.add_to(run);
     run.add_flag("--no-native", no_native_,
                  "do not render the frame natively as well, to compare time and picture");
     run.add_flag("--no-calibration", no_calibration_,
@@ -256,11 +257,10 @@ std::optional<Sampling> RunCommand::sampling(const Machine& machine) const {
             fmt::format("--estimate: runs of this machine are not sampled: {}; leave it out, or "
                         "give another machine",
                         why));
-    const std::pair<const char*, bool> others[] = {{"--intervals", !intervals_.empty()},
-                                                   {"--frames", !frames_.empty()},
-                                                   {"--tiles", !tiles_.empty()},
-                                                   {"--host-threads", !host_threads_.empty()},
-                                                   {"--trace", trace_.wanted()}};
+    const std::pair<const char*, bool> others[] = {
+        {"--intervals", !intervals_.empty()}, {"--frames", !frames_.empty()},
+        {"--tiles", !tiles_.empty()},         {"--host-threads", !host_threads_.empty()},
+        {"--trace", trace_.wanted()},         {"--costs and --false-colour", costs_.given()}};
     for (const auto& [option, given] : others)
         if (given)
             throw razor::UserError(fmt::format(
@@ -317,6 +317,7 @@ int RunCommand::run() const {
     TraceSettings trace = trace_.settings();
     for (const std::string& output : outputs_)
         razor::check_output(output);
+    costs_.check(outputs_, config.cache_levels());
     for (const std::string& file : {json_, report_, intervals_, trace_.file()})
         if (!file.empty())
             razor::check_writable(file);
@@ -354,6 +355,9 @@ int RunCommand::run() const {
         run_options.sampling = &*sampling;
         run_options.estimate = &estimate;
     }
+    std::optional<OwnerCosts> pixel_costs;
+    if (costs_.given())
+        run_options.owners = &pixel_costs.emplace(building_phases());
     std::optional<Recorder> recorder;
     if (trace_.wanted()) {
         trace.program = fmt::format("razor-sim {}", razor::version());
@@ -398,8 +402,12 @@ int RunCommand::run() const {
     const razor::ImageAttributes attributes{{"razor.version", std::string(razor::version())},
                                             {"razor.scene", scene},
                                             {"razor.isa", razor::simulated::kernels.name}};
+    razor::Film film = frame.film();
+    if (pixel_costs)
+        PixelCostOptions::add_layers(film, *pixel_costs, config);
+    const razor::Film colours = costs_.shows() ? costs_.shown(film) : razor::Film();
     for (const std::string& output : outputs_)
-        razor::write_image(output, frame.film(), attributes);
+        razor::write_image(output, costs_.shows() && razor::is_png(output) ? colours : film, attributes);
     if (recorder)
         recorder->finish();
     if (!intervals_.empty())
@@ -436,8 +444,8 @@ int RunCommand::run() const {
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
         frame_text(description.settings, workers, counted, statistics, frame.budget(), report) +
         (estimated ? sampled_text(report, estimate, *sampling) : print_text(report)) +
-        (recorder ? trace_.text(*recorder) : "") + (native ? native_text(*native, report.host_seconds) : "") +
-        code_text(frame.plan());
+        (pixel_costs ? costs_.text(report, film) : "") + (recorder ? trace_.text(*recorder) : "") +
+        (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);
     else

@@ -3,6 +3,7 @@
 
 #include "razor/program/scene_options.h"
 #include "sim/machine/machine.h"
+#include "sim/program/pixel_costs.h"
 #include "sim/program/trace_options.h"
 
 #include <CLI/CLI.hpp>
@@ -35,6 +36,7 @@ private:
     razor::SceneOptions scene_;
     std::string estimate_, seed_;
     TraceOptions trace_;
+    PixelCostOptions costs_;
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,
         tiles_, memory_;

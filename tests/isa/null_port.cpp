@@ -45,6 +45,9 @@ std::int32_t set_phase(std::int32_t phase) {
     return before;
 }
 std::int32_t set_kind(std::int32_t) { return 0; }
+std::uint64_t set_owners(const std::int32_t*, std::uint64_t) { return 0; }
+std::uint64_t narrow_owners(std::uint64_t) { return 0; }
+void restore_owners(std::uint64_t) {}
 void note_level(const void*, std::uint64_t, std::int32_t) {}
 void note_level_of(const void*, std::uint64_t, const void*) {}
 

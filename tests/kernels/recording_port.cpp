@@ -182,6 +182,13 @@ std::int32_t set_kind(std::int32_t kind) {
     static thread_local std::int32_t current = 0;
     return std::exchange(current, kind);
 }
+std::uint64_t set_owners(const std::int32_t*, std::uint64_t) {
+    return 0;
+}
+std::uint64_t narrow_owners(std::uint64_t) {
+    return 0;
+}
+void restore_owners(std::uint64_t) {}
 void note_level(const void*, std::uint64_t, std::int32_t) {}
 void note_level_of(const void*, std::uint64_t, const void*) {}
 

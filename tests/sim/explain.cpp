@@ -44,6 +44,7 @@ void add_figures(std::set<std::string>& out, const char* share, bool snoops = fa
     c.core.pairing = "any | any";
     c.core.shared_classes = "divide";
     Memory memory;
+    OwnerCosts costs({});
     const Report r =
         Machine(c).run(memory.space, 4, {{"work", "more"}, {"none", "some"}},
                        [&](int w) {
@@ -52,7 +53,7 @@ void add_figures(std::set<std::string>& out, const char* share, bool snoops = fa
                            mixed_work(reinterpret_cast<std::int32_t*>(memory.more),
                                       reinterpret_cast<isa::shared<std::int32_t>*>(memory.data), w, 3);
                        },
-                       1, {.interval = 500});
+                       1, {.interval = 500, .owners = &costs});
     const std::string series = print_intervals(r);
     std::istringstream columns(series.substr(0, series.find('\n')));
     for (std::string name; std::getline(columns, name, ',');)
