@@ -1,8 +1,10 @@
 // Pictures by cameras with a lens and without perspective against paths that are followed one by one in
 // double.
+#include "razor/scene/words.h"
 #include "tests/materials/compare_paths.h"
 #include "tests/materials/room.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace razor::test {
@@ -22,6 +24,45 @@ Scene deep_room() {
     s.materials[2].albedo = {0.1F, 0.05F, 0.05F};
     s.settings.diffuse_bounces = 1;
     return s;
+}
+
+/// The same, dark, and each surface glowing by itself: nothing but what lies where on the film is left to
+/// chance.
+Scene glowing_room() {
+    Scene s = deep_room();
+    s.lights.clear();
+    s.sky = {0, 0, 0};
+    s.settings.bounces = s.settings.diffuse_bounces = 0;
+    for (std::size_t m = 0; m < s.materials.size(); ++m) {
+        s.materials[m].metallic = 0;
+        s.materials[m].albedo = {0, 0, 0};
+        s.materials[m].emission = {m % 2 == 0 ? 3.0F : 0.1F, m == 3 ? 4.0F : 0.2F, m == 4 ? 0.1F : 1.0F};
+    }
+    return s;
+}
+
+// Blocks of pixels see what filters take from beyond them.
+TEST(PathsOfCameras, WideFilters) {
+    for (const FilterKind kind : {FilterKind::box, FilterKind::triangle, FilterKind::gaussian,
+                                  FilterKind::mitchell, FilterKind::lanczos}) {
+        Scene s = glowing_room();
+        s.name = fmt::format("filter {}", word_of(filter_words, kind));
+        s.settings.filter = preset_filter(kind);
+        s.settings.filter.radius = {6, 4};
+        s.settings.filter.sigma = 2;
+        s.settings.filter.c = 0.9; // far below 0
+        s.settings.filter.tau = 4;
+        // Of a windowed sinc blocks see little but its ripples.
+        const int more = kind == FilterKind::lanczos ? 32 : 8;
+        s.settings.samples *= more;
+        expect_same_picture(s, 200 * more);
+        Scene pixels = s, narrower = s;
+        pixels.settings.filter = {};
+        narrower.settings.filter.radius = {3, 4};
+        expect_other_picture(s, pixels, 200 * more);
+        if (kind != FilterKind::lanczos) // of which the ends are near 0
+            expect_other_picture(s, narrower, 200 * more);
+    }
 }
 
 TEST(PathsOfCameras, ThinLens) {

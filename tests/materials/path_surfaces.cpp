@@ -246,6 +246,76 @@ TEST(PathsOfShapes, SubdividedCages) {
     }
 }
 
+/// A ring about a box, some or all of its edges.
+TEST(PathsOfShapes, Creases) {
+    const auto creased = [](float sharpness, bool all) {
+        Mesh block = box("block", {-1.2, 0.1, -0.6}, {2.2, 1.8, 1.6}, 25, 3);
+        block.scheme = Scheme::catmull_clark;
+        block.edge_length = 1.0 / 32;
+        std::vector<std::pair<int, int>> edges{{2, 3}, {3, 7}, {7, 6}, {6, 2}}; // about the top
+        if (all)
+            edges.insert(edges.end(), {{0, 1}, {1, 5}, {5, 4}, {4, 0}, {0, 2}, {1, 3}, {5, 7}, {4, 6}});
+        for (const auto& [a, b] : edges)
+            block.creases.push_back({a, b, sharpness});
+        return block;
+    };
+    const auto scene = [](const Mesh& block) {
+        Scene s = room();
+        s.meshes.push_back(block);
+        s.materials.push_back(named("block", {0.6F, 0.7F, 0.5F}));
+        s.materials[3].metallic = 1;
+        s.materials[3].roughness = 0.4F;
+        s.settings.diffuse_bounces = 1;
+        s.settings.edge_pixels = 0.25;
+        return s;
+    };
+    for (const auto& [sharpness, all] :
+         {std::pair(10.0F, false), std::pair(10.0F, true), std::pair(2.0F, false), std::pair(1.5F, true)}) {
+        Scene s = scene(creased(sharpness, all));
+        s.name = fmt::format("creases of sharpness {}{}", sharpness, all ? " along all edges" : "");
+        expect_same_picture(s, 160);
+        expect_other_picture(s, scene(creased(0, all)), 96);
+        expect_other_picture(s, scene(creased(sharpness > 2 ? 2.5F : sharpness - 1, all)), 96);
+    }
+}
+
+/// A chart of its own for each face, straight within it, so that all edges are seams.
+TEST(PathsOfShapes, TexturedCages) {
+    Scene s = room();
+    s.name = "textured cages";
+    s.settings.samples *= 2;
+    Mesh block = box("block", {-1.2, 0.1, -0.6}, {2.2, 1.8, 1.6}, 25, 3),
+         round = ball("ball", {1, 0.5, 0.9}, 0.6, 3);
+    for (Mesh* const mesh : {&block, &round}) { // quads, and triangles besides
+        mesh->scheme = Scheme::catmull_clark;
+        mesh->edge_length = 1.0 / 32;
+        mesh->face_varying = FaceVaryingInterpolation::all;
+        int face = 0;
+        for (const int size : mesh->face_sizes) {
+            for (int k = 0; k < size; ++k) {
+                mesh->face_texcoords.push_back(static_cast<int>(mesh->texcoords.size()));
+                mesh->texcoords.emplace_back(0.13 * face + (k == 1 || k == 2 ? 0.9 : 0),
+                                             k >= 2 ? 1.1 : 0.07 * face);
+            }
+            ++face;
+        }
+        s.meshes.push_back(*mesh);
+    }
+    s.textures = {checks(PatternSpace::texture, 0.31)};
+    s.materials.push_back(named("checked", {1, 1, 1}));
+    s.materials.back().albedo_map.texture = 0;
+    s.settings.diffuse_bounces = 1;
+    s.settings.edge_pixels = 0.1;
+    expect_same_picture(s, 320);
+    Scene smooth = s, plain = s;
+    for (Mesh& mesh : smooth.meshes)
+        mesh.face_varying = FaceVaryingInterpolation::none;
+    plain.materials[3].albedo_map.texture = -1;
+    plain.materials[3].albedo = {0.5F, 0.5F, 0.5F};
+    expect_other_picture(s, plain, 96);
+    expect_other_picture(s, smooth, 320);
+}
+
 /// A group placed three times, turned, stretched and mirrored, with materials and a pattern of its own.
 TEST(PathsOfShapes, Instances) {
     Scene s = room();

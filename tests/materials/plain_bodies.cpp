@@ -132,19 +132,24 @@ private:
     std::vector<Body> subdivided() const {
         const PlainQuads quads = plain_limit(mesh_, divisions);
         const auto point = [&](int v) { return quads.points[at(v)]; };
-        const auto normal = [&](int v) { return quads.normals[at(v)]; };
         std::vector<Body> bodies;
         std::size_t quad = 0;
         for (std::size_t f = 0; f < mesh_.face_sizes.size(); ++f)
             for (int corner = 0; corner < mesh_.face_sizes[f]; ++corner) {
                 Body& body = bodies.emplace_back();
                 for (std::size_t end = quad + (std::size_t{1} << (2 * (divisions - 1))); quad < end; ++quad) {
-                    const auto& [a, b, c, d] = quads.faces[quad];
-                    for (const auto& [second, third] : {std::pair(b, c), std::pair(c, d)}) {
-                        Facet part = facet(material_of(f), point(a), point(second), point(third));
-                        part.smooth_a = normal(a);
-                        part.smooth_e1 = normal(second) - normal(a);
-                        part.smooth_e2 = normal(third) - normal(a);
+                    const auto& corners = quads.faces[quad];
+                    const auto& normals = quads.normals[quad];
+                    const auto& texcoords = quads.texcoords[quad];
+                    for (const std::size_t k : {1U, 2U}) {
+                        Facet part = facet(material_of(f), point(corners[0]), point(corners[k]),
+                                           point(corners[k + 1]));
+                        part.smooth_a = normals[0];
+                        part.smooth_e1 = normals[k] - normals[0];
+                        part.smooth_e2 = normals[k + 1] - normals[0];
+                        part.uv_a = texcoords[0];
+                        part.uv_e1 = texcoords[k] - texcoords[0];
+                        part.uv_e2 = texcoords[k + 1] - texcoords[0];
                         body.add(part);
                     }
                 }

@@ -45,7 +45,7 @@ bool meet(const Body& body, const Facet& facet, const glm::dvec3& origin, const 
           Meeting& m);
 
 /// Of each mesh wherever it is drawn, or a part of it: bilinear ones of planar convex faces as they are,
-/// others closed and without creases; displaced ones of bilinear quads with texture coordinates.
+/// others closed, as plain_cage.h takes them; displaced ones of bilinear quads with texture coordinates.
 std::vector<Body> plain_bodies(const Scene& scene);
 
 } // namespace razor::test

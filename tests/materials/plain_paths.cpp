@@ -2,6 +2,7 @@
 
 #include "tests/materials/plain_bodies.h"
 #include "tests/materials/plain_camera.h"
+#include "tests/materials/plain_filter.h"
 #include "tests/materials/plain_lights.h"
 #include "tests/materials/plain_surface.h"
 #include "tests/materials/plain_textures.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -308,21 +310,24 @@ std::vector<BlockMean> plain_picture(const Scene& scene, int side, int samples_a
     Tracer tracer(scene);
     const Settings& s = scene.settings;
     const double shape = double(s.width) / s.height;
+    const PlainFilter filter(s.filter);
+    const std::function<double()> next = [&] { return tracer.next(); };
     std::vector<BlockMean> blocks(static_cast<std::size_t>((s.width / side) * (s.height / side)));
     for (int row = 0; row < s.height; ++row)
         for (int column = 0; column < s.width; ++column) {
             BlockMean& b = blocks[static_cast<std::size_t>(row / side * (s.width / side) + column / side)];
             SampleSums pixel;
             for (int k = 0; k < samples_a_pixel; ++k) {
-                const double x = (column + tracer.next()) / s.width * 2 - 1;
-                const double y = 1 - (row + tracer.next()) / s.height * 2;
+                const FilmSample on_film = filter.choose(next);
+                const double x = (column + 0.5 + on_film.place.x) / s.width * 2 - 1;
+                const double y = 1 - (row + 0.5 + on_film.place.y) / s.height * 2;
                 glm::dvec2 lens(0);
                 if (has_lens(scene.camera)) {
                     lens.x = tracer.next();
                     lens.y = tracer.next();
                 }
                 const PlainRay ray = plain_camera_ray(scene.camera, shape, {x, y}, lens);
-                pixel.add(tracer.radiance(ray.origin, ray.direction, 0, false));
+                pixel.add(on_film.factor * tracer.radiance(ray.origin, ray.direction, 0, false));
             }
             const double share = 1.0 / (side * side);
             b.mean += share * pixel.mean();

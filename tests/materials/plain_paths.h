@@ -1,8 +1,8 @@
 // Pictures again, in double and by definition: every polygon is asked by every ray, lights are sampled by
-// area, lobes one at a time. Of what settings say it keeps to bounces and diffuse_bounces. Textures, patterns
-// and bumps are evaluated at points, unfiltered; displaced faces and subdivided cages are many small
-// triangles, fixed, with the normals of the surfaces that they stand for. Nothing here is shared with the
-// kernels.
+// area, lobes one at a time, pixels by all filters. Of what settings say it keeps to bounces and
+// diffuse_bounces. Textures, patterns and bumps are evaluated at points, unfiltered; displaced faces and
+// subdivided cages are many small triangles, fixed, with the normals of the surfaces that they stand for.
+// Nothing here is shared with the kernels.
 #pragma once
 
 #include "razor/scene/scene.h"
@@ -38,8 +38,8 @@ struct SampleSums {
 
 /// What a scene looks like: blocks of `side` x `side` pixels, row by row from the top. It knows all cameras,
 /// lights, materials and maps. Meshes are bilinear ones of planar convex faces, each face where its points
-/// lie, or closed cages without creases, which have no texture coordinates; of the former, quads with texture
-/// coordinates may be displaced. Pixels are boxes.
+/// lie, or closed cages as plain_cage.h takes them; of the former, quads with texture coordinates may be
+/// displaced.
 std::vector<BlockMean> plain_picture(const Scene& scene, int side, int samples_a_pixel);
 
 } // namespace razor::test
