@@ -2,7 +2,6 @@
 """slurm_test.py PROJECT SIMULATOR: a Slurm of one node on this host, in a folder of its own, and a sweep that Snakemake's
 profile of analysis/sweep/slurm runs on it: each point once, a job of Slurm's. Where Slurm, munge or Snakemake is not
 there, or Slurm does not start here: skipped (exit code 77), with the reason."""
-import csv
 import os
 import pwd
 import shutil
@@ -13,19 +12,11 @@ import tempfile
 import time
 import unittest
 
+import small_sweep
+
 SIMULATOR, PROJECT = os.path.abspath(sys.argv.pop()), os.path.abspath(sys.argv.pop())
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "sinfo", "snakemake")
 PATH = os.pathsep.join([os.environ["PATH"], "/usr/sbin", "/sbin"])
-STUDY = f"""kind = "sweep"
-[settings]
-machine = "{PROJECT}/configs/machines/tiny.toml"
-scene = "box.toml"
-size = "16x16"
-samples = 1
-[knobs]
-core.lanes = [4, 8]
-workers = [2, 100]
-"""
 # A root of every list of controllers, no accounting, no cgroups: what one node for one test needs.
 CONFIGURATION = """ClusterName=one
 SlurmctldHost={host}(127.0.0.1)
@@ -150,20 +141,12 @@ class SweepOnSlurm(unittest.TestCase):
     def test_each_point_is_a_job(self):
         work = os.path.join(FOLDER, "work")
         os.mkdir(work)
-        for name, text in (("box.toml", '[[mesh]]\nshape = "box"\n'), ("study.toml", STUDY)):
-            with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-                file.write(text)
-        environment = dict(SLURM.environment, HOME=work, XDG_CACHE_HOME=os.path.join(work, "cache"))
-        command = ["snakemake", "-s", os.path.join(PROJECT, "analysis/sweep/Snakefile"), "--profile",
-                   os.path.join(PROJECT, "analysis/sweep/slurm"), "--config", "study=study.toml", "folder=out/sweep",
-                   f"simulator={SIMULATOR}"]
-        done = subprocess.run(command, cwd=work, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              timeout=500, check=False)
+        small_sweep.write(work, PROJECT)
+        command = small_sweep.snakemake(PROJECT, SIMULATOR, "out/sweep", "--profile", os.path.join(PROJECT, "analysis/sweep/slurm"))
+        done = subprocess.run(command, cwd=work, env=small_sweep.environment(work, SLURM.environment), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=500, check=False)
         self.assertEqual(done.returncode, 0, done.stdout + SLURM.last_words())
-        with open(os.path.join(work, "out/sweep/study.csv"), encoding="utf-8") as file:
-            states = sorted(row["state"].split(":")[0] for row in csv.DictReader(file))
-        self.assertEqual(states, ["failed", "failed", "measured", "measured"])
-        self.assertTrue(os.path.exists(os.path.join(work, "out/sweep/study.html")))
+        small_sweep.check_collected(self, os.path.join(work, "out/sweep"))
         # Slurm's own list: four jobs, one a point, each of one core, and none failed.
         with open(os.path.join(FOLDER, "jobs"), encoding="utf-8") as file:
             jobs = [dict(word.partition("=")[::2] for word in line.split()) for line in file]
