@@ -16,8 +16,17 @@ inline constexpr std::size_t columns = 5;     // table, classes, addresses, time
 inline constexpr unsigned part_shift = 4;     // above the kind
 inline constexpr unsigned set_bits_shift = 8; // above the addresses' shift
 
+/// Above those: how references are coded, and whether a predicted block's order is known.
+inline constexpr unsigned coding_shift = 16;
+inline constexpr std::uint32_t is_predicted = 1, is_ordered = 2;
+
 inline std::size_t header_bytes(std::size_t columns) {
     return 16 + 8 + columns * 8;
+}
+
+/// Of windows there are hardly more than references.
+inline std::size_t most_turns(std::size_t references) {
+    return 2 * references + 16;
 }
 
 /// Bytes that numbers below `n` take.

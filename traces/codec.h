@@ -11,9 +11,18 @@ struct ZSTD_DCtx_s;
 
 namespace traces {
 
+class ReferenceModel;
+
+/// How references are written: as columns, which zstd makes smaller; or each predicted by what came before
+/// (predicted.h), in two thirds of the room where hardly anything repeats itself, which takes some fifty
+/// times as long.
+enum class Coding { columns, predicted };
+/// By Description::level: what L2s and later caches pass on is little, and repeats itself little.
+Coding coding_for(const std::string& level);
+
 class Encoder {
 public:
-    explicit Encoder(int zstd_level = 3);
+    explicit Encoder(Coding coding = Coding::columns, int zstd_level = 3);
     ~Encoder();
     /// Appends the block to `out`. It holds at least one and at most most_references references.
     void encode(const Block& block, std::string& out);
@@ -23,8 +32,11 @@ private:
         void operator()(ZSTD_CCtx_s* c) const;
     };
     void compress(const std::string& column, int level, std::string& out);
+    void put_columns(const Block& block, const std::vector<std::uint32_t>& order,
+                     const std::vector<std::uint32_t>& rank, unsigned shift, unsigned set_bits);
 
     std::unique_ptr<ZSTD_CCtx_s, Free> context_;
+    std::unique_ptr<ReferenceModel> model_; // where it is needed
     int level_;
     std::string table_, classes_, addresses_, times_, order_; // columns
 };
@@ -47,9 +59,14 @@ private:
     struct Free {
         void operator()(ZSTD_DCtx_s* c) const;
     };
+    void get_table(const Limits& limits, std::uint32_t version, std::size_t segments, std::size_t classes,
+                   const std::string& place, Block& block);
+    void get_columns(const std::string& place, unsigned shift, unsigned set_bits, std::uint64_t first_time,
+                     Block& block);
     void get_order(const std::string& place, Block& block);
 
     std::unique_ptr<ZSTD_DCtx_s, Free> context_;
+    std::unique_ptr<ReferenceModel> model_;                   // likewise
     std::string table_, classes_, addresses_, times_, order_; // columns
     std::vector<std::uint64_t> last_;                         // address, by class
 };

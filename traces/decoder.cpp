@@ -2,6 +2,7 @@
 #include "traces/codec.h"
 #include "traces/error.h"
 #include "traces/evictions.h"
+#include "traces/predicted.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -11,11 +12,6 @@
 
 namespace traces {
 namespace {
-
-/// Of windows there are hardly more than references.
-std::size_t most_turns(std::size_t references) {
-    return 2 * references + 16;
-}
 
 /// Version 1 has no order.
 std::size_t columns_of(std::uint32_t version) {
@@ -50,16 +46,18 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     const std::size_t segments = fixed_at<std::uint32_t>(bytes.data() + 4);
     const std::size_t classes = fixed_at<std::uint32_t>(bytes.data() + 8);
     const std::uint32_t shifts = fixed_at<std::uint32_t>(bytes.data() + 12);
-    const std::uint32_t set_bits = version < 3 ? 0 : shifts >> set_bits_shift;
-    const std::uint32_t shift = shifts - (set_bits << set_bits_shift);
+    const std::uint32_t coding = version < 4 ? 0 : shifts >> coding_shift;
+    const std::uint32_t set_bits = version < 3 ? 0 : (shifts - (coding << coding_shift)) >> set_bits_shift;
+    const std::uint32_t shift = shifts - (coding << coding_shift) - (set_bits << set_bits_shift);
     const std::uint64_t first_time = fixed_at<std::uint64_t>(bytes.data() + 16);
     if (n == 0 || n > most_references || segments == 0 || segments > n || classes == 0 || classes > n ||
-        shift > 63 || set_bits > Evictions::most_set_bits)
+        shift > 63 || set_bits > Evictions::most_set_bits ||
+        (coding != 0 && coding != is_predicted && coding != (is_predicted | is_ordered)))
         refuse(place, "a block claims impossible counts");
     const std::uint32_t id_bytes = bytes_for(classes);
-    const std::array<std::size_t, columns> most = {(segments * 2 + classes * 7) * longest_varint,
-                                                   n * id_bytes, n * (longest_varint + 1), n * longest_varint,
-                                                   most_turns(n) * 4 * longest_varint};
+    const std::array<std::size_t, columns> most = {
+        (segments * 2 + classes * 7) * longest_varint, coding != 0 ? bytes.size() : n * id_bytes,
+        n * (longest_varint + 1), n * longest_varint, most_turns(n) * 4 * longest_varint};
     std::size_t at = header, column = 0;
     order_.clear();
     for (std::string* raw : {&table_, &classes_, &addresses_, &times_, &order_}) {
@@ -69,16 +67,35 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
         const std::size_t stored = fixed_at<std::uint32_t>(bytes.data() + 28 + column * 8);
         if (raw_bytes > most[column++] || stored > bytes.size() - at)
             refuse(place, "a block claims columns that are too long");
-        raw->resize(raw_bytes);
-        const std::size_t got =
-            ZSTD_decompressDCtx(context_.get(), raw->data(), raw_bytes, bytes.data() + at, stored);
-        if (ZSTD_isError(got) != 0 || got != raw_bytes)
-            refuse(place, "a column of a block does not decompress to what it should");
+        if (coding != 0 && raw != &table_) {
+            raw->assign(bytes, at, stored);
+            if (raw_bytes != stored || (raw != &classes_ && stored != 0))
+                refuse(place, "a block claims columns that it does not have");
+        } else {
+            raw->resize(raw_bytes);
+            const std::size_t got =
+                ZSTD_decompressDCtx(context_.get(), raw->data(), raw_bytes, bytes.data() + at, stored);
+            if (ZSTD_isError(got) != 0 || got != raw_bytes)
+                refuse(place, "a column of a block does not decompress to what it should");
+        }
         at += stored;
     }
-    if (at != bytes.size() || classes_.size() != n * id_bytes)
+    if (at != bytes.size() || (coding == 0 && classes_.size() != n * id_bytes))
         refuse(place, "a block's columns do not fill it");
+    get_table(limits, version, segments, classes, place, block);
+    if (block.segments.back().end != n)
+        refuse(place, "a block's table does not fit its counts");
+    if (coding == 0)
+        return get_columns(place, shift, set_bits, first_time, block);
+    if (!model_)
+        model_ = std::make_unique<ReferenceModel>();
+    if (const char* wrong =
+            get_predicted(*model_, classes_, shift, set_bits, first_time, (coding & is_ordered) != 0, block))
+        refuse(place, wrong);
+}
 
+void Decoder::get_table(const Limits& limits, std::uint32_t version, std::size_t segments,
+                        std::size_t classes, const std::string& place, Block& block) {
     VarintReader table(table_.data(), table_.data() + table_.size());
     // The columns keep their room, and what is there until it is overwritten.
     block.segments.clear();
@@ -88,7 +105,8 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     std::size_t end = 0;
     for (std::size_t i = 0; i < segments; ++i) {
         const std::uint64_t step = table.next(), length = table.next();
-        if (step > ~std::uint32_t{0} - stream || (i != 0 && step == 0) || length == 0 || length > n - end)
+        if (step > ~std::uint32_t{0} - stream || (i != 0 && step == 0) || length == 0 ||
+            length > most_references - end)
             refuse(place, "a block's streams are not in order");
         stream += step;
         block.segments.push_back({static_cast<std::uint32_t>(stream), end, end + length});
@@ -109,9 +127,14 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
                                static_cast<Kind>(kind), static_cast<Part>(part),
                                static_cast<std::uint32_t>(detail)});
     }
-    if (table.bad() || !table.ended() || end != n)
+    if (table.bad() || !table.ended())
         refuse(place, "a block's table does not fit its counts");
+}
 
+void Decoder::get_columns(const std::string& place, unsigned shift, unsigned set_bits,
+                          std::uint64_t first_time, Block& block) {
+    const std::size_t n = block.segments.back().end, classes = block.table.size();
+    const std::uint32_t id_bytes = bytes_for(classes);
     block.classes.resize(n);
     const auto* planes = reinterpret_cast<const std::uint8_t*>(classes_.data());
     for (std::size_t i = 0; i < n; ++i)

@@ -1,6 +1,7 @@
 #include "traces/block_layout.h"
 #include "traces/codec.h"
 #include "traces/evictions.h"
+#include "traces/predicted.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -88,7 +89,14 @@ void Encoder::Free::operator()(ZSTD_CCtx_s* c) const {
     ZSTD_freeCCtx(c);
 }
 
-Encoder::Encoder(int zstd_level) : context_(ZSTD_createCCtx()), level_(zstd_level) {}
+Coding coding_for(const std::string& level) {
+    return level.empty() || level == "core" || level == "l1" ? Coding::columns : Coding::predicted;
+}
+
+Encoder::Encoder(Coding coding, int zstd_level)
+    : context_(ZSTD_createCCtx()),
+      model_(coding == Coding::predicted ? std::make_unique<ReferenceModel>() : nullptr), level_(zstd_level) {
+}
 Encoder::~Encoder() = default;
 
 void Encoder::compress(const std::string& column, int level, std::string& out) {
@@ -101,18 +109,11 @@ void Encoder::compress(const std::string& column, int level, std::string& out) {
     out.resize(begin + n);
 }
 
-void Encoder::encode(const Block& block, std::string& out) {
+void Encoder::put_columns(const Block& block, const std::vector<std::uint32_t>& order,
+                          const std::vector<std::uint32_t>& rank, unsigned shift, unsigned set_bits) {
     const std::size_t n = block.size();
-    const std::vector<std::uint32_t> order = by_frequency(block);
-    std::vector<std::uint32_t> rank(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        rank[order[i]] = static_cast<std::uint32_t>(i);
-    const unsigned shift = common_shift(block.addresses);
     const std::uint32_t id_bytes = bytes_for(order.size());
     const std::uint64_t first_time = block.times.front();
-
-    table_.clear();
-    put_table(block, order, table_);
     classes_.resize(n * id_bytes);
     for (std::uint32_t plane = 0; plane < id_bytes; ++plane)
         for (std::size_t i = 0; i < n; ++i)
@@ -122,7 +123,6 @@ void Encoder::encode(const Block& block, std::string& out) {
     std::vector<std::uint64_t> last(order.size(), 0);
     addresses_.resize(n * longest_varint);
     char* to = addresses_.data();
-    const unsigned set_bits = Evictions::set_bits(block, shift);
     const auto put = [&](std::size_t i) {
         const std::uint64_t a = block.addresses[i] >> shift;
         std::uint64_t& before = last[place[rank[block.classes[i]]]];
@@ -168,18 +168,44 @@ void Encoder::encode(const Block& block, std::string& out) {
     times_.resize(static_cast<std::size_t>(to - times_.data()));
     order_.clear();
     put_order(block, order_);
+}
+
+void Encoder::encode(const Block& block, std::string& out) {
+    const std::vector<std::uint32_t> order = by_frequency(block);
+    std::vector<std::uint32_t> rank(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        rank[order[i]] = static_cast<std::uint32_t>(i);
+    const unsigned shift = common_shift(block.addresses), set_bits = Evictions::set_bits(block, shift);
+    std::uint32_t coding = 0;
+    table_.clear();
+    put_table(block, order, table_);
+    if (model_) {
+        coding = is_predicted | (block.order.empty() ? 0 : is_ordered);
+        std::vector<Class> table;
+        for (const std::uint32_t number : order)
+            table.push_back(block.table[number]);
+        for (std::string* column : {&classes_, &addresses_, &times_, &order_})
+            column->clear();
+        put_predicted(*model_, block, rank, table, shift, set_bits, classes_);
+    } else {
+        put_columns(block, order, rank, shift, set_bits);
+    }
 
     const std::size_t begin = out.size();
-    append_fixed(out, static_cast<std::uint32_t>(n));
+    append_fixed(out, static_cast<std::uint32_t>(block.size()));
     append_fixed(out, static_cast<std::uint32_t>(block.segments.size()));
     append_fixed(out, static_cast<std::uint32_t>(order.size()));
-    append_fixed(out, static_cast<std::uint32_t>(shift | set_bits << set_bits_shift));
-    append_fixed(out, first_time);
+    append_fixed(out,
+                 static_cast<std::uint32_t>(shift | set_bits << set_bits_shift | coding << coding_shift));
+    append_fixed(out, block.times.front());
     out.resize(begin + header_bytes(columns));
     std::string sizes;
     for (const std::string* column : {&table_, &classes_, &addresses_, &times_, &order_}) {
         const std::size_t before = out.size();
-        compress(*column, set_bits == 0 ? level_ : std::max(level_, level_for_caches), out);
+        if (coding == 0 || column == &table_)
+            compress(*column, set_bits == 0 ? level_ : std::max(level_, level_for_caches), out);
+        else
+            out += *column;
         append_fixed(sizes, static_cast<std::uint32_t>(column->size()));
         append_fixed(sizes, static_cast<std::uint32_t>(out.size() - before));
     }

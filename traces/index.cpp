@@ -2,11 +2,11 @@
 
 #include "traces/chunk.h"
 #include "traces/error.h"
+#include "traces/packed_text.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <zstd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -24,21 +24,14 @@ std::string to_bytes(const Index& index) {
                       {"blocks", std::move(blocks)},
                       {"sites", index.sites}};
     const std::string text = out.dump(-1, ' ', false, json::error_handler_t::replace);
-    std::string bytes(ZSTD_compressBound(text.size()), '\0');
-    bytes.resize(ZSTD_compress(bytes.data(), bytes.size(), text.data(), text.size(), 3));
-    return bytes;
+    return pack(text);
 }
 
 Index index_from_bytes(const std::string& bytes, const std::string& place) {
     const auto refuse = [&](const char* why) {
         throw Error(fmt::format("{}: the index is damaged ({}); record or copy the file again", place, why));
     };
-    const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-    if (size > 4 * most_chunk_bytes)
-        refuse("its length");
-    std::string text(size, '\0');
-    if (ZSTD_decompress(text.data(), text.size(), bytes.data(), bytes.size()) != size)
-        refuse("it does not decompress");
+    const std::string text = unpack(bytes, "the index", place);
     Index index;
     try {
         const json in = json::parse(text);

@@ -2,6 +2,7 @@
 
 #include "traces/chunk.h"
 #include "traces/error.h"
+#include "traces/packed_text.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -30,11 +31,16 @@ Reader::Reader(std::unique_ptr<Source> source) : source_(std::move(source)) {
     if (name_ != head_chunk)
         throw Error(
             fmt::format("{}: does not begin with a description; record the trace again", source_->name()));
-    description_ = description_from_json(bytes_, source_->name());
+    description_ = description_from_json(text("the description"), source_->name());
 }
 
 std::string Reader::place() const {
     return fmt::format("{}: byte {}", source_->name(), at_);
+}
+
+/// Of the chunk at hand; those before version 4 are as they are.
+std::string Reader::text(const char* what) const {
+    return version_ < 4 ? bytes_ : unpack(bytes_, what, place());
 }
 
 /// Reads the next chunk; false: the file ends before it is whole.
@@ -74,14 +80,15 @@ bool Reader::next(Block& block) {
                                 seen_.blocks.size(), seen_.references());
         } else if (name_ == names_chunk) {
             try {
-                const auto names = nlohmann::json::parse(bytes_).get<std::vector<std::string>>();
+                const auto names =
+                    nlohmann::json::parse(text("a list of sites")).get<std::vector<std::string>>();
                 description_.sites.insert(description_.sites.end(), names.begin(), names.end());
             } catch (const nlohmann::json::exception& e) {
                 throw Error(fmt::format("{}: a list of sites is damaged ({}); record the trace again",
                                         place(), e.what()));
             }
         } else if (name_ == tables_chunk) {
-            add_names(description_, bytes_, place());
+            add_names(description_, text("a list of names"), place());
         } else if (name_ == block_chunk) {
             decoder_.decode(bytes_,
                             {description_.structures.size(), description_.phases.size(),

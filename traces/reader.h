@@ -27,6 +27,7 @@ public:
 
 private:
     bool read_chunk();
+    std::string text(const char* what) const;
     void check_index();
     std::string place() const;
 

@@ -1,6 +1,7 @@
 #include "traces/writer.h"
 
 #include "traces/chunk.h"
+#include "traces/packed_text.h"
 #include "traces/varint.h"
 
 #include <nlohmann/json.hpp>
@@ -9,12 +10,13 @@
 
 namespace traces {
 
-Writer::Writer(std::unique_ptr<Sink> sink, const Description& description) : sink_(std::move(sink)) {
+Writer::Writer(std::unique_ptr<Sink> sink, const Description& description)
+    : sink_(std::move(sink)), encoder_(coding_for(description.level)) {
     std::string prologue(magic);
     append_fixed(prologue, format_version);
     sink_->write(prologue);
     at_ = prologue.size();
-    chunk(head_chunk, to_json(description));
+    chunk(head_chunk, pack(to_json(description)));
     tables_ = {description.structures.size(), description.phases.size(), description.work.size()};
 }
 
@@ -27,14 +29,15 @@ void Writer::chunk(std::string_view name, std::string_view bytes) {
 void Writer::add_sites(const std::vector<std::string>& names) {
     if (names.empty())
         return;
-    chunk(names_chunk, nlohmann::json(names).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    chunk(names_chunk,
+          pack(nlohmann::json(names).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
     index_.sites.insert(index_.sites.end(), names.begin(), names.end());
 }
 
 void Writer::add_names(const Description& description) {
     const std::string names = names_since(tables_, description);
     if (!names.empty())
-        chunk(tables_chunk, names);
+        chunk(tables_chunk, pack(names));
     tables_ = {description.structures.size(), description.phases.size(), description.work.size()};
 }
 

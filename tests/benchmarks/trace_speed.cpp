@@ -34,7 +34,7 @@ int run(const std::string& file, int runs) {
         std::uint64_t references = 0, bytes = 0, encoded = 0, sum = 0;
         double decode = 0, build = 0, encode = 0;
         traces::Reader reader(traces::open_raw_source(file));
-        traces::Encoder encoder;
+        traces::Encoder encoder(traces::coding_for(reader.description().level));
         traces::Decoder decoder;
         traces::BlockBuilder builder;
         traces::Block block, again;

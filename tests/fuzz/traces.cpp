@@ -16,9 +16,12 @@ namespace {
 using namespace traces;
 using fuzz::require;
 
-std::string own_seed() {
+/// Of cores, as columns; of caches, predicted.
+std::string own_seed(const char* level) {
     std::string out;
-    Writer writer(memory_sink(out), test::small_description());
+    Description description = test::small_description();
+    description.level = level;
+    Writer writer(memory_sink(out), description);
     writer.add_sites({"a:1", "b:2", "c:3"});
     BlockBuilder builder;
     for (const Reference& r : test::mixed_references(40, 1, 3))
@@ -71,7 +74,8 @@ void check(const Block& block, const Description& d, bool own) {
 
 const std::vector<std::string>& fuzz::seeds() {
     static const std::vector<std::string> all{
-        std::string(1, '\0') + own_seed(),
+        std::string(1, '\0') + own_seed("core"),
+        std::string(1, '\0') + own_seed("l2"),
         std::string("\1") + "0 10 4\n1 7fff 8\n2 401000 3\n",
         std::string("\2") + "cycles,address,kind,size,site,stream\n1,10,read,4,1,0\n2,ff,write,8,0,1\n",
         std::string("\3") + "I  04000000,3\n L 1ffe80,8\n S 1ffe78,8\n M 1ffe70,4\n",

@@ -176,6 +176,36 @@ TEST(TraceFormat, FilesOfVersionTwoAreRead) {
     EXPECT_TRUE(reader.complete()) << reader.note();
 }
 
+/// Likewise version 3, of five.
+constexpr std::string_view of_version_3 =
+    "iVJaVA0KGgoDAAAASEVBRFX4dVA5AQAAAAAAAHsKICJwcm9ncmFtIjogInVua25vd24iLAogImxldmVsIjogIiIsCiAidGltZSI6"
+    "ICJjeWNsZXMiLAogImxpbmVfYnl0ZXMiOiAwLAogInNpdGVzIjogIm5hbWVzIiwKICJzYW1wbGUiOiAxLjAsCiAid2luZG93Ijog"
+    "MCwKICJmaWx0ZXJzIjogIiIsCiAic3RydWN0dXJlcyI6IFsKICAibm9kZXMiLAogICJsaXN0cyIKIF0sCiAicGhhc2VzIjogWwog"
+    "ICJnbyIsCiAgInN0b3AiCiBdLAogIndvcmsiOiBbCiAgInVua25vd24iCiBdLAogInN0cmVhbXMiOiBbCiAgInRocmVhZCAwIgog"
+    "XSwKICJyZWdpb25zIjogW10sCiAiY29uZmlndXJhdGlvbiI6ICIiCn1OQU1FB21VOhEAAAAAAAAAWyJhOjEiLCJiOjIiLCIwIl1C"
+    "TENLisImxLEAAAAAAAAABQAAAAIAAAAFAAAAAgAAAAEAAAAAAAAAKAAAADEAAAAFAAAADgAAAAkAAAASAAAABAAAAA0AAAAKAAAA"
+    "EwAAACi1L/0gKEEBAAADAQIABAAAAAIHAQgAAAACAAIEAAEAAQAiBAABAAAAOkABAQAEgAIotS/9IAUpAAAAAgMBBCi1L/0gCUkA"
+    "AAgKFqD/AaD/ASi1L/0gBCEAAAAEAgIotS/9IApRAAAEBAIDAgMBAQIBSU5EWOEcuoFcAAAAAAAAACi1L/0ga50CACKFEReQGeq4"
+    "aAAsPH8BGyoxM8MnvxG3N3ZNCQv18E3w+D4cOBGp+arld3NAoGSim0IHw/H1xsnvl2jCSkqQOL5Bt0Vr2RaWWREDADkh+Atx1eGe"
+    "VEFJTL2muO8IAAAAAAAAADcCAAAAAAAA";
+
+TEST(TraceFormat, FilesOfVersionThreeAreRead) {
+    Reader reader(memory_source(decoded(of_version_3), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    const std::vector<Reference> all = references_of(block);
+    ASSERT_EQ(all.size(), 5U);
+    EXPECT_TRUE(equal(all[0], {1, 0x10, 0, {1, 4, 0, 0, 0, Kind::read, Part::operation, 7}}));
+    EXPECT_TRUE(equal(all[1], {3, 0x14, 0, {1, 4, 0, 1, 0, Kind::modify}}));
+    EXPECT_TRUE(equal(all[2], {3, 0x40, 0, {1, 4, 0, 1, 0, Kind::modify, Part::piece}}));
+    EXPECT_TRUE(equal(all[3], {2, 0xff40, 1, {2, 8, 0, 0, 0, Kind::write}}));
+    EXPECT_TRUE(equal(all[4], {3, 0xff40, 1, {3, 64, 1, 1, 0, Kind::upgrade, Part::aside, 256}}));
+    EXPECT_EQ(block.order.size(), 4U);
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+    EXPECT_EQ(reader.description().sites, (std::vector<std::string>{"a:1", "b:2", "0"}));
+}
+
 /// What two caches of 32 sets pass on: a line that comes, and mostly one before it that makes room; now and
 /// then one of another set, one that never came, or two that leave at once.
 TEST(TraceFormat, LinesThatLeaveCachesTakeLittle) {
@@ -397,8 +427,8 @@ TEST(TraceFormat, WhatIsNoTraceIsSaidToBe) {
     EXPECT_NE(read_all("").error.find("is empty"), std::string::npos);
     EXPECT_NE(read_all("0 1234\n").error.find("--from"), std::string::npos);
     std::string later = write_sample(1, 1).bytes;
-    later[8] = 4;
-    EXPECT_NE(read_all(later).error.find("version 4"), std::string::npos);
+    later[8] = 5;
+    EXPECT_NE(read_all(later).error.find("version 5"), std::string::npos);
     std::string endless(magic); // a description of 2^60 bytes
     append_fixed(endless, format_version);
     endless += "HEAD";
