@@ -30,7 +30,7 @@ public:
     /// Throws nothing, as those who are traced may be in the middle of anything: what cannot be written is
     /// dropped, and finish() says why.
     void add(const Reference& r) {
-        if (coming_.references.size() >= block_ && !continues(r.what))
+        if (coming_.references.size() >= block_ && !BlockBuilder::continues(r.what))
             hand_over();
         coming_.references.push_back(r);
     }
@@ -57,10 +57,6 @@ private:
         std::vector<Reference> references;
         std::vector<Mark> marks;
     };
-    /// What stays with the reference before it.
-    static bool continues(const Class& c) {
-        return c.part == Part::piece || (c.kind == Kind::flush && c.part == Part::access);
-    }
     void hand_over();
     void build();
     void write_all();

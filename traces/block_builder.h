@@ -23,6 +23,10 @@ public:
     }
     /// A window, or the end, before the references that follow.
     void mark(const Turn& turn) { turns_.push_back(turn); }
+    /// What stays with the reference before it, in one block.
+    static bool continues(const Class& c) {
+        return c.part == Part::piece || (c.kind == Kind::flush && c.part == Part::access);
+    }
     std::size_t size() const { return times_.size(); }
     bool full() const { return size() >= most_references; }
     /// Replaces `block` by what was collected, and begins anew.

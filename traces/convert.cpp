@@ -1,6 +1,6 @@
 #include "traces/convert.h"
 
-#include "traces/in_time.h"
+#include "traces/in_order.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,11 +10,19 @@ namespace traces {
 bool Conversion::step() {
     const bool more = input_.next(block_);
     output_.describe(input_.description());
-    if (more)
-        each_in_time(block_, [&](const Segment& s, std::size_t i) {
+    if (!more)
+        return false;
+    for (const Turn& turn : block_.order)
+        windows_ |= turn.what != Turn::What::references;
+    if (!holds_.order)
+        block_.order.clear();
+    each_in_order(
+        block_,
+        [&](const Segment& s, std::size_t i) {
             convert({block_.times[i], block_.addresses[i], s.stream, block_.what(i)});
-        });
-    return more;
+        },
+        [&](const Turn& turn) { output_.mark(turn); });
+    return true;
 }
 
 /// What a target without the kind gets in its place: of a line or word that is written, a write; of a
@@ -60,6 +68,7 @@ std::string Conversion::lost() const {
     field(sites_, holds_.sites, "sites");
     field(names_, holds_.names, "structures, phases and work");
     field(parts_, holds_.parts, "operations and details");
+    field(windows_, holds_.order, "the order of streams and its windows");
     if (!fields.empty())
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
     for (std::size_t k = 0; k < kind_names.size(); ++k) {

@@ -63,6 +63,21 @@ TEST_F(ReplayTool, CountsWhatTheRunCounted) {
     }
 }
 
+/// A converted trace holds what a replay needs.
+TEST_F(ReplayTool, ConvertedTracesCountTheSame) {
+    for (const char* level : {"core", "l2"}) {
+        SCOPED_TRACE(level);
+        record(machine("tiny") + " --trace-level " + level, "a");
+        const Outcome result = tool("convert a.rzt b.rzt");
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.err, "");
+        const nlohmann::json all = json_of("b.rzt --machine " + machine("tiny") + " --against a.json");
+        for (const nlohmann::json& c : all.at("against").at("counts"))
+            EXPECT_EQ(c.at("replay"), c.at("run")) << c;
+        EXPECT_EQ(all.at("machines").at(0).at("replay").at("windows_of_the_run"), true);
+    }
+}
+
 TEST_F(ReplayTool, SeveralMachinesTakeOnePass) {
     record(machine("tiny"), "a");
     const std::vector<std::string> machines = {machine("tiny"), machine("tiny") + ",l2.size_bytes=16384",

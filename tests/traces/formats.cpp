@@ -5,6 +5,7 @@
 #include "traces/error.h"
 #include "traces/in_time.h"
 #include "traces/summary.h"
+#include "traces/writer.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -126,6 +127,53 @@ TEST(TraceFormats, WhatAFormatHoldsComesBack) {
         const Converted again = converted(name.c_str(), there, name.c_str());
         EXPECT_TRUE(again.bytes == there);
         EXPECT_EQ(again.lost, name == "champsim" ? "times are lost" : ""); // an instruction for each
+    }
+}
+
+/// In which order streams went on, in which windows, and when all was over, also where that is all that a
+/// block's worth of references leaves to say.
+TEST(TraceFormats, OwnTracesKeepTheirOrder) {
+    const auto turns = [](const std::string& bytes) { // of references: the stream
+        const auto input = read_own(memory_source(bytes, "own"));
+        std::vector<Turn> out;
+        for (Block block; input->next(block);)
+            for (Turn t : block.order) {
+                if (t.what == Turn::What::references)
+                    t.segment = block.segments[t.segment].stream;
+                if (!out.empty() && t.what == Turn::What::references && out.back().what == t.what &&
+                    out.back().segment == t.segment)
+                    out.back().count += t.count; // between two blocks
+                else
+                    out.push_back(t);
+            }
+        return out;
+    };
+    for (const std::size_t n : {std::size_t{3000}, std::size_t{1} << 18U}) {
+        const std::vector<Reference> all = test::mixed_references(n, 6);
+        std::string own;
+        Description d = test::small_description();
+        d.sites.clear();
+        Writer writer(memory_sink(own), d);
+        writer.add_sites({"1", "2", "3", "4", "5", "6", "7", "8", "9"});
+        BlockBuilder builder;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i % 70 == 0)
+                builder.mark({Turn::What::window, 0, 0, 1100 + 2 * i, 1000 + 2 * i});
+            builder.add(all[i]);
+        }
+        builder.mark({Turn::What::end, 0, 0, 7 * n, 3 * n});
+        Block block;
+        builder.take(block);
+        writer.write(block);
+        writer.finish();
+        const Converted again = converted("rzt", own, "rzt");
+        EXPECT_EQ(again.lost, "");
+        const std::vector<Turn> before = turns(own), after = turns(again.bytes);
+        EXPECT_GT(before.size(), n / 2);
+        EXPECT_EQ(after.size(), before.size());
+        EXPECT_TRUE(after == before);
+        EXPECT_NE(converted("rzt", own, "csv").lost.find("the order of streams and its windows are lost"),
+                  std::string::npos);
     }
 }
 

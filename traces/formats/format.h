@@ -37,8 +37,11 @@ public:
 
     /// The description, whose sites grow: before the first reference, and before those with new sites.
     virtual void describe(const Description& description) = 0;
-    /// In order of time. The kind is one that the format holds. Throws Error.
+    /// In order of time, or in that in which they were made if the format holds it. The kind is one that the
+    /// format holds. Throws Error.
     virtual void write(const Reference& reference) = 0;
+    /// A window, or the end, before the references that follow: of formats that hold the order.
+    virtual void mark(const Turn& /*turn*/) {}
     /// All is written: gives the file its name. Throws Error.
     virtual void finish() = 0;
 };
@@ -48,6 +51,8 @@ struct Holds {
     bool time = false, streams = false, size = false, sites = false, names = false; // structure, phase, work
     std::array<bool, kind_names.size()> kinds{};                                    // by number
     bool parts = false; // of which operation a reference is, and the details of its class
+    bool order =
+        false; // in which all streams' references were made, and the windows in which streams went on
     bool holds(Kind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 

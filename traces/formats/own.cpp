@@ -33,9 +33,14 @@ public:
         sites_ = d.sites.size();
     }
     void write(const Reference& r) override {
+        if (!BlockBuilder::continues(r.what) || builder_.full())
+            begin_block_if_full();
         builder_.add(r);
-        if (builder_.size() >= references_of_block)
-            write_block();
+    }
+    void mark(const Turn& turn) override {
+        if (turn.what != Turn::What::end) // which belongs to what was before
+            begin_block_if_full();
+        builder_.mark(turn);
     }
     void finish() override {
         write_block();
@@ -44,6 +49,10 @@ public:
 
 private:
     static constexpr std::size_t references_of_block = std::size_t{1} << 18;
+    void begin_block_if_full() {
+        if (builder_.size() >= references_of_block)
+            write_block();
+    }
     void write_block() {
         builder_.take(block_);
         writer_->write(block_);
