@@ -27,6 +27,7 @@ public:
     void prefetch() const {
         constexpr int lines = 32, line_bytes = 64, below = 2;
         if (left_at_ != nullptr)
+#pragma GCC unroll 32
             for (int i = -below; i < lines - below; ++i)
                 __builtin_prefetch(static_cast<const std::byte*>(left_at_) + i * line_bytes);
     }

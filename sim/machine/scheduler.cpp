@@ -5,11 +5,9 @@ namespace sim {
 void Scheduler::add(std::uint32_t thread, cycle t, std::function<void()> work,
                     std::function<void()> prefetch) {
     threads_.resize(std::max<std::size_t>(threads_.size(), thread + 1));
-    threads_[thread] = std::make_unique<Thread>();
-    threads_[thread]->number = thread;
-    threads_[thread]->prefetch = std::move(prefetch);
-    threads_[thread]->fibre = std::make_unique<Fibre>(
-        stack_bytes_, [this, work = std::move(work)] { body(work); }, main_);
+    threads_[thread] = std::make_unique<Thread>(
+        thread, std::move(prefetch), stack_bytes_, [this, work = std::move(work)] { body(work); }, main_);
+    turns_.admit(thread);
     push(key(t, thread));
     ++unfinished_;
 }
@@ -27,24 +25,17 @@ void Scheduler::body(const std::function<void()>& work) {
     --unfinished_;
 }
 
-void Scheduler::push(Key k) {
-    queue_.push_back(k);
-    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
-}
-
 Scheduler::Key Scheduler::pop() {
-    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-    Key k = queue_.back();
-    queue_.pop_back();
+    const Key k = turns_.first();
+    turns_.set(thread_of(k), Turns::none);
     return k;
 }
 
 /// Bookkeeping of the thread that runs from now on, with its next operation at `k`.
 void Scheduler::go_on(Key k) {
-    current_ = static_cast<std::uint32_t>(k & ((Key{1} << thread_bits) - 1));
+    current_ = thread_of(k);
     if (exact())
-        horizon_ =
-            std::min(queue_.empty() ? limit_ - 1 : std::min(limit_ - 1, queue_.front()), first_event() - 1);
+        horizon_ = std::min({limit_ - 1, turns_.first(), first_event() - 1});
     else if (whole_windows_)
         horizon_ = limit_ - 1;
     else
@@ -53,34 +44,34 @@ void Scheduler::go_on(Key k) {
 
 /// Many threads' work does not fit into the host's caches: that of the one after the next.
 void Scheduler::prefetch_next() const {
-    if (queue_.empty())
+    const Key next = turns_.first();
+    if (next == Turns::none)
         return;
-    const Thread& t = *threads_[queue_.front() & ((Key{1} << thread_bits) - 1)];
-    t.fibre->prefetch();
+    const Thread& t = *threads_[thread_of(next)];
+    t.fibre.prefetch();
     if (t.prefetch)
         t.prefetch();
 }
 
 /// All that come before the earliest thread.
 void Scheduler::let_events_happen() {
-    for (Key first = first_event(); first < limit_ && (queue_.empty() || first <= queue_.front());
-         first = first_event())
+    for (Key first = first_event(); first < limit_ && first <= turns_.first(); first = first_event())
         events_->step();
 }
 
 /// From the thread that runs, which is in the queue or parked, to the next one.
 void Scheduler::leave() {
     const std::uint32_t left = current_;
-    Fibre& self = *threads_[left]->fibre;
+    Fibre& self = threads_[left]->fibre;
     if (events_ != nullptr && !stepping_)
         let_events_happen();
-    if (stepping_ || queue_.empty() || queue_.front() >= limit_) {
+    if (stepping_ || turns_.first() >= limit_) {
         self.switch_to(main_);
     } else {
         go_on(pop());
         prefetch_next();
         if (current_ != left)
-            self.switch_to(*threads_[current_]->fibre);
+            self.switch_to(threads_[current_]->fibre);
     }
     if (cancelling_)
         throw Cancelled{};
@@ -89,7 +80,7 @@ void Scheduler::leave() {
 void Scheduler::yield(Key k) {
     if (cancelling_ || std::uncaught_exceptions() > 0)
         return; // unwinding: destructors act at once
-    if (!stepping_ && k < limit_ && (queue_.empty() || k < queue_.front()) && k < first_event()) {
+    if (!stepping_ && k < limit_ && k < turns_.first() && k < first_event()) {
         go_on(k);
         return;
     }
@@ -113,7 +104,7 @@ void Scheduler::call(std::function<void()> request) {
     if (cancelling_)
         return;
     request_ = std::move(request);
-    threads_[current_]->fibre->switch_to(main_);
+    threads_[current_]->fibre.switch_to(main_);
     if (cancelling_)
         throw Cancelled{};
 }
@@ -121,9 +112,9 @@ void Scheduler::call(std::function<void()> request) {
 void Scheduler::cancel() {
     cancelling_ = true;
     for (auto& t : threads_)
-        if (t != nullptr && !t->fibre->finished()) {
+        if (t != nullptr && !t->fibre.finished()) {
             current_ = t->number;
-            main_.switch_to(*t->fibre);
+            main_.switch_to(t->fibre);
         }
 }
 
@@ -131,7 +122,7 @@ void Scheduler::step(std::uint32_t thread) {
     stepping_ = true;
     current_ = thread;
     horizon_ = 0;
-    main_.switch_to(*threads_[thread]->fibre);
+    main_.switch_to(threads_[thread]->fibre);
     stepping_ = false;
 }
 
@@ -150,12 +141,12 @@ void Scheduler::run(cycle end) {
         } else {
             if (events_ != nullptr)
                 let_events_happen();
-            if (queue_.empty() || queue_.front() >= limit_)
+            if (turns_.first() >= limit_)
                 return;
             go_on(pop());
             prefetch_next();
         }
-        main_.switch_to(*threads_[current_]->fibre);
+        main_.switch_to(threads_[current_]->fibre);
     }
 }
 

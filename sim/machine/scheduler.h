@@ -8,6 +8,7 @@
 
 #include "sim/core/fibre.h"
 #include "sim/core/stalls.h"
+#include "sim/machine/turns.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -33,7 +34,7 @@ public:
 
 class Scheduler {
 public:
-    using Key = std::uint64_t;
+    using Key = Turns::Key;
     static constexpr unsigned thread_bits = 16;
     static Key key(cycle t, std::uint32_t thread) { return t << thread_bits | thread; }
     static cycle cycle_of(Key k) { return k >> thread_bits; }
@@ -58,7 +59,8 @@ public:
     /// The earliest cycle at which a thread wants to go on, or something happens; ~0 if none does.
     cycle next() const {
         const cycle event = events_ == nullptr ? ~cycle{0} : events_->next;
-        return queue_.empty() ? event : std::min(event, cycle_of(queue_.front()));
+        const Key first = turns_.first();
+        return first == Turns::none ? event : std::min(event, cycle_of(first));
     }
     std::size_t unfinished() const { return unfinished_; }
     /// What the first thread that failed threw.
@@ -72,7 +74,7 @@ public:
     Key horizon() const { return horizon_; }
     /// Returns when no thread is earlier than this one would be with `k`.
     void wait_turn(Key k) {
-        if (k >= limit_ || (!queue_.empty() && k > queue_.front()) || k >= first_event())
+        if (k >= limit_ || k > turns_.first() || k >= first_event())
             yield(k);
     }
     /// Lets earlier threads run first.
@@ -86,19 +88,25 @@ public:
 
 private:
     struct Thread {
+        Thread(std::uint32_t number, std::function<void()> prefetch, std::size_t stack_bytes,
+               std::function<void()> body, Fibre& home)
+            : number(number), fibre(stack_bytes, std::move(body), home), prefetch(std::move(prefetch)) {}
         std::uint32_t number;
-        std::unique_ptr<Fibre> fibre;
+        Fibre fibre;
         std::function<void()> prefetch;
     };
     struct Cancelled {};
 
     /// Operations from this key on come after the next event.
     Key first_event() const {
-        constexpr Key none = ~Key{0};
-        return events_ == nullptr || events_->next > cycle_of(none) ? none : key(events_->next, 0);
+        return events_ == nullptr || events_->next > cycle_of(Turns::none) ? Turns::none
+                                                                           : key(events_->next, 0);
+    }
+    static std::uint32_t thread_of(Key k) {
+        return static_cast<std::uint32_t>(k & ((Key{1} << thread_bits) - 1));
     }
     void let_events_happen();
-    void push(Key k);
+    void push(Key k) { turns_.set(thread_of(k), k); }
     Key pop();
     void go_on(Key k);
     void prefetch_next() const;
@@ -108,7 +116,7 @@ private:
     std::uint64_t quantum_;
     bool whole_windows_;
     std::size_t stack_bytes_;
-    std::vector<Key> queue_; // a heap, smallest first: every thread that could run but does not
+    Turns turns_;                                  // of every thread that could run but does not
     std::vector<std::unique_ptr<Thread>> threads_; // by number; null where there is none
     std::size_t unfinished_ = 0;
     Timeline* events_ = nullptr;
