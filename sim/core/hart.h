@@ -21,6 +21,7 @@ struct Tile;
 struct alignas(64) Hart {
     Hart(std::uint32_t number, Tile& tile, Core& core, const Config& config, std::size_t columns)
         : tile(&tile), core(&core), number(number), window(static_cast<std::size_t>(config.core.window)),
+          oldest(window.data()), window_end(window.data() + window.size()),
           registers(static_cast<std::size_t>(config.core.vector_registers)), columns(columns),
           store_buffer(static_cast<std::size_t>(config.core.store_buffer)) {
         enter(0);
@@ -34,12 +35,12 @@ struct alignas(64) Hart {
     std::int64_t ahead = 0;   // while caches are only warmed: up to the window's end, in 1/256 cycles ...
     std::uint32_t pace = 256; // ... of which an instruction takes so many
     // Issue order (rule 2).
-    Due bound;               // no later operation issues before
-    std::vector<Due> window; // when the last operations issued, a ring
-    std::size_t position = 0;
-    Due complete;     // when everything begun so far is done, but for what open tickets stand for
-    cycle now = 0;    // the latest cycle to which it let the other threads come
-    cycle issued = 0; // the latest issue so far
+    Due bound;                // no later operation issues before
+    std::vector<Due> window;  // when the last operations issued, a ring
+    Due *oldest, *window_end; // in it: the one that issued longest ago, to be written over next; its end
+    Due complete;             // when everything begun so far is done, but for what open tickets stand for
+    cycle now = 0;            // the latest cycle to which it let the other threads come
+    cycle issued = 0;         // the latest issue so far
     // The CPI stack: all cycles before `accounted` have a cause.
     cycle accounted = 0;
     cycle boundary = ~cycle{0}; // the end of the interval (intervals.h) that these lie in
@@ -115,7 +116,7 @@ struct alignas(64) Hart {
     /// What most operations touch comes to the host's caches.
     void prefetch() const {
         prefetch_lines(this, &pending);
-        prefetch_lines(&window[position], &window[position] + 1);
+        prefetch_lines(oldest, oldest + 1);
         prefetch_lines(at, at + 1);
         core->prefetch(issued);
     }

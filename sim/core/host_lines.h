@@ -7,6 +7,7 @@ namespace sim {
 
 inline void prefetch_lines(const void* begin, const void* end) {
     constexpr std::ptrdiff_t line_bytes = 64; // of most hosts; others bring some lines twice
+#pragma GCC unroll 64
     for (const auto* p = static_cast<const std::byte*>(begin); p < static_cast<const std::byte*>(end);
          p += line_bytes)
         __builtin_prefetch(p);

@@ -31,17 +31,23 @@ public:
     /// File and line, to number.
     const std::map<std::pair<std::string, std::uint32_t>, std::uint32_t>& all() const { return all_; }
 
+    /// The host's caches get what number() will look at.
+    void bring(isa::timing::site where) const {
+        __builtin_prefetch(&known_[hash_of(where) & (known_.size() - 1)]);
+    }
+
 private:
     struct Known {
         const char* file = nullptr;
         std::uint32_t line = 0, number = 0;
     };
+    static std::size_t hash_of(isa::timing::site where) {
+        return (reinterpret_cast<std::uintptr_t>(where.file) + where.line) * 0x9E3779B97F4A7C15U >> 32U;
+    }
     /// Where the place is in `known_`, or would be.
     std::size_t slot_of(isa::timing::site where) const {
-        const std::uint64_t hash =
-            (reinterpret_cast<std::uintptr_t>(where.file) + where.line) * 0x9E3779B97F4A7C15U;
         const std::size_t mask = known_.size() - 1;
-        for (std::size_t i = hash >> 32U & mask;; i = (i + 1) & mask)
+        for (std::size_t i = hash_of(where) & mask;; i = (i + 1) & mask)
             if ((known_[i].file == where.file && known_[i].line == where.line) || known_[i].file == nullptr)
                 return i;
     }

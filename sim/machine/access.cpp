@@ -32,7 +32,7 @@ cycle Engine::await_room(Hart& h, cycle since, cycle until) {
     return std::max(since, h.bound.at());
 }
 
-void Engine::await_operands(Hart& h, Due& ready) {
+Due Engine::await_operands(Hart& h, Due ready) {
     for (std::size_t i = 0; i < h.pending_count; ++i) {
         Hart::Pending p = h.pending[i];
         Answered a = await(h, p.ticket);
@@ -40,6 +40,7 @@ void Engine::await_operands(Hart& h, Due& ready) {
             Due(p.span != 0 ? follow(a.first, a.last, p.span) : a.last, p.spill ? Cause::spill : a.from));
     }
     h.pending_count = 0;
+    return ready;
 }
 
 /// Returns when it is known when all stores so far are in the L1.
@@ -284,13 +285,14 @@ void Engine::stored(Hart& h, const Data& data) {
 /// Rule 3: a register that was not kept comes back through the L1, stored first if it never was. An operand
 /// that the operation at hand takes from memory is loaded without an instruction, issue slot or port: by the
 /// L1's ports alone.
-void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span) {
+Due Engine::reload(Hart& h, Due ready, std::uint32_t value, bool unstored, std::uint32_t span) {
     const bool broadcast = by_register_ && MachineRegisters::is_broadcast(value);
     const std::uint32_t pieces = broadcast ? 1 : pieces_;
     const std::uint32_t number = by_register_ ? MachineRegisters::number(value) : value;
     const std::uint64_t lanes = broadcast ? ~std::uint64_t{0} >> (64 - piece_lanes_) : all_lanes;
     const std::uint64_t place = h.spill_base + number % wide(config_.core.spill_slots) * (width * 4);
     const std::uint64_t last = place + pieces * piece_lanes_ * 4 - 1;
+    bring_sets(h, place, last);
     Due now = begin(h);
     h.site = {};
     h.trace_site = 0;
@@ -318,14 +320,16 @@ void Engine::reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else if (!warming_)
         ready.later(Due(follow(data.first, data.last, span), Cause::spill));
+    return ready;
 }
 
 stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool vector) {
+    const std::uint64_t a = address(p);
+    bring_line(h, a);
     charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
     Issued at = issue_here(h, load_kind, ready);
     Data data;
-    std::uint64_t a = address(p);
     const cycle from = translated(h, a, a + bytes - 1, at.first);
     if (buffered_ && meets_stores(h, a, a + bytes - 1, from)) [[unlikely]]
         load_bytes_around(h, a, bytes, from, data);
@@ -339,6 +343,8 @@ stamp Engine::load(Hart& h, const void* p, std::uint32_t bytes, Due ready, bool 
 }
 
 stamp Engine::load_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready) {
+    if (lanes != 0)
+        bring_line(h, address(p));
     charge_overhead(h, overhead_, begin(h));
     settle(h, ready);
     if (masked && masked_by_lane_) [[unlikely]]
@@ -389,10 +395,11 @@ stamp Engine::load_indexed(Hart& h, const void* p, const std::int32_t* index, st
 }
 
 void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
+    const std::uint64_t a = address(p);
+    bring_line(h, a);
     settle(h, ready);
     Issued at = issue(h, store_kind, ready);
     Data data;
-    const std::uint64_t a = address(p);
     const cycle from = translated(h, a, a + bytes - 1, at.first);
     if (buffered_) [[unlikely]]
         buffer_bytes(h, a, bytes, from, data);
@@ -405,6 +412,8 @@ void Engine::store(Hart& h, const void* p, std::uint32_t bytes, Due ready) {
 }
 
 void Engine::store_vector(Hart& h, const void* p, std::uint64_t lanes, bool masked, Due ready) {
+    if (lanes != 0)
+        bring_line(h, address(p));
     settle(h, ready);
     if (masked && masked_by_lane_) [[unlikely]]
         return store_indexed(h, p, in_order.data(), lanes, ready);

@@ -177,7 +177,7 @@ stamp Engine::fold_address(Hart& h, Due ready) {
 }
 
 /// Something other than a load or store uses the address: now it is an instruction, once.
-void Engine::unfold(Hart& h, Due& ready, const stamp& s) {
+Due Engine::unfold(Hart& h, Due ready, const stamp& s) {
     auto number = static_cast<std::uint32_t>(s.last & ~fold_bits);
     Hart::Unfolded& u = h.unfolded[number % h.unfolded.size()];
     if (u.number != number) {
@@ -195,9 +195,12 @@ void Engine::unfold(Hart& h, Due& ready, const stamp& s) {
         h.complete.later(Due(u.ready, Cause::compute));
     }
     ready.later(Due(u.ready, Cause::compute));
+    return ready;
 }
 
 void Engine::branch(Hart& h, site where, Due ready, bool taken) {
+    if (prediction_ == Prediction::counters)
+        h.tile->sites.bring(where);
     charge_overhead(h, overhead_, begin(h));
     if (warming_) [[unlikely]] {
         pass(h, branch_class, 1);

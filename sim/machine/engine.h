@@ -95,14 +95,14 @@ public:
 
     // --- operands (rules 1 and 3): each makes `ready` no earlier than the operand, or notes that its time is
     // open. `span`: in how many cycles the operation can issue at the least
-    Due begin(Hart& h) const { return later(h.bound, h.window[h.position]); }
+    Due begin(Hart& h) const { return later(h.bound, *h.oldest); }
     static Due later(Due a, Due b) {
         a.later(b);
         return a;
     }
     void need_scalar(Hart& h, Due& ready, const stamp& s) {
         if (is_ticket(s.last)) [[unlikely]]
-            need_open(h, ready, s, 0);
+            ready = need_open(h, ready, s, 0);
         else
             ready.later(Due(s.last, static_cast<Cause>(s.cause)));
     }
@@ -128,7 +128,7 @@ public:
         if (!there)
             need_register(h, ready, s, span);
         if (is_ticket(s.last)) [[unlikely]]
-            need_open(h, ready, s, span);
+            ready = need_open(h, ready, s, span);
         else
             ready.later(Due(follow(s.first, s.last, span), static_cast<Cause>(s.cause)));
     }
@@ -166,11 +166,12 @@ private:
     /// below these bits.
     static constexpr cycle fold_bits = ticket_bit | ticket_bit >> 1U;
     static bool is_folded(const stamp& s) { return (s.last & fold_bits) == fold_bits; }
-    void need_open(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
+    // What follows takes `ready` and returns it later: by value, so that it stays in the host's registers.
+    Due need_open(Hart& h, Due ready, const stamp& s, std::uint32_t span) {
         if (is_folded(s))
-            unfold(h, ready, s);
-        else
-            h.pending[h.pending_count++] = {s.last, span, false};
+            return unfold(h, ready, s);
+        h.pending[h.pending_count++] = {s.last, span, false};
+        return ready;
     }
     void need_operands(Hart& h, Due& ready, const stamp& s) {
         if (is_ticket(s.first))
@@ -178,25 +179,25 @@ private:
         else
             ready.later(Due(s.first, static_cast<Cause>(s.cause)));
     }
-    void unfold(Hart& h, Due& ready, const stamp& s);
+    Due unfold(Hart& h, Due ready, const stamp& s);
     [[gnu::always_inline]] void need_register(Hart& h, Due& ready, const stamp& s, std::uint32_t span) {
         if (s.value != 0) {
             const RegisterFile::Use where =
                 by_register_ ? h.machine_registers->use(s.value) : h.registers.use(s.value);
             if (where != RegisterFile::Use::resident) [[unlikely]]
-                reload(h, ready, s.value, where == RegisterFile::Use::unstored, span);
+                ready = reload(h, ready, s.value, where == RegisterFile::Use::unstored, span);
         }
     }
     std::uint32_t make_value(Hart& h, bool broadcast) const {
         return by_register_ ? h.machine_registers->make(broadcast) : h.registers.make();
     }
-    void reload(Hart& h, Due& ready, std::uint32_t value, bool unstored, std::uint32_t span);
+    Due reload(Hart& h, Due ready, std::uint32_t value, bool unstored, std::uint32_t span);
     /// Waits until the times of all operands are known.
     void settle(Hart& h, Due& ready) {
         if (h.pending_count != 0) [[unlikely]]
-            await_operands(h, ready);
+            ready = await_operands(h, ready);
     }
-    void await_operands(Hart& h, Due& ready);
+    Due await_operands(Hart& h, Due ready);
     cycle await_room(Hart& h, cycle since, cycle until);
     void await_stores(Hart& h);
     void settle_loads(Hart& h);
@@ -242,6 +243,16 @@ private:
     template <std::uint32_t lines>
     bool touch_present(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots,
                        cycle from, Data& data) const;
+    /// The host's caches get what an access of that address will look at, while it is issued.
+    void bring_line(Hart& h, std::uint64_t address) const {
+        h.core->l1.bring_set(address >> line_shift_);
+        h.tile->attribution.bring(address);
+    }
+    /// ... of the bytes [low, high] of a thread's stack.
+    void bring_sets(Hart& h, std::uint64_t low, std::uint64_t high) const {
+        for (std::uint64_t line = low >> line_shift_; line <= high >> line_shift_; ++line)
+            h.core->l1.bring_set(line);
+    }
     void read_spilled(Hart& h, std::uint64_t place, std::uint64_t lanes, cycle from, Data& data);
     void write_spilled(Hart& h, std::uint64_t place, std::uint64_t lanes, cycle from, Data& data);
     void touch_whole(Hart& h, std::uint64_t address, bool write, cycle from, Data& data);

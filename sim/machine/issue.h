@@ -152,14 +152,13 @@ inline void Engine::note_issue(Hart& h, std::size_t kind, std::uint32_t instruct
 inline void Engine::finish_issue(Hart& h, Issued at, cycle granted, Cause held) {
     if (warming_) [[unlikely]]
         return;
-    Due& slot = h.window[h.position];
-    h.bound.later(slot);
+    h.bound.later(*h.oldest);
     if (granted > at.last)
         h.bound.later(Due(granted, held));
-    slot = Due(at.last, Cause::busy);
+    *h.oldest = Due(at.last, Cause::busy);
     h.issued = std::max(h.issued, at.last);
-    if (++h.position == h.window.size())
-        h.position = 0;
+    if (++h.oldest == h.window_end)
+        h.oldest = h.window.data();
 }
 
 inline void Engine::count(Hart& h, std::uint32_t instructions, bool vector) {

@@ -22,6 +22,7 @@ cycle Arrivals::enter(const Access& a, Kind kind) {
     requests_[slot] = {a, ticket, events_.site_, ++events_.sequence_, at, kind};
     requests_[slot].access.at = at;
     lines_[slot] = cache_.line_of(a.address);
+    cache_.bring_set(lines_[slot]);
     events_.foresee(at, a.asker + 1, events_.sequence_, number_, slot);
     return ticket;
 }

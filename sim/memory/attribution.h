@@ -29,6 +29,8 @@ public:
         line->touch(column);
         return cells(line->kind(tile_))[column];
     }
+    /// The host's caches get what touch() will look at first.
+    void bring(std::uint64_t address) const { map_.bring(address); }
     /// The cell of anything else that happens to the line there.
     Traffic& cell(std::uint64_t address, std::size_t column) {
         if (unusual_) [[unlikely]] {

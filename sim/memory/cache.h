@@ -171,6 +171,8 @@ public:
                 array_.drop(e);
         });
     }
+    /// What an access of the line (number) looks at comes to the host's caches.
+    void bring_set(std::uint64_t line) const { array_.bring_set(line); }
     /// What most accesses touch comes to the host's caches.
     void prefetch_host() const { prefetch_lines(this, &counters_ + 1); }
     CacheCounters& counters() { return counters_; }

@@ -52,6 +52,8 @@ public:
                 return entry(line, w + static_cast<std::uint32_t>(std::countr_zero(equal)));
         return none;
     }
+    /// The host's caches get the set of a line.
+    void bring_set(std::uint64_t line) const { __builtin_prefetch(set_of(line)); }
     /// Where a line is; of use as long as nothing else is done to the array.
     struct Place {
         std::byte* set;

@@ -69,6 +69,13 @@ public:
         const std::size_t granule = address / isa::address_space::granule;
         return granule < granule_count_ ? &lines(granule)[line_in_granule(address)] : nullptr;
     }
+    /// The host's caches get what is known of the line there, if anything is.
+    void bring(std::uint64_t address) const {
+        const std::size_t granule = address / isa::address_space::granule;
+        if (granule < granule_count_)
+            if (const Line* made = granules_[granule].lines.load(std::memory_order_acquire); made != nullptr)
+                __builtin_prefetch(&made[line_in_granule(address)]);
+    }
     /// From now on these bytes are of this level. Notes of a window are kept in `notes` until it ends.
     void note_level(std::uint64_t address, std::uint64_t bytes, int level, std::uint32_t tile,
                     std::vector<Line*>& notes);
