@@ -38,7 +38,8 @@ Sampling parse_sampling(std::string_view option, std::string_view text) {
     constexpr std::string_view how = "sample:";
     if (!text.starts_with(how))
         throw razor::UserError(fmt::format(
-            "{}: \"{}\" is no way to estimate; give sample:FRACTION, such as sample:0.1", option, text));
+            "{}: \"{}\" is no way to estimate; give sample:FRACTION, such as sample:0.1, or closed-form",
+            option, text));
     Sampling s;
     s.fraction = razor::parse_number(option, text.substr(how.size()), {0.001, 1});
     s.builds = building_phases();

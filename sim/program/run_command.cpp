@@ -230,9 +230,16 @@ void RunCommand::add_to(CLI::App& app) {
     run.add_option(
            "--estimate", estimate_,
            "sample:FRACTION estimates from so much of the time, simulated in detail; elsewhere caches "
-           "are only warmed; every figure comes with its error")
+           "are only warmed; every figure comes with its error. closed-form computes the chip as a network "
+           "of "
+           "queues, from one simulated tile")
         ->type_name("HOW");
     run.add_option("--estimate-seed", seed_, "where samples are taken; without it, 1")->type_name("SEED");
+    run.add_option(
+           "--seed-report", seed_report_,
+           "what --estimate closed-form knows of one tile: read if it is there, else made and kept, for "
+           "other numbers of tiles and threads, clocks, latencies of caches and memories")
+        ->type_name("FILE.json");
     trace_.add_to(run);
     costs_.add_to(run);
     run.add_flag("--no-native", no_native_,
@@ -249,6 +256,8 @@ std::optional<Sampling> RunCommand::sampling(const Machine& machine) const {
             throw razor::UserError("--estimate-seed is of no use without --estimate; give both");
         return std::nullopt;
     }
+    if (in_closed_form())
+        return std::nullopt;
     Sampling s = parse_sampling("--estimate", estimate_);
     if (!seed_.empty())
         s.seed = static_cast<std::uint32_t>(razor::parse_whole("--estimate-seed", seed_, {0, 1e9}));
@@ -311,6 +320,12 @@ int RunCommand::run() const {
         std::tie(counted.first_tile, counted.last_tile) =
             razor::parse_span("--tiles", tiles_, {0, static_cast<double>(counted.last_tile)});
     }
+    if (in_closed_form()) {
+        check_closed_form(config);
+        return run_closed_form(machine_description, workers, description);
+    }
+    if (!seed_report_.empty())
+        throw razor::UserError("--seed-report is of no use without --estimate closed-form; give both");
     const std::optional<Sampling> sampling = this->sampling(machine);
     const bool estimated = sampling && sampling->fraction < 1;
     const std::string scene = razor::to_toml(description);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/program/scene_options.h"
+#include "sim/config/machine_file.h"
 #include "sim/machine/machine.h"
 #include "sim/program/pixel_costs.h"
 #include "sim/program/trace_options.h"
@@ -31,10 +32,14 @@ public:
 
 private:
     std::optional<Sampling> sampling(const Machine& machine) const;
+    bool in_closed_form() const;
+    void check_closed_form(const Config& config) const;
+    int run_closed_form(const MachineDescription& machine, int workers,
+                        const razor::SceneDescription& scene) const;
 
     MachineOptions machine_;
     razor::SceneOptions scene_;
-    std::string estimate_, seed_;
+    std::string estimate_, seed_, seed_report_;
     TraceOptions trace_;
     PixelCostOptions costs_;
     std::vector<std::string> outputs_;

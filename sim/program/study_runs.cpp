@@ -83,7 +83,7 @@ std::string wrong_setting(std::string_view key, Value& value) {
         return wrong_text(key, value, [](const std::string& text) { razor::parse_bytes("memory", text); });
     if (key == "estimate")
         return wrong_text(key, value, [](const std::string& text) {
-            if (text != "none")
+            if (text != "none" && text != "closed-form")
                 parse_sampling("estimate", text);
         });
     if (key == "share")
