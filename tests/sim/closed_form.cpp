@@ -35,7 +35,7 @@ TEST(ClosedForm, SolvesMachineRepairmenExactly) {
 TEST(ClosedForm, KeepsWithinBoundsAndLittlesLaw) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> some(0, 2);
-    for (int network = 0; network < 200; ++network) {
+    for (unsigned network = 0; network < 200; ++network) {
         std::vector<double> d(1 + network % 6);
         for (double& x : d)
             x = some(random);
@@ -71,12 +71,12 @@ CustomerClass visiting(double customers, double delay, const std::vector<double>
 TEST(ClosedForm, ApproximatesWhatIsExact) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> some(0.1, 2);
-    for (int network = 0; network < 100; ++network) {
+    for (unsigned network = 0; network < 100; ++network) {
         std::vector<double> d(1 + network % 4);
         for (double& x : d)
             x = some(random);
         const double z = 4 * some(random);
-        const int n = 1 + network % 17;
+        const int n = 1 + static_cast<int>(network % 17);
         const double exact = solve_exactly(d, z, n).throughput;
         ApproximateNetwork one(d.size());
         EXPECT_NEAR(one.solve({visiting(n, z, d)})[0] * n / exact, 1, n == 1 ? 1e-3 : 0.12);
