@@ -32,7 +32,7 @@ void RunCommand::check_closed_form(const Config& config) const {
         {"--frames", !frames_.empty()},      {"--tiles", !tiles_.empty()},
         {"--memory", !memory_.empty()},      {"--host-threads", !host_threads_.empty()},
         {"--trace", trace_.wanted()},        {"--tiles-in-rows", tiles_in_rows_},
-        {"--estimate-seed", !seed_.empty()},
+        {"--estimate-seed", !seed_.empty()}, {"--costs and --false-colour", costs_.given()},
     };
     for (const auto& [option, given] : others)
         if (given)
