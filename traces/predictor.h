@@ -81,6 +81,7 @@ public:
             length += nibble(coder, in, 0x10000001U, set, 1, 4, (want - length) / 4) * 4;
         if (length >= 15)
             length += nibble(coder, in, 0x10000002U + length, set, 1, 2, (want - length) % 4);
+        length = std::min(length, 64U); // of damaged bytes
         if (length == 0)
             return 0;
         std::uint64_t got = 1;

@@ -112,6 +112,17 @@ TEST(Predictor, LearnsWhichContextTells) {
     }
 }
 
+/// Bytes that nobody wrote: every bit is set.
+struct Ones {
+    std::uint32_t code(std::uint32_t, std::uint32_t) { return 1; }
+};
+TEST(Predictor, NumbersOfDamagedBytesHaveSixtyFourBitsAtMost) {
+    Predictor<1> p;
+    p.begin(4);
+    Ones ones;
+    EXPECT_EQ(p.number(ones, {0}, 0, 0), ~std::uint64_t{0});
+}
+
 TEST(PredictedBlocks, AreReadAsTheyWere) {
     Decoder decoder;
     for (const std::size_t n : {1U, 2U, 40U, 3000U})
