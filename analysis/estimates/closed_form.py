@@ -10,34 +10,26 @@ time of the model in milliseconds, and processor seconds to count work natively 
 simulated run's report, and each seed, under its command: the same command goes on where it was stopped. Exit code: 0; 1 where a run
 fails; 2 on a mistake; 130 after Ctrl-C.
 """
-import argparse
 import hashlib
 import json
 import os
-import shutil
 import statistics
 import subprocess
 import sys
 
+import simulator
+
 
 def options():
-    own, more = sys.argv[1:], []
-    if "--" in own:
-        at = own.index("--")
-        own, more = own[:at], own[at + 1:]
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder")
+    parser = simulator.parser_of(__doc__)
     parser.add_argument("--machines", default="copernicus,larrabee-like,niagara-like")
     parser.add_argument("--scenes", default="default,courtyard,interior,forest,showcase")
     parser.add_argument("--tiles", default="1,4,16")
     parser.add_argument("--size", default="32x32")
     parser.add_argument("--forest-size", default="16x16")
-    parser.add_argument("--program", default=shutil.which("razor-sim") or "build/release/sim/program/razor-sim")
-    found = parser.parse_args(own)
+    found, more = simulator.parsed(parser)
     if not all(n.isdigit() and int(n) > 0 for n in found.tiles.split(",")):
         parser.error("--tiles is numbers of tiles, such as 1,4,16")
-    if shutil.which(found.program) is None:
-        parser.error(f"{found.program} is no program; name razor-sim's place by --program")
     return found, more
 
 

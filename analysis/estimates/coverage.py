@@ -9,36 +9,28 @@ error of cycles and of bytes from and to DRAM, in how many runs the interval of 
 processor time of a sampled run beside the detailed one (medians). FOLDER keeps each run's report under its command: the same one
 goes on where it was stopped. Exit code: 0; 1 where a run fails; 2 on a mistake; 130 after Ctrl-C.
 """
-import argparse
 import hashlib
 import json
 import os
-import shutil
 import statistics
 import subprocess
 import sys
+
+import simulator
 
 FIGURES = ("cycles", "dram_bytes")
 
 
 def options():
-    own, more = sys.argv[1:], []
-    if "--" in own:
-        at = own.index("--")
-        own, more = own[:at], own[at + 1:]
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder")
+    parser = simulator.parser_of(__doc__)
     parser.add_argument("--machine", default="configs/machines/study.toml")
     parser.add_argument("--scenes", default=",".join(f"configs/scenes/{s}.toml" for s in
                                                      ("courtyard", "interior", "forest", "showcase")))
     parser.add_argument("--fraction", type=float, default=0.06)
     parser.add_argument("--seeds", type=int, default=50)
-    parser.add_argument("--program", default=shutil.which("razor-sim") or "build/release/sim/program/razor-sim")
-    found = parser.parse_args(own)
+    found, more = simulator.parsed(parser)
     if not 0.001 <= found.fraction < 1 or found.seeds < 1:
         parser.error("--fraction is from 0.001 to below 1, --seeds at least 1")
-    if shutil.which(found.program) is None:
-        parser.error(f"{found.program} is no program; name razor-sim's place by --program")
     return found, more
 
 

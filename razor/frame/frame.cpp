@@ -450,6 +450,7 @@ FrameStatistics Frame::statistics() const {
     if (s.look != look_matte)
         s.material_records = static_cast<std::int64_t>(impl_->materials.materials.size());
     s.textured_meshes = static_cast<std::int64_t>(impl_->meshes.size() - impl_->scene_meshes);
+    s.meshes_at_rest = impl_->meshes_at_rest();
     s.texture_bytes = static_cast<std::int64_t>(impl_->materials.texels) * 4;
     return s;
 }

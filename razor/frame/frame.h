@@ -92,7 +92,8 @@ struct FrameStatistics {
     Look look = look_matte;
     bool patterns = false, bumps = false, displacement = false, one_sided = false, sheen = false;
     bool mesh_lights = false, chosen_lights = false;
-    std::int64_t material_records = 0, textured_meshes = 0, texture_bytes = 0; // tables that they need
+    std::int64_t material_records = 0, textured_meshes = 0, meshes_at_rest = 0,
+                 texture_bytes = 0; // tables that they need
 };
 
 /// How many screen tiles the part of the picture has that is rendered; those on its rim are rendered whole.

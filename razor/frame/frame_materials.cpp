@@ -148,8 +148,7 @@ void Frame::Impl::place_materials(const Scene& scene) {
     int shaded = 0;
     for (std::size_t n = 0; n < geometry.instances.size(); ++n)
         shaded = std::max(shaded, shaded_arrays_in(shading_of(scene, geometry.instances[n])));
-    const bool rest = std::find(shades_by_rest.begin(), shades_by_rest.end(), true) != shades_by_rest.end();
-    header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded, rest);
+    header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded, meshes_at_rest() > 0);
     if (plan.look == look_matte && !materials.one_sided && materials.displacements.empty())
         return;
     const auto copy = [&](const auto& table, auto& to, const char* structure) {

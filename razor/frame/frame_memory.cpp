@@ -198,7 +198,7 @@ void Frame::Impl::place_points(const Scene& scene) {
         first += t.points.size();
     }
     header->points.set(region<float>("control points", -1, total.points * 3));
-    if (std::find(shades_by_rest.begin(), shades_by_rest.end(), true) != shades_by_rest.end())
+    if (meshes_at_rest() > 0)
         header->rest_points.set(region<float>("control points", -1, total.points * 3));
     fill_meshes(scene);
     for (std::size_t cage = scene_meshes; cage < meshes.size(); ++cage) {

@@ -63,6 +63,10 @@ struct Frame::Impl {
     std::vector<int> texture_cage_of; // of each mesh of the scene, -1: none
     std::vector<bool> shades_by_texture; // likewise; else its cage is for displacement alone
     std::vector<bool> shades_by_rest;    // likewise, patterns of objects, and it changes its shape
+    /// Meshes whose blocks keep places at rest.
+    std::int64_t meshes_at_rest() const {
+        return std::count(shades_by_rest.begin(), shades_by_rest.end(), true);
+    }
     MaterialTables materials;
     std::vector<bool> drawn; // of the meshes: whether there is anything to see of one
     FrameOptions options;

@@ -81,9 +81,11 @@ std::string explain(const Scene& scene, const RenderStatistics& statistics) {
     std::string text = fmt::format("plan: {}\n", f.plan);
     const auto out = std::back_inserter(text);
     text += features_text(scene, f);
-    fmt::format_to(out, "tables: materials {}, texture coordinates {}, textures {:.1f} MiB\n",
+    fmt::format_to(out,
+                   "tables: materials {}, texture coordinates {}, places at rest {}, textures {:.1f} MiB\n",
                    f.material_records > 0 ? fmt::format("{}", f.material_records) : "none",
                    f.textured_meshes > 0 ? fmt::format("of {} meshes", f.textured_meshes) : "none",
+                   f.meshes_at_rest > 0 ? fmt::format("of {} meshes", f.meshes_at_rest) : "none",
                    static_cast<double>(f.texture_bytes) / (1 << 20));
     const Counters& c = f.counters;
     const std::int64_t patches_opened = c.patches_opened - statistics.budget.regenerated_patches;

@@ -155,35 +155,38 @@ void ten_operations(std::byte* p) {
         s = scalar_op(operation::add, s, s);
 }
 
+/// One thread's work, whose costs are shared.
+template <class Work> Report run_shared(Memory& memory, OwnerCosts& costs, Work work) {
+    RunOptions options;
+    options.owners = &costs;
+    return Machine(simple()).run(
+        memory.space, 1, {{"work"}}, [&](int) { work(); }, 1, options);
+}
+
 TEST(Owners, ShareByActiveLanes) {
     Memory memory;
     OwnerCosts costs({});
-    RunOptions options;
-    options.owners = &costs;
-    const Report r = Machine(simple()).run(
-        memory.space, 1, {{"work"}},
-        [&](int) {
-            ten_operations(memory.data);
-            std::vector<std::int32_t> owners(width, 9);
-            owners[0] = owners[1] = 3;
-            owners[2] = 4;
-            const For three(owners, 0b111);
-            for (int i = 1; i <= 3; ++i)
-                ten_operations(memory.data + 64 * i); // 30: 20 for owner 3
-            {
-                const std::uint64_t before = narrow_owners(0b110);
-                ten_operations(memory.data + 64 * 4);                // 5 each
-                EXPECT_NE(narrow_owners(~std::uint64_t{7}), before); // of these there are none
-                ten_operations(memory.data + 64 * 5);                // 5 each
-                restore_owners(before);
-            }
-            {
-                const For other(all_for(7), 0b10);
-                ten_operations(memory.data + 64 * 6);
-            }
-            ten_operations(memory.data + 64 * 7); // 10 for three lanes
-        },
-        1, options);
+    const Report r = run_shared(memory, costs, [&] {
+        ten_operations(memory.data);
+        std::vector<std::int32_t> owners(width, 9);
+        owners[0] = owners[1] = 3;
+        owners[2] = 4;
+        const For three(owners, 0b111);
+        for (int i = 1; i <= 3; ++i)
+            ten_operations(memory.data + 64 * i); // 30: 20 for owner 3
+        {
+            const std::uint64_t before = narrow_owners(0b110);
+            ten_operations(memory.data + 64 * 4);                // 5 each
+            EXPECT_NE(narrow_owners(~std::uint64_t{7}), before); // of these there are none
+            ten_operations(memory.data + 64 * 5);                // 5 each
+            restore_owners(before);
+        }
+        {
+            const For other(all_for(7), 0b10);
+            ten_operations(memory.data + 64 * 6);
+        }
+        ten_operations(memory.data + 64 * 7); // 10 for three lanes
+    });
     const Amounts instructions = amounts(costs, figure("instructions"));
     ASSERT_EQ(instructions.size(), 3U);
     EXPECT_EQ(instructions.at(7), 10U);
@@ -245,16 +248,11 @@ TEST(Owners, CountTheLastFrameAlone) {
 TEST(Owners, AreInTheReport) {
     Memory memory;
     OwnerCosts costs({});
-    RunOptions options;
-    options.owners = &costs;
-    const Report r = Machine(simple()).run(
-        memory.space, 1, {{"work"}},
-        [&](int) {
-            ten_operations(memory.data);
-            const For someone(all_for(0), 1);
-            ten_operations(memory.data + 64);
-        },
-        1, options);
+    const Report r = run_shared(memory, costs, [&] {
+        ten_operations(memory.data);
+        const For someone(all_for(0), 1);
+        ten_operations(memory.data + 64);
+    });
     const nlohmann::json all = nlohmann::json::parse(print_json(r));
     const nlohmann::json& owners = all.at("owners");
     EXPECT_EQ(owners.at("instructions"),

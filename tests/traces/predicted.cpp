@@ -15,6 +15,7 @@
 namespace traces {
 namespace {
 
+using test::evicting;
 using test::mixed_references;
 
 constexpr Decoder::Limits limits{3, 2, 3, 9};
@@ -142,37 +143,6 @@ TEST(PredictedBlocks, AreReadAsTheyWere) {
         }
 }
 
-/// Of caches of 32 sets: a line that comes, and mostly one of the last of its set that makes room.
-std::vector<Reference> evicting(std::size_t count, std::size_t& left) {
-    std::mt19937_64 random(3);
-    std::array<std::vector<std::vector<std::uint64_t>>, 2> sets;
-    for (auto& cache : sets)
-        cache.resize(32);
-    std::vector<Reference> all;
-    for (std::uint64_t time = 0; all.size() < count; time += 2) {
-        const auto stream = static_cast<std::uint32_t>(random() % 2);
-        const std::uint64_t line = random() % (std::uint64_t{1} << 30U);
-        std::vector<std::uint64_t>& set = sets[stream][line % 32];
-        Reference r{time, 0, stream, {}};
-        r.what.size = 64;
-        if (set.size() == 8) {
-            const std::size_t at = random() % 3;
-            r.what.kind = random() % 4 == 0 ? Kind::clean_back : Kind::write_back;
-            r.address = (random() % 50 == 0 ? random() >> 6U : set[at]) * 64;
-            set.erase(set.begin() + static_cast<std::ptrdiff_t>(at));
-            all.push_back(r);
-            if (random() % 50 == 0)
-                all.push_back(r);
-            ++left;
-        }
-        r.what.kind = random() % 3 == 0 ? Kind::write : Kind::read;
-        r.address = line * 64;
-        set.push_back(line);
-        all.push_back(r);
-    }
-    return all;
-}
-
 TEST(PredictedBlocks, LinesThatLeaveCachesTakeLittle) {
     std::size_t left = 0;
     Block block = block_of(evicting(30000, left), 50), back;
@@ -181,10 +151,7 @@ TEST(PredictedBlocks, LinesThatLeaveCachesTakeLittle) {
     expect_same(back, block);
     // One of three places and one of two kinds are three bits; as lines of any set they would take four
     // bytes.
-    for (Class& c : block.table)
-        c.kind = c.kind == Kind::write_back   ? Kind::write_through
-                 : c.kind == Kind::clean_back ? Kind::word
-                                              : c.kind;
+    test::hide_evictions(block);
     EXPECT_GT(left, 10000U);
     EXPECT_LT(bytes.size() + 3 * left, encoded(block).size());
 }

@@ -4,6 +4,7 @@
 #include "traces/block_builder.h"
 #include "traces/description.h"
 
+#include <array>
 #include <random>
 #include <vector>
 
@@ -50,6 +51,46 @@ inline std::vector<Reference> mixed_references(std::size_t count, std::uint32_t 
         out.push_back(r);
     }
     return out;
+}
+
+/// What two caches of 32 sets pass on: a line that comes, and mostly one of the oldest of its set that makes
+/// room; now and then one that never came, or one that leaves twice. `left`: how many leave.
+inline std::vector<Reference> evicting(std::size_t count, std::size_t& left) {
+    std::mt19937_64 random(3);
+    std::array<std::vector<std::vector<std::uint64_t>>, 2> sets;
+    for (auto& cache : sets)
+        cache.resize(32);
+    std::vector<Reference> all;
+    for (std::uint64_t time = 0; all.size() < count; time += 2) {
+        const auto stream = static_cast<std::uint32_t>(random() % 2);
+        const std::uint64_t line = random() % (std::uint64_t{1} << 30U);
+        std::vector<std::uint64_t>& set = sets[stream][line % 32];
+        Reference r{time, 0, stream, {}};
+        r.what.size = 64;
+        if (set.size() == 8) {
+            const std::size_t at = random() % 3;
+            r.what.kind = random() % 4 == 0 ? Kind::clean_back : Kind::write_back;
+            r.address = (random() % 50 == 0 ? random() >> 6U : set[at]) * 64;
+            set.erase(set.begin() + static_cast<std::ptrdiff_t>(at));
+            all.push_back(r);
+            if (random() % 50 == 0)
+                all.push_back(r);
+            ++left;
+        }
+        r.what.kind = random() % 3 == 0 ? Kind::write : Kind::read;
+        r.address = line * 64;
+        set.push_back(line);
+        all.push_back(r);
+    }
+    return all;
+}
+
+/// So that lines that leave caches are lines like any other.
+inline void hide_evictions(Block& block) {
+    for (Class& c : block.table)
+        c.kind = c.kind == Kind::write_back   ? Kind::write_through
+                 : c.kind == Kind::clean_back ? Kind::word
+                                              : c.kind;
 }
 
 inline bool equal(const Reference& a, const Reference& b) {

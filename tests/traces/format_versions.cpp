@@ -1,0 +1,127 @@
+// Files of earlier versions are read as they were.
+#include "tests/traces/samples.h"
+#include "traces/reader.h"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+namespace traces {
+namespace {
+
+using test::equal;
+using test::references_of;
+
+/// Bytes of base64.
+std::string decoded(std::string_view text) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        if (c == '=')
+            break;
+        bits = bits << 6U | static_cast<std::uint32_t>(digits.find(c));
+        count += 6;
+        if (count >= 8)
+            out.push_back(static_cast<char>(bits >> (count -= 8)));
+    }
+    return out;
+}
+
+/// What version 1 of the program wrote of four references of two streams.
+constexpr std::string_view of_version_1 =
+    "iVJaVA0KGgoBAAAASEVBRPvgMSAbAQAAAAAAAHsKICJwcm9ncmFtIjogInVua25vd24iLAogImxldmVsIjogIiIsCiAidGlt"
+    "ZSI6ICJjeWNsZXMiLAogImxpbmVfYnl0ZXMiOiAwLAogInNpdGVzIjogIm5hbWVzIiwKICJzYW1wbGUiOiAxLjAsCiAiZmls"
+    "dGVycyI6ICIiLAogInN0cnVjdHVyZXMiOiBbCiAgIm5vZGVzIiwKICAibGlzdHMiCiBdLAogInBoYXNlcyI6IFsKICAiZ28i"
+    "LAogICJzdG9wIgogXSwKICJ3b3JrIjogWwogICJ1bmtub3duIgogXSwKICJzdHJlYW1zIjogWwogICJ0aHJlYWQgMCIKIF0s"
+    "CiAiY29uZmlndXJhdGlvbiI6ICIiCn1OQU1FXAjA2A0AAAAAAAAAWyJhOjEiLCJiOjIiXUJMQ0uWOKP6iAAAAAAAAAAEAAAA"
+    "AgAAAAQAAAACAAAAAQAAAAAAAAAcAAAAJQAAAAQAAAANAAAACAAAABEAAAAEAAAADQAAACi1L/0gHOEAAAACAQIABAAAAAIB"
+    "CAAAAAICBAABAAEHQAEBAAEotS/9IAQhAAAAAgEDKLUv/SAIQQAACAqg/wGg/wEotS/9IAQhAAAABAICSU5EWHudv+9WAAAA"
+    "AAAAACi1L/0gWW0CAKJEEBeQtTpo3Rqg6TcmT+ZL/+eYSx60N3ZNCQF1kMk35uBF1vNVzfHn5RiE0o+pw0i+YjmiNNEWE5Lk"
+    "n/Rb1dZtsc6AAwDnDA7yluWcVEFJTGrWJ4UIAAAAAAAAAOwBAAAAAAAA";
+
+TEST(TraceFormat, FilesOfVersionOneAreRead) {
+    Reader reader(memory_source(decoded(of_version_1), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    const std::vector<Reference> all = references_of(block);
+    ASSERT_EQ(all.size(), 4U);
+    EXPECT_TRUE(equal(all[0], {1, 0x10, 0, {1, 4, 0, 0, 0, Kind::read}}));
+    EXPECT_TRUE(equal(all[1], {3, 0x14, 0, {1, 4, 0, 1, 0, Kind::modify}}));
+    EXPECT_TRUE(equal(all[2], {2, 0xff40, 1, {2, 8, 0, 0, 0, Kind::write}}));
+    EXPECT_TRUE(equal(all[3], {3, 0xff40, 1, {0, 64, 1, 1, 0, Kind::flush}}));
+    EXPECT_TRUE(block.order.empty()); // it did not say
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+    EXPECT_EQ(reader.description().structures, (std::vector<std::string>{"nodes", "lists"}));
+    EXPECT_TRUE(reader.description().regions.empty());
+    EXPECT_EQ(reader.description().window, 0U);
+}
+
+/// Likewise version 2.
+constexpr std::string_view of_version_2 =
+    "iVJaVA0KGgoCAAAASEVBRFX4dVA5AQAAAAAAAHsKICJwcm9ncmFtIjogInVua25vd24iLAogImxldmVsIjogIiIsCiAidGlt"
+    "ZSI6ICJjeWNsZXMiLAogImxpbmVfYnl0ZXMiOiAwLAogInNpdGVzIjogIm5hbWVzIiwKICJzYW1wbGUiOiAxLjAsCiAid2lu"
+    "ZG93IjogMCwKICJmaWx0ZXJzIjogIiIsCiAic3RydWN0dXJlcyI6IFsKICAibm9kZXMiLAogICJsaXN0cyIKIF0sCiAicGhh"
+    "c2VzIjogWwogICJnbyIsCiAgInN0b3AiCiBdLAogIndvcmsiOiBbCiAgInVua25vd24iCiBdLAogInN0cmVhbXMiOiBbCiAg"
+    "InRocmVhZCAwIgogXSwKICJyZWdpb25zIjogW10sCiAiY29uZmlndXJhdGlvbiI6ICIiCn1OQU1FXAjA2A0AAAAAAAAAWyJh"
+    "OjEiLCJiOjIiXUJMQ0v1AuSDowAAAAAAAAAEAAAAAgAAAAQAAAACAAAAAQAAAAAAAAAcAAAAJQAAAAQAAAANAAAACAAAABEA"
+    "AAAEAAAADQAAAAoAAAATAAAAKLUv/SAc4QAAAAIBAgAEAAAAAgEIAAAAAgIEAAEAAQhAAQEAASi1L/0gBCEAAAACAQMotS/9"
+    "IAhBAAAICqD/AaD/ASi1L/0gBCEAAAAEAgIotS/9IApRAAAEBAIDAgMBAQEBSU5EWGC3NMtZAAAAAAAAACi1L/0gXYUCAMLE"
+    "EBeQtTroImRv2YcmT+ZL/+cAt+1Be2PXlAO1kMk3ZuEFrOermuPPy2AQSj+mEiT5Wo7liNJGW4wIJP+k36q2bo91FgQDAMkZ"
+    "HtStwDkBVEFJTOuQJtEIAAAAAAAAACUCAAAAAAAA";
+
+TEST(TraceFormat, FilesOfVersionTwoAreRead) {
+    Reader reader(memory_source(decoded(of_version_2), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    const Description& d = reader.description();
+    const std::vector<Reference> all = references_of(block);
+    ASSERT_EQ(all.size(), 4U);
+    const auto is = [&](const Reference& r, std::uint64_t time, std::uint64_t address, Kind kind,
+                        std::uint32_t size, const char* structure, const char* phase) {
+        return r.time == time && r.address == address && r.what.kind == kind && r.what.size == size &&
+               d.structures[r.what.structure] == structure && d.phases[r.what.phase] == phase &&
+               r.what.detail == 0;
+    };
+    EXPECT_TRUE(is(all[0], 1, 0x10, Kind::read, 4, "nodes", "go"));
+    EXPECT_TRUE(is(all[1], 3, 0x14, Kind::modify, 4, "nodes", "stop"));
+    EXPECT_TRUE(is(all[2], 2, 0xff40, Kind::write, 8, "nodes", "go"));
+    EXPECT_TRUE(is(all[3], 3, 0xff40, Kind::invalidate, 64, "lists", "stop"));
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+}
+
+/// Likewise version 3, of five.
+constexpr std::string_view of_version_3 =
+    "iVJaVA0KGgoDAAAASEVBRFX4dVA5AQAAAAAAAHsKICJwcm9ncmFtIjogInVua25vd24iLAogImxldmVsIjogIiIsCiAidGltZSI6"
+    "ICJjeWNsZXMiLAogImxpbmVfYnl0ZXMiOiAwLAogInNpdGVzIjogIm5hbWVzIiwKICJzYW1wbGUiOiAxLjAsCiAid2luZG93Ijog"
+    "MCwKICJmaWx0ZXJzIjogIiIsCiAic3RydWN0dXJlcyI6IFsKICAibm9kZXMiLAogICJsaXN0cyIKIF0sCiAicGhhc2VzIjogWwog"
+    "ICJnbyIsCiAgInN0b3AiCiBdLAogIndvcmsiOiBbCiAgInVua25vd24iCiBdLAogInN0cmVhbXMiOiBbCiAgInRocmVhZCAwIgog"
+    "XSwKICJyZWdpb25zIjogW10sCiAiY29uZmlndXJhdGlvbiI6ICIiCn1OQU1FB21VOhEAAAAAAAAAWyJhOjEiLCJiOjIiLCIwIl1C"
+    "TENLisImxLEAAAAAAAAABQAAAAIAAAAFAAAAAgAAAAEAAAAAAAAAKAAAADEAAAAFAAAADgAAAAkAAAASAAAABAAAAA0AAAAKAAAA"
+    "EwAAACi1L/0gKEEBAAADAQIABAAAAAIHAQgAAAACAAIEAAEAAQAiBAABAAAAOkABAQAEgAIotS/9IAUpAAAAAgMBBCi1L/0gCUkA"
+    "AAgKFqD/AaD/ASi1L/0gBCEAAAAEAgIotS/9IApRAAAEBAIDAgMBAQIBSU5EWOEcuoFcAAAAAAAAACi1L/0ga50CACKFEReQGeq4"
+    "aAAsPH8BGyoxM8MnvxG3N3ZNCQv18E3w+D4cOBGp+arld3NAoGSim0IHw/H1xsnvl2jCSkqQOL5Bt0Vr2RaWWREDADkh+Atx1eGe"
+    "VEFJTL2muO8IAAAAAAAAADcCAAAAAAAA";
+
+TEST(TraceFormat, FilesOfVersionThreeAreRead) {
+    Reader reader(memory_source(decoded(of_version_3), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    const std::vector<Reference> all = references_of(block);
+    ASSERT_EQ(all.size(), 5U);
+    EXPECT_TRUE(equal(all[0], {1, 0x10, 0, {1, 4, 0, 0, 0, Kind::read, Part::operation, 7}}));
+    EXPECT_TRUE(equal(all[1], {3, 0x14, 0, {1, 4, 0, 1, 0, Kind::modify}}));
+    EXPECT_TRUE(equal(all[2], {3, 0x40, 0, {1, 4, 0, 1, 0, Kind::modify, Part::piece}}));
+    EXPECT_TRUE(equal(all[3], {2, 0xff40, 1, {2, 8, 0, 0, 0, Kind::write}}));
+    EXPECT_TRUE(equal(all[4], {3, 0xff40, 1, {3, 64, 1, 1, 0, Kind::upgrade, Part::aside, 256}}));
+    EXPECT_EQ(block.order.size(), 4U);
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+    EXPECT_EQ(reader.description().sites, (std::vector<std::string>{"a:1", "b:2", "0"}));
+}
+
+} // namespace
+} // namespace traces
