@@ -9,10 +9,12 @@
 namespace razor::ISA_TARGET {
 inline namespace morph_kernel {
 
-/// The largest target edge length in the block's box; roundings as of targets_in() (fields.h).
+/// The largest target edge length where vertices of the block, or what they hang from, can be; roundings as
+/// of targets_in() (fields.h).
 inline sfloat largest_target(const Field& f, pointer<BlockHeader> block) {
-    svec low = load_svec(field(block, &BlockHeader::box_low));
-    svec high = load_svec(field(block, &BlockHeader::box_high));
+    pointer<float> box = box_with_ancestors(block);
+    svec low = load_svec(box);
+    svec high = load_svec(box + 3);
     svec before = f.origin - low;
     svec after = high - f.origin;
     sfloat far_x = max(before.x, after.x);
@@ -77,7 +79,7 @@ struct SeenCorners {
 
 /// At which levels vertices of a block are born: of the finest inside it, and how much earlier on each side.
 struct Births {
-    sint inside, earliest;
+    sint inside, earliest, first_level;
     vint early[4];
 
     /// Of vertices on these sides, one a lane, that would be born at `birth` inside.
@@ -85,13 +87,14 @@ struct Births {
         vint sooner = vint(0);
         for (int s = 0; s < 4; ++s)
             sooner = select(side == vint(s), early[s], sooner);
-        return vint(birth) + sooner;
+        return birth_from(vint(birth) + sooner, first_level);
     }
 };
 inline Births births_in(pointer<BlockHeader> block) {
     Births b;
     b.inside = load(field(block, &BlockHeader::absolute));
     b.earliest = earliest_inside(block);
+    b.first_level = first_level_of(block);
     for (int s = 0; s < 4; ++s)
         b.early[s] = vint(early_on_side(block, s));
     return b;

@@ -16,6 +16,15 @@ inline svec load_vertex(pointer<float> vertices, sint stride, sint i) {
     return p;
 }
 
+/// Of the block, and of the ends of ancestors that are longer: see bound_ancestors().
+inline pointer<float> box_with_ancestors(pointer<BlockHeader> block) {
+    pointer<float> box = field(block, &BlockHeader::box_low);
+    sint ancestors_at = load(field(block, &BlockHeader::ancestors_at));
+    if (branch(ancestors_at != 0))
+        box = as<float>(block) + (ancestors_at + ancestor_box);
+    return box;
+}
+
 /// Number of the vertex at corner k.
 inline sint corner_vertex(int k, sint quads_u, sint quads_v) {
     sint last_row = (quads_u + 1) * quads_v;
@@ -27,7 +36,7 @@ inline sint corner_vertex(int k, sint quads_u, sint quads_v) {
 }
 
 /// Where corner k of a block is if it has not moved. On a side that hangs from an edge longer than the block
-/// that is not where the block has it, but where its curve has it at the level that it is born at.
+/// that is not where the block has it, but where its curve has it at level 0.
 inline svec corner_anchor(pointer<BlockHeader> block, int k) {
     sint corners_at = load(field(block, &BlockHeader::corners_at));
     if (branch(corners_at > corners_lie_in_vertices)) {
@@ -60,7 +69,8 @@ inline sfloat largest_component_of(const svec& p) {
     return max(abs(p.x), z);
 }
 
-/// One end of side s of a block, from the curve as it is at level 0, if it is born at all.
+/// One end of side s of a block, from the curve as it is at level 0, where it may hang as well: from longer
+/// edges of coarser levels it would hang elsewhere. The means are those of place_side(), bit for bit.
 inline void place_corner(const Context& c, const Cage& finest, const Dicing& d, int s, sint along,
                          pointer<float> out) {
     const Side& side = d.side[s];
@@ -70,13 +80,22 @@ inline void place_corner(const Context& c, const Cage& finest, const Dicing& d, 
     sint down = max(-finer, 0);
     sint index = (along << up) >> down;
     sint rest = along & ((sint(1) << down) - 1);
-    if (branch(rest != 0))
-        return; // hangs at every level
     sint chunks = sint(1) << max(side.whole - block_log2, 0);
     sint last = chunks - 1;
     sint chunk = min(index >> block_log2, last);
     pointer<float> points = curve_points<false>(c, finest, finest.curves + side.curve, side.whole, chunk);
-    svec p = get_point(points, index - chunk * block_quads);
+    sint from = index - chunk * block_quads;
+    svec p = get_point(points, from);
+    if (branch(rest != 0)) {
+        svec end = get_point(points, from + 1);
+        for (sint h = down - 1; branch(h >= 0); --h) {
+            svec mean = middle(p, end);
+            if (branch(((rest >> h) & 1) != 0))
+                p = mean;
+            else
+                end = mean;
+        }
+    }
     store_svec(out, p);
 }
 

@@ -57,6 +57,7 @@ inline void move_corners(const Corners& seen, pointer<BlockHeader> block, pointe
     sint early[4];
     for (int s = 0; s < 4; ++s)
         early[s] = early_on_side(block, s);
+    sint first_level = first_level_of(block);
     for (int k = 0; k < 4; ++k) {
         int right = k == 1 || k == 2 ? 1 : 0;
         int up = k >= 2 ? 1 : 0;
@@ -78,7 +79,8 @@ inline void move_corners(const Corners& seen, pointer<BlockHeader> block, pointe
             sint sooner = select(odd_j != 0, along_v, along_u);
             sooner = select((odd_i & odd_j) != 0, sint(0), sooner);
             svec anchor = corner_anchor(child, k);
-            p = seen.moved(absolute + (block_log2 - 1) + sooner, anchor, p, other);
+            sint birth = birth_from(absolute + (block_log2 - 1) + sooner, first_level);
+            p = seen.moved(birth, anchor, p, other);
         }
         seen.store_place(to + Corners::words * k, p);
     }

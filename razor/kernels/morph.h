@@ -88,6 +88,20 @@ inline svec blend_vertex(sfloat weight, const svec& anchor, const svec& one, con
     return {fma(weight, anchor.x, part.x), fma(weight, anchor.y, part.y), fma(weight, anchor.z, part.z)};
 }
 
+/// Of vertices that would be born below the instance's level 0: they hang at all levels, and are the means of
+/// their parents whatever is asked for.
+inline constexpr int never_born = -126;
+template <class Int> inline Int birth_from(const Int& birth, sint first_level) {
+    auto below = birth < Int(first_level);
+    Int never(never_born);
+    return select(below, never, birth);
+}
+/// The instance's level 0, absolute.
+inline sint first_level_of(pointer<BlockHeader> block) {
+    sint absolute = load(field(block, &BlockHeader::absolute));
+    return absolute - load(field(block, &BlockHeader::level));
+}
+
 /// On side k of a block, how many levels earlier than inside it a vertex is born: 0 or less. A straight
 /// side's vertices never move.
 inline sint early_on_side(pointer<BlockHeader> block, int k) {

@@ -45,12 +45,21 @@ struct CornerReach {
     static constexpr int words = 6;
     sfloat target;
 
-    sbool at_rest(pointer<BlockHeader>, sint birth) const { return target < moving_from(birth); }
+    /// What a corner hangs from may lie further off than all of the block.
+    sbool at_rest(pointer<BlockHeader> block, sint birth) const {
+        sfloat most = target;
+        sint ancestors_at = load(field(block, &BlockHeader::ancestors_at));
+        if (branch(ancestors_at != 0))
+            most = coarsest_around(block);
+        return most < moving_from(birth);
+    }
     /// Corners of coarser blocks lie further off.
-    void climb(pointer<BlockHeader> block) {
-        svec low = load_svec(field(block, &BlockHeader::box_low));
-        svec high = load_svec(field(block, &BlockHeader::box_high));
-        target = min(coarsest_target(target, high - low), unbounded_target);
+    void climb(pointer<BlockHeader> block) { target = min(coarsest_around(block), unbounded_target); }
+    sfloat coarsest_around(pointer<BlockHeader> block) const {
+        pointer<float> box = box_with_ancestors(block);
+        svec low = load_svec(box);
+        svec high = load_svec(box + 3);
+        return coarsest_target(target, high - low);
     }
     Box place(const svec& anchor) const { return {anchor, anchor}; }
     static Box load_place(pointer<float> at) {
