@@ -3,6 +3,7 @@
 // stored is remembered for the last 1024 stored ones; a value older than that is charged its store again.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -26,8 +27,7 @@ public:
 
     /// Names a new value and holds it.
     std::uint32_t make() {
-        if (++last_ == 0)
-            last_ = 1;
+        name();
 #ifdef __AVX2__
         if (capacity_ - 1 < 8) {
             keep(put_first(moved(eight(), capacity_ - 1), last_));
@@ -76,11 +76,61 @@ public:
         return capacity_ == 0 || ((values == 0) && ...);
     }
 
+    /// Uses values one after the other and calls absent(value, where it was) of each that is not here; then,
+    /// if `makes`, names a new one, which is returned, else 0.
+    template <class Absent, class... Value>
+    [[gnu::always_inline]] std::uint32_t use_and_make(bool makes, Absent absent, Value... values) {
+#ifdef __AVX2__
+        if (capacity_ - 1 < 8) {
+            __m256i all = eight();
+            std::array<std::uint32_t, sizeof...(values)>
+                away{}; // of these values, as far as they are not here
+            std::size_t count = 0;
+            const auto one = [&](std::uint32_t value) {
+                if (value == 0)
+                    return;
+                const __m256i equal = _mm256_cmpeq_epi32(all, _mm256_set1_epi32(static_cast<int>(value)));
+                const auto at = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
+                if (at != 0) [[likely]] {
+                    all = moved(all, static_cast<std::size_t>(std::countr_zero(at)));
+                } else {
+                    all = put_first(moved(all, capacity_ - 1), value);
+                    away[count++] = value;
+                }
+            };
+            (one(values), ...);
+            std::uint32_t made = 0;
+            if (makes) {
+                made = name();
+                all = put_first(moved(all, capacity_ - 1), made);
+            }
+            keep(all);
+            for (std::size_t i = 0; i < count; ++i)
+                absent(away[i], store_once(away[i]));
+            return made;
+        }
+#endif
+        const auto one = [&](std::uint32_t value) {
+            if (const Use where = use(value); where != Use::resident)
+                absent(value, where);
+        };
+        (one(values), ...);
+        return makes ? make() : 0;
+    }
+
 private:
     static constexpr std::uint32_t remembered = 1024;
 
+    std::uint32_t name() {
+        if (++last_ == 0)
+            last_ = 1;
+        return last_;
+    }
     Use bring_back(std::uint32_t value) {
         push(capacity_ - 1, value);
+        return store_once(value);
+    }
+    Use store_once(std::uint32_t value) {
         std::uint32_t& stored = stored_[value % remembered];
         Use where = stored == value ? Use::stored : Use::unstored;
         stored = value;

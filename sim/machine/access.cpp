@@ -246,7 +246,7 @@ std::uint32_t Engine::masked_instructions(std::uint64_t lanes) const {
     return std::max(1U, active);
 }
 
-inline std::uint32_t Engine::indexed_instructions(std::uint64_t lanes, bool by_lane) const {
+std::uint32_t Engine::indexed_instructions(std::uint64_t lanes, bool by_lane) const {
     return by_lane ? std::max(1U, static_cast<std::uint32_t>(std::popcount(lanes)))
                    : masked_instructions(lanes);
 }
@@ -310,7 +310,7 @@ Due Engine::reload(Hart& h, Due ready, std::uint32_t value, bool unstored, std::
     if (h.memory_operands != 0) {
         --h.memory_operands;
         ++h.counters.memory_operands;
-        from = warming_ ? h.now : come_to_issue(h, now);
+        from = come_to_issue(h, now);
     } else {
         from = issue(h, vector_kind(load_kind), pieces, now).first;
     }
@@ -318,7 +318,7 @@ Due Engine::reload(Hart& h, Due ready, std::uint32_t value, bool unstored, std::
     read_spilled(h, place, lanes, translated(h, place, last, from), data);
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
-    else if (!warming_)
+    else
         ready.later(Due(follow(data.first, data.last, span), Cause::spill));
     return ready;
 }
@@ -519,18 +519,24 @@ constexpr std::size_t vector_store = sim::vector_kind(sim::store_kind);
 } // namespace
 
 stamp load(site where, const void* p, std::uint32_t bytes, const stamp& address) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_load(*sim::running_hart, where, p, bytes, false);
     Next n;
     n.address(address);
     n.engine.note_site(n.hart, where);
     return n.engine.load(n.hart, p, bytes, n.ready, false);
 }
 stamp load_broadcast(site where, const void* p, std::uint32_t bytes, const stamp& address) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_load(*sim::running_hart, where, p, bytes, true);
     Next n;
     n.address(address);
     n.engine.note_site(n.hart, where);
     return n.engine.load(n.hart, p, bytes, n.ready, true);
 }
 stamp load_vector(site where, const void* p, std::uint64_t lanes, const stamp& address, const stamp& mask) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_load_vector(*sim::running_hart, where, p, lanes, mask.value);
     Next n;
     std::uint32_t span = n.engine.span(vector_load, lanes);
     n.address(address).lanes(mask, span);
@@ -539,6 +545,9 @@ stamp load_vector(site where, const void* p, std::uint64_t lanes, const stamp& a
 }
 stamp gather(site where, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& mask) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_gather(*sim::running_hart, where, p, index, lanes, indices.value,
+                                                mask.value);
     Next n;
     std::uint32_t span = n.engine.span(vector_load, lanes);
     n.address(address).lanes(indices, span).lanes(mask, span);
@@ -546,6 +555,8 @@ stamp gather(site where, const void* p, const std::int32_t* index, std::uint64_t
     return n.engine.gather(n.hart, p, index, lanes, n.ready);
 }
 void store(site where, const void* p, std::uint32_t bytes, const stamp& address, const stamp& data) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_store(*sim::running_hart, where, p, bytes);
     Next n;
     n.address(address).scalar(data);
     n.engine.note_site(n.hart, where);
@@ -553,6 +564,9 @@ void store(site where, const void* p, std::uint32_t bytes, const stamp& address,
 }
 void store_vector(site where, const void* p, std::uint64_t lanes, const stamp& address, const stamp& data,
                   const stamp& mask) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_store_vector(*sim::running_hart, where, p, lanes, data.value,
+                                                      mask.value);
     Next n;
     std::uint32_t span = n.engine.span(vector_store, lanes);
     n.address(address).lanes(data, span).lanes(mask, span);
@@ -561,6 +575,9 @@ void store_vector(site where, const void* p, std::uint64_t lanes, const stamp& a
 }
 void scatter(site where, const void* p, const std::int32_t* index, std::uint64_t lanes, const stamp& address,
              const stamp& indices, const stamp& data, const stamp& mask) {
+    if (sim::running_engine->warming()) [[unlikely]]
+        return sim::running_engine->warm_scatter(*sim::running_hart, where, p, index, lanes, indices.value,
+                                                 data.value, mask.value);
     Next n;
     std::uint32_t span = n.engine.span(vector_store, lanes);
     n.address(address).lanes(indices, span).lanes(data, span).lanes(mask, span);

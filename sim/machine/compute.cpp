@@ -131,32 +131,6 @@ constexpr std::size_t extract_kind = vector_kind(static_cast<std::size_t>(operat
     return r;
 }
 
-/// What is computed while caches are only warmed: counted, and its values use registers.
-template <class... Stamp>
-[[gnu::always_inline]] inline stamp Engine::pass_operation(Hart& h, std::size_t kind,
-                                                           std::uint32_t instructions, bool vector,
-                                                           const Stamp&... s) {
-    if constexpr (sizeof...(s) != 0)
-        if (registers_ && !in_registers(h, s...)) {
-            Due ready;
-            allow_memory_operands(h);
-            (need_register(h, ready, s, 1), ...);
-        }
-    h.memory_operands = 0;
-    const bool broadcast = kind == vector_kind(static_cast<std::size_t>(operation::broadcast));
-    if (broadcast)
-        instructions = 1;
-    const std::uint32_t taken = !vector && kind == extract_kind ? instructions : instructions * takes_[kind];
-    if (const std::uint32_t moves = kind < form_kinds ? scalar_moves_ : vector_moves_ * taken; moves != 0)
-        [[unlikely]]
-        charge(h, moves, {});
-    pass(h, kind, taken);
-    count(h, instructions, vector || instructions > 1);
-    stamp r;
-    r.value = vector ? make_value(h, broadcast) : 0;
-    return r;
-}
-
 /// An address whose operands are there at `ready`, or when what is pending is: no instruction yet.
 stamp Engine::fold_address(Hart& h, Due ready) {
     stamp s;
@@ -202,19 +176,6 @@ void Engine::branch(Hart& h, site where, Due ready, bool taken) {
     if (prediction_ == Prediction::counters)
         h.tile->sites.bring(where);
     charge_overhead(h, overhead_, begin(h));
-    if (warming_) [[unlikely]] {
-        pass(h, branch_class, 1);
-        count(h, 1, false);
-        ++h.counters.branches;
-        if (prediction_ == Prediction::counters
-                ? !h.core->predictor.right(h.tile->sites.number(where), h.history, taken)
-                : prediction_ != Prediction::perfect && prediction_ != Prediction::none &&
-                      taken != (prediction_ == Prediction::taken))
-            ++h.counters.mispredicts;
-        if (h.ahead <= 0)
-            pause(h);
-        return;
-    }
     settle(h, ready);
     Issued at = issue_here(h, branch_class, ready);
     finish_issue(h, at, 0);
@@ -250,8 +211,7 @@ template <Shape shape, class... Stamp>
 inline stamp operate_on(Engine& engine, Hart& hart, operation op, const Stamp&... operands) {
     const std::size_t kind = sim::vector_kind(static_cast<std::size_t>(op));
     if (engine.warming()) [[unlikely]]
-        return engine.pass_operation(hart, kind, engine.vector_instructions(), shape != Shape::to_scalar,
-                                     operands...);
+        return engine.warm_operation(hart, kind, shape != Shape::to_scalar, operands.value...);
     sim::Due ready = engine.begin(hart);
     const bool there = engine.in_registers(hart, operands...);
     if (!there)
@@ -272,7 +232,7 @@ template <class... Stamp> inline stamp operate_scalar(operation op, const Stamp&
     Engine& engine = *sim::running_engine;
     Hart& hart = *sim::running_hart;
     if (engine.warming()) [[unlikely]]
-        return engine.pass_operation(hart, static_cast<std::size_t>(op), 1, false);
+        return engine.warm_scalar(hart, static_cast<std::size_t>(op));
     sim::Due ready = engine.begin(hart);
     (engine.need_scalar(hart, ready, operands), ...);
     return engine.compute_scalar(hart, static_cast<std::size_t>(op), ready);
@@ -319,6 +279,8 @@ stamp scalar_op(operation op, const stamp& a, const stamp& b, const stamp& c) {
 void branch(site where, const stamp& condition, bool taken) {
     Engine& engine = *sim::running_engine;
     Hart& hart = *sim::running_hart;
+    if (engine.warming()) [[unlikely]]
+        return engine.warm_branch(hart, where, taken);
     sim::Due ready = engine.begin(hart);
     engine.need_scalar(hart, ready, condition);
     engine.branch(hart, where, ready, taken);

@@ -137,10 +137,22 @@ public:
     std::uint32_t vector_instructions() const { return pieces_; }
     /// Whether caches are warmed by what threads touch, and nothing takes time (warming.cpp).
     bool warming() const { return warming_; }
-    /// ... of an operation, once all is asked of its operands; vectors in `s` are used.
-    template <class... Stamp>
-    stamp pass_operation(Hart& h, std::size_t kind, std::uint32_t instructions, bool vector,
-                         const Stamp&... s);
+    // ... of operations then (warm_path.cpp); `value`, `indices`, `mask`, `data`: vectors that are used
+    stamp warm_scalar(Hart& h, std::size_t kind);
+    stamp warm_operation(Hart& h, std::size_t kind, bool vector, std::uint32_t value);
+    stamp warm_operation(Hart& h, std::size_t kind, bool vector, std::uint32_t value, std::uint32_t second);
+    stamp warm_operation(Hart& h, std::size_t kind, bool vector, std::uint32_t value, std::uint32_t second,
+                         std::uint32_t third);
+    void warm_branch(Hart& h, site where, bool taken);
+    stamp warm_load(Hart& h, site where, const void* p, std::uint32_t bytes, bool vector);
+    stamp warm_load_vector(Hart& h, site where, const void* p, std::uint64_t lanes, std::uint32_t mask);
+    stamp warm_gather(Hart& h, site where, const void* p, const std::int32_t* index, std::uint64_t lanes,
+                      std::uint32_t indices, std::uint32_t mask);
+    void warm_store(Hart& h, site where, const void* p, std::uint32_t bytes);
+    void warm_store_vector(Hart& h, site where, const void* p, std::uint64_t lanes, std::uint32_t data,
+                           std::uint32_t mask);
+    void warm_scatter(Hart& h, site where, const void* p, const std::int32_t* index, std::uint64_t lanes,
+                      std::uint32_t indices, std::uint32_t data, std::uint32_t mask);
     bool folds_addresses() const { return folding_; }
     bool shuffles_by_lane() const { return lane_shuffle_; }
     void assemble_shuffle(Hart& h, Due ready);
@@ -209,9 +221,18 @@ private:
             h.bound.later(Due(t - reach_, Cause::slots));
     }
     cycle turn(Hart& h, cycle t);
-    // --- nothing but caches (warming.cpp)
+    // --- nothing but caches (warming.cpp, warm_path.cpp)
     Issued pass(Hart& h, std::size_t kind, std::uint32_t instructions);
     void warm_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses, std::uint32_t slots);
+    void warm_other_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses);
+    template <class... Value> std::uint32_t warm_values(Hart& h, bool makes, bool broadcast, Value... values);
+    template <class... Value> stamp warm_vectors(Hart& h, std::size_t kind, bool vector, Value... values);
+    void warm_reload(Hart& h, std::uint32_t value, bool unstored);
+    void warm_whole(Hart& h, std::uint64_t place, bool write);
+    void warm_bytes(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write);
+    void warm_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
+                      bool write);
+    void warm_overhead(Hart& h);
     cycle passing(const Hart& h) const;
     void pause(Hart& h);
     void come_to(Hart& h) const;

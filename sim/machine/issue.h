@@ -16,17 +16,15 @@ inline Issued Engine::pass(Hart& h, std::size_t kind, std::uint32_t instructions
 }
 
 /// ... and a line is accessed as ever, but for time.
-inline void Engine::warm_line(Hart& h, std::uint64_t line, bool write, std::uint32_t accesses,
-                              std::uint32_t slots) {
+[[gnu::always_inline]] inline void Engine::warm_line(Hart& h, std::uint64_t line, bool write,
+                                                     std::uint32_t accesses, std::uint32_t slots) {
     Cache& l1 = h.core->l1;
     l1.counters().busy_cycles += slots;
-    if (notes_sites_) [[unlikely]]
-        meet_site(h);
-    const Cause from = l1.access(line, write, accesses, h.now, h.column).from;
-    if (from != Cause::l1)
-        h.ahead -= static_cast<std::int64_t>(miss_paces_[static_cast<std::size_t>(from)]);
-    if (notes_sites_) [[unlikely]]
-        pass_site(h);
+    std::array<CacheArray::Place, 1> place; // NOLINT: filled where it is used
+    if (!notes_sites_ && l1.find_present(line, place)) [[likely]]
+        l1.use_present(line, place, write, accesses, h.column);
+    else
+        warm_other_line(h, line, write, accesses);
 }
 
 /// It goes on at its cycle `now`, in the window at hand.
