@@ -46,12 +46,7 @@ public:
         if (capacity_ <= 8)
             return use_all(value) ? Use::resident : bring_back(value);
 #endif
-        for (std::size_t i = 1; i < capacity_; ++i)
-            if (recent_[i] == value) {
-                push(i, value);
-                return Use::resident;
-            }
-        return bring_back(value);
+        return holds(value) ? Use::resident : bring_back(value);
     }
     /// Uses values one after the other, if it can tell soon that all are here; if not, false, and none is
     /// used.
@@ -76,46 +71,53 @@ public:
         return capacity_ == 0 || ((values == 0) && ...);
     }
 
-    /// Uses values one after the other and calls absent(value, where it was) of each that is not here; then,
-    /// if `makes`, names a new one, which is returned, else 0.
-    template <class Absent, class... Value>
-    [[gnu::always_inline]] std::uint32_t use_and_make(bool makes, Absent absent, Value... values) {
+    /// Values that were not here when an operation used them, in its order.
+    struct Absent {
+        std::uint32_t count = 0;
+        std::array<std::uint32_t, 4> values; // as many; not initialised
+        Absent() {}                          // NOLINT: leaves `values` alone
+    };
+    /// Uses values one after the other, those that were not here are to be brought back; then, if `makes`,
+    /// names a new one, which is returned, else 0.
+    template <class... Value>
+    [[gnu::always_inline]] std::uint32_t use_and_make(bool makes, Absent& absent, Value... values) {
+        const auto miss = [&absent](std::uint32_t value) { absent.values[absent.count++] = value; };
 #ifdef __AVX2__
-        if (capacity_ - 1 < 8) {
+        if (capacity_ - 1 < 8) [[likely]] {
             __m256i all = eight();
-            std::array<std::uint32_t, sizeof...(values)>
-                away{}; // of these values, as far as they are not here
-            std::size_t count = 0;
-            const auto one = [&](std::uint32_t value) {
+            const auto use_one = [&](std::uint32_t value) {
                 if (value == 0)
                     return;
                 const __m256i equal = _mm256_cmpeq_epi32(all, _mm256_set1_epi32(static_cast<int>(value)));
                 const auto at = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
-                if (at != 0) [[likely]] {
-                    all = moved(all, static_cast<std::size_t>(std::countr_zero(at)));
-                } else {
-                    all = put_first(moved(all, capacity_ - 1), value);
-                    away[count++] = value;
-                }
+                all = put_first(
+                    moved(all, at != 0 ? static_cast<std::size_t>(std::countr_zero(at)) : capacity_ - 1),
+                    value);
+                if (at == 0)
+                    miss(value);
             };
-            (one(values), ...);
-            std::uint32_t made = 0;
-            if (makes) {
-                made = name();
-                all = put_first(moved(all, capacity_ - 1), made);
-            }
+            (use_one(values), ...);
+            if (makes)
+                all = put_first(moved(all, capacity_ - 1), name());
             keep(all);
-            for (std::size_t i = 0; i < count; ++i)
-                absent(away[i], store_once(away[i]));
-            return made;
+            return makes ? last_ : 0;
         }
 #endif
-        const auto one = [&](std::uint32_t value) {
-            if (const Use where = use(value); where != Use::resident)
-                absent(value, where);
+        const auto use_one = [&](std::uint32_t value) {
+            if (!holds(value)) {
+                push(capacity_ - 1, value);
+                miss(value);
+            }
         };
-        (one(values), ...);
+        (use_one(values), ...);
         return makes ? make() : 0;
+    }
+    /// A value that was absent is brought back: says whether it was stored already, as it is from now on.
+    Use store_once(std::uint32_t value) {
+        std::uint32_t& stored = stored_[value % remembered];
+        Use where = stored == value ? Use::stored : Use::unstored;
+        stored = value;
+        return where;
     }
 
 private:
@@ -126,15 +128,20 @@ private:
             last_ = 1;
         return last_;
     }
+    /// Makes it the last one used, if it is here.
+    bool holds(std::uint32_t value) {
+        if (capacity_ == 0 || value == 0 || recent_[0] == value)
+            return true;
+        for (std::size_t i = 1; i < capacity_; ++i)
+            if (recent_[i] == value) {
+                push(i, value);
+                return true;
+            }
+        return false;
+    }
     Use bring_back(std::uint32_t value) {
         push(capacity_ - 1, value);
         return store_once(value);
-    }
-    Use store_once(std::uint32_t value) {
-        std::uint32_t& stored = stored_[value % remembered];
-        Use where = stored == value ? Use::stored : Use::unstored;
-        stored = value;
-        return where;
     }
 #ifdef __AVX2__
     __m256i eight() const {

@@ -399,6 +399,25 @@ void Engine::shuffle() {
     }
 }
 
+/// No operation of a window that begins at cycle `begin` looks further back than this.
+void Engine::forget_before(cycle begin) {
+    for (Tile& tile : tiles_)
+        tile.earliest = begin > reach_ ? begin - reach_ : 0;
+}
+
+/// All tiles have come to the window's end: what they left to do then is done, and who waited for it goes on.
+void Engine::end_window() {
+    if (!failure_)
+        perform_deeds();
+    serve_window();
+    for (Tile* tile : active_) {
+        if (!tile->parked.empty())
+            answer_parked(*tile, window_end_, [](const Hart&) { return true; });
+        forget_tickets(*tile);
+        tile->attribution.publish_notes();
+    }
+}
+
 /// Runs the next window in which something happens; false if nothing ever will.
 bool Engine::run_window() {
     find_active_tiles();
@@ -413,22 +432,13 @@ bool Engine::run_window() {
     cycle begin = window_end_ - window_cycles_;
     if (intervals_.due(begin))
         intervals_.close(begin, sums());
-    for (Tile& tile : tiles_)
-        tile.earliest = begin > reach_ ? begin - reach_ : 0;
+    forget_before(begin);
     run_tiles();
     if (options_.host_order != 0)
         shuffle();
     if (recorder_ != nullptr)
         recorder_->collect();
-    if (!failure_)
-        perform_deeds();
-    serve_window();
-    for (Tile* tile : active_) {
-        if (!tile->parked.empty())
-            answer_parked(*tile, window_end_, [](const Hart&) { return true; });
-        forget_tickets(*tile);
-        tile->attribution.publish_notes();
-    }
+    end_window();
     if (recorder_ != nullptr)
         recorder_->collect();
     return true;
@@ -457,10 +467,9 @@ void Engine::settle_tiles() {
         const cycle next = next_event();
         window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
         set_floors(next);
-        for (Tile& tile : tiles_) {
-            tile.earliest = window_end_ - window_cycles_ > reach_ ? window_end_ - window_cycles_ - reach_ : 0;
+        forget_before(window_end_ - window_cycles_);
+        for (Tile& tile : tiles_)
             run_tile(tile);
-        }
         serve_window();
     }
 }

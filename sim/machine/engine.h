@@ -228,6 +228,9 @@ private:
     template <class... Value> std::uint32_t warm_values(Hart& h, bool makes, bool broadcast, Value... values);
     template <class... Value> stamp warm_vectors(Hart& h, std::size_t kind, bool vector, Value... values);
     void warm_reload(Hart& h, std::uint32_t value, bool unstored);
+    void warm_absent(Hart& h, const RegisterFile::Absent& absent);
+    std::uint32_t warm_machine_registers(Hart& h, const std::uint32_t* values, std::size_t count, bool makes,
+                                         bool broadcast);
     void warm_whole(Hart& h, std::uint64_t place, bool write);
     void warm_bytes(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write);
     void warm_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
@@ -398,6 +401,8 @@ private:
     void trace();
     // --- windows
     bool run_window();
+    void forget_before(cycle begin);
+    void end_window();
     void find_active_tiles();
     cycle next_event() const;
     void set_floors(cycle arrival);

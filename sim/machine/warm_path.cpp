@@ -92,7 +92,7 @@ inline void Engine::warm_overhead(Hart& h) {
 }
 
 /// As reload(), of which this is all that does not take time.
-[[gnu::noinline]] void Engine::warm_reload(Hart& h, std::uint32_t value, bool unstored) {
+inline void Engine::warm_reload(Hart& h, std::uint32_t value, bool unstored) {
     const bool broadcast = by_register_ && MachineRegisters::is_broadcast(value);
     const std::uint32_t pieces = broadcast ? 1 : pieces_;
     const std::uint32_t number = by_register_ ? MachineRegisters::number(value) : value;
@@ -121,24 +121,46 @@ inline void Engine::warm_overhead(Hart& h) {
     } else {
         pass(h, vector_load, pieces);
     }
+    if (unstored && !broadcast && whole_lines_ != 0 && !tlb_) [[likely]] {
+        // They were written just now.
+        const std::uint32_t taken = line_bytes_ >> piece_shift_;
+        Cache& l1 = h.core->l1;
+        if (l1.read_again(place >> line_shift_, whole_lines_, taken, h.column)) [[likely]] {
+            l1.counters().busy_cycles += std::uint64_t{whole_lines_} * taken * slots_of(piece_lanes_ * 4);
+            return;
+        }
+    }
     touch(false);
+}
+
+[[gnu::noinline]] void Engine::warm_absent(Hart& h, const RegisterFile::Absent& absent) {
+    for (std::uint32_t i = 0; i < absent.count; ++i)
+        warm_reload(h, absent.values[i],
+                    h.registers.store_once(absent.values[i]) == RegisterFile::Use::unstored);
 }
 
 /// Vectors are used one after the other; returns the number of a new one, if that is wanted.
 template <class... Value>
 [[gnu::always_inline]] inline std::uint32_t Engine::warm_values(Hart& h, bool makes, bool broadcast,
                                                                 Value... values) {
-    const auto absent = [&](std::uint32_t value, RegisterFile::Use where) {
-        warm_reload(h, value, where == RegisterFile::Use::unstored);
-    };
-    if (!by_register_) [[likely]]
-        return h.registers.use_and_make(makes, absent, values...);
-    const auto use = [&](std::uint32_t value) {
-        if (value != 0)
-            if (const auto where = h.machine_registers->use(value); where != RegisterFile::Use::resident)
-                absent(value, where);
-    };
-    (use(values), ...);
+    if (!by_register_) [[likely]] {
+        RegisterFile::Absent absent;
+        const std::uint32_t made = h.registers.use_and_make(makes, absent, values...);
+        if (absent.count != 0)
+            warm_absent(h, absent);
+        return made;
+    }
+    const std::array<std::uint32_t, sizeof...(values)> all{values...};
+    return warm_machine_registers(h, all.data(), all.size(), makes, broadcast);
+}
+
+[[gnu::noinline]] std::uint32_t Engine::warm_machine_registers(Hart& h, const std::uint32_t* values,
+                                                               std::size_t count, bool makes,
+                                                               bool broadcast) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (values[i] != 0)
+            if (const auto where = h.machine_registers->use(values[i]); where != RegisterFile::Use::resident)
+                warm_reload(h, values[i], where == RegisterFile::Use::unstored);
     return makes ? h.machine_registers->make(broadcast) : 0;
 }
 
@@ -149,13 +171,13 @@ template <class... Value>
     const std::uint32_t instructions = broadcast ? 1 : pieces_;
     const std::uint32_t taken = !vector && kind == extract_kind ? instructions : instructions * takes_[kind];
     h.memory_operands = memory_operands_;
+    pass(h, kind, taken);
+    count(h, instructions, vector || instructions > 1);
+    if (vector_moves_ != 0) [[unlikely]]
+        charge(h, vector_moves_ * taken, {});
     stamp r;
     r.value = warm_values(h, vector, broadcast, values...);
     h.memory_operands = 0;
-    if (vector_moves_ != 0) [[unlikely]]
-        charge(h, vector_moves_ * taken, {});
-    pass(h, kind, taken);
-    count(h, instructions, vector || instructions > 1);
     return r;
 }
 

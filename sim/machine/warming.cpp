@@ -97,20 +97,11 @@ bool Engine::warm_window() {
     const cycle begin = std::max(window_end_, next / window_cycles_ * window_cycles_);
     window_end_ = begin + windows * window_cycles_;
     set_floors(next);
-    for (Tile& tile : tiles_)
-        tile.earliest = begin > reach_ ? begin - reach_ : 0;
+    forget_before(begin);
     for (Hart& h : harts_)
         come_to(h);
     run_tiles();
-    if (!failure_)
-        perform_deeds();
-    serve_window();
-    for (Tile* tile : active_) {
-        if (!tile->parked.empty())
-            answer_parked(*tile, window_end_, [](const Hart&) { return true; });
-        forget_tickets(*tile);
-        tile->attribution.publish_notes();
-    }
+    end_window();
     return true;
 }
 

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <random>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace sim::test {
 namespace {
@@ -93,6 +96,36 @@ TEST(Registers, OperandsAreUsedTogether) {
         }
         EXPECT_GT(seen[0], 100) << capacity;
         EXPECT_GT(seen[1], 100) << capacity;
+    }
+}
+
+// Three used and a new one made in one go, as while caches are warmed: all as one after the other.
+TEST(Registers, OperandsAndResultGoAsOneAfterTheOther) {
+    std::mt19937 random(8);
+    for (const std::size_t capacity : {0U, 1U, 2U, 5U, 8U, 12U}) {
+        RegisterFile file(capacity), plain(capacity);
+        std::uint32_t last = 0;
+        int reloads = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const auto any = [&] {
+                return random() % 5 == 0 || last < 20 ? 0 : last - static_cast<std::uint32_t>(random() % 12);
+            };
+            const std::array<std::uint32_t, 3> values = {any(), any(), any()};
+            const bool makes = last < 20 || random() % 3 == 0;
+            std::vector<std::pair<std::uint32_t, RegisterFile::Use>> absent, expected;
+            RegisterFile::Absent found;
+            const std::uint32_t made = file.use_and_make(makes, found, values[0], values[1], values[2]);
+            for (std::uint32_t k = 0; k < found.count; ++k)
+                absent.emplace_back(found.values[k], file.store_once(found.values[k]));
+            for (const std::uint32_t value : values)
+                if (const auto where = plain.use(value); where != RegisterFile::Use::resident)
+                    expected.emplace_back(value, where);
+            ASSERT_EQ(absent, expected) << "of " << capacity << ", step " << i;
+            ASSERT_EQ(made, makes ? plain.make() : 0) << "of " << capacity << ", step " << i;
+            last = makes ? made : last;
+            reloads += static_cast<int>(absent.size());
+        }
+        EXPECT_EQ(reloads > 100, capacity != 0) << capacity;
     }
 }
 

@@ -58,7 +58,8 @@ TEST(Sampling, WarmingCountsWhatADetailedRunCounts) {
                           {"through", {"l1.write_policy=through", "l1.write_miss=around"}},
                           {"inclusive", {"l2.inclusion=inclusive"}},
                           {"exclusive", {"l2.inclusion=exclusive"}},
-
+                          {"broadcasts", {"core.broadcasts=register", "core.vector_registers=3"}},
+                          {"untouched by idle lanes", {"core.skip_idle=on", "core.gather=lane"}},
                           {"lanes", {"core.gather=lane", "lanes.scatter=on", "lanes.masked=on"}},
                           {"moves", {"core.scalar_moves=0.25", "core.vector_moves=0.5"}},
                           {"folding", {"core.address_folding=on", "core.memory_operands=1"}}};
