@@ -68,6 +68,8 @@ void BlockBuilder::take(Block& block) {
         block.times.swap(times_);
         block.addresses.swap(addresses_);
         block.classes.swap(classes_);
+        if (any_tile_ != 0)
+            block.tiles.swap(tiles_);
     } else {
         block.times.resize(n);
         block.addresses.resize(n);
@@ -77,12 +79,17 @@ void BlockBuilder::take(Block& block) {
             block.addresses[i] = addresses_[order[i]];
             block.classes[i] = classes_[order[i]];
         }
+        if (any_tile_ != 0)
+            for (const std::uint32_t i : order)
+                block.tiles.push_back(tiles_[i]);
     }
     block.table.swap(table_);
     times_.clear();
     addresses_.clear();
     classes_.clear();
     streams_.clear();
+    tiles_.clear();
+    any_tile_ = 0;
     table_.clear();
     numbers_.clear();
     std::fill(recent_.begin(), recent_.end(), Recent{});

@@ -20,6 +20,8 @@ public:
         times_.push_back(r.time);
         addresses_.push_back(r.address);
         classes_.push_back(r.what.part == Part::piece && !piece ? number(as_access(r.what)) : number(r.what));
+        tiles_.push_back(r.tile);
+        any_tile_ |= r.tile;
     }
     /// A window, or the end, before the references that follow.
     void mark(const Turn& turn) { turns_.push_back(turn); }
@@ -66,7 +68,8 @@ private:
     std::vector<Recent> recent_; // by hash
     std::unordered_map<Class, std::uint32_t, Hash> numbers_;
     std::vector<Class> table_;
-    std::vector<std::uint32_t> streams_, classes_;
+    std::vector<std::uint32_t> streams_, classes_, tiles_;
+    std::uint32_t any_tile_ = 0; // 0: all are of none
     std::vector<std::uint64_t> times_, addresses_;
     std::vector<Turn> turns_;
 };

@@ -12,13 +12,13 @@
 
 namespace traces {
 
-inline constexpr std::size_t columns = 5;     // table, classes, addresses, times, order
+inline constexpr std::size_t columns = 6;     // table, classes, addresses, times, order, tiles
 inline constexpr unsigned part_shift = 4;     // above the kind
 inline constexpr unsigned set_bits_shift = 8; // above the addresses' shift
 
-/// Above those: how references are coded, and whether a predicted block's order is known.
+/// Above those: how references are coded, and whether a predicted block's order is known, and its tiles.
 inline constexpr unsigned coding_shift = 16;
-inline constexpr std::uint32_t is_predicted = 1, is_ordered = 2;
+inline constexpr std::uint32_t is_predicted = 1, is_ordered = 2, has_tiles = 4;
 
 inline std::size_t header_bytes(std::size_t columns) {
     return 16 + 8 + columns * 8;

@@ -38,7 +38,7 @@ private:
     std::unique_ptr<ZSTD_CCtx_s, Free> context_;
     std::unique_ptr<ReferenceModel> model_; // where it is needed
     int level_;
-    std::string table_, classes_, addresses_, times_, order_; // columns
+    std::string table_, classes_, addresses_, times_, order_, tiles_; // columns
 };
 
 class Decoder {
@@ -48,7 +48,8 @@ public:
     /// How many names a trace has of each.
     struct Limits {
         std::size_t structures, phases, work;
-        std::uint64_t sites; // the last number; unbounded where they are addresses
+        std::uint64_t sites;     // the last number; unbounded where they are addresses
+        std::uint32_t tiles = 0; // of the picture
     };
     /// Replaces `block`, which keeps these limits. Throws Error where the bytes are no block of this version
     /// of the format, whatever they are: "`place`: ...".
@@ -66,9 +67,9 @@ private:
     void get_order(const std::string& place, Block& block);
 
     std::unique_ptr<ZSTD_DCtx_s, Free> context_;
-    std::unique_ptr<ReferenceModel> model_;                   // likewise
-    std::string table_, classes_, addresses_, times_, order_; // columns
-    std::vector<std::uint64_t> last_;                         // address, by class
+    std::unique_ptr<ReferenceModel> model_;                           // likewise
+    std::string table_, classes_, addresses_, times_, order_, tiles_; // columns
+    std::vector<std::uint64_t> last_;                                 // address, by class
 };
 
 } // namespace traces

@@ -19,7 +19,7 @@ bool Conversion::step() {
     each_in_order(
         block_,
         [&](const Segment& s, std::size_t i) {
-            convert({block_.times[i], block_.addresses[i], s.stream, block_.what(i)});
+            convert({block_.times[i], block_.addresses[i], s.stream, block_.what(i), block_.tile(i)});
         },
         [&](const Turn& turn) { output_.mark(turn); });
     return true;
@@ -35,6 +35,7 @@ void Conversion::convert(Reference r) {
     sites_ |= r.what.site != 0;
     names_ |= r.what.structure != 0 || r.what.phase != 0 || r.what.work != 0;
     parts_ |= r.what.part != Part::operation || r.what.detail != 0;
+    tiles_ |= r.tile != 0;
     const auto put = [&](Kind kind) {
         r.what.kind = kind;
         output_.write(r);
@@ -69,6 +70,7 @@ std::string Conversion::lost() const {
     field(names_, holds_.names, "structures, phases and work");
     field(parts_, holds_.parts, "operations and details");
     field(windows_, holds_.order, "the order of streams and its windows");
+    field(tiles_, holds_.tiles, "screen tiles");
     if (!fields.empty())
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
     for (std::size_t k = 0; k < kind_names.size(); ++k) {

@@ -25,8 +25,8 @@ private:
     Holds holds_;
     Block block_;
     std::uint64_t read_ = 0, written_ = 0;
-    bool streams_ = false, size_ = false, sites_ = false, names_ = false, parts_ = false,
-         windows_ = false; // met
+    bool streams_ = false, size_ = false, sites_ = false, names_ = false, parts_ = false, windows_ = false,
+         tiles_ = false; // met
     std::array<std::uint64_t, kind_names.size()> replaced_{}, left_out_{};
 };
 

@@ -3,6 +3,7 @@
 #include "traces/error.h"
 #include "traces/evictions.h"
 #include "traces/predicted.h"
+#include "traces/tile_runs.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -13,9 +14,15 @@
 namespace traces {
 namespace {
 
-/// Version 1 has no order.
+/// Version 1 has no order, those before 5 no tiles.
 std::size_t columns_of(std::uint32_t version) {
-    return version == 1 ? columns - 1 : columns;
+    return version == 1 ? columns - 2 : version < 5 ? columns - 1 : columns;
+}
+/// A predicted block may say its order, since version 5 also its tiles.
+bool known_coding(std::uint32_t coding, std::uint32_t version) {
+    return coding == 0 ||
+           ((coding & is_predicted) != 0 && coding <= (is_predicted | is_ordered | has_tiles) &&
+            (version >= 5 || (coding & has_tiles) == 0));
 }
 std::uint32_t largest(const std::uint8_t* bytes, std::size_t n) {
     std::uint8_t most = 0;
@@ -51,16 +58,19 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     const std::uint32_t shift = shifts - (coding << coding_shift) - (set_bits << set_bits_shift);
     const std::uint64_t first_time = fixed_at<std::uint64_t>(bytes.data() + 16);
     if (n == 0 || n > most_references || segments == 0 || segments > n || classes == 0 || classes > n ||
-        shift > 63 || set_bits > Evictions::most_set_bits ||
-        (coding != 0 && coding != is_predicted && coding != (is_predicted | is_ordered)))
+        shift > 63 || set_bits > Evictions::most_set_bits || !known_coding(coding, version))
         refuse(place, "a block claims impossible counts");
     const std::uint32_t id_bytes = bytes_for(classes);
-    const std::array<std::size_t, columns> most = {
-        (segments * 2 + classes * 7) * longest_varint, coding != 0 ? bytes.size() : n * id_bytes,
-        n * (longest_varint + 1), n * longest_varint, most_turns(n) * 4 * longest_varint};
+    const std::array<std::size_t, columns> most = {(segments * 2 + classes * 7) * longest_varint,
+                                                   coding != 0 ? bytes.size() : n * id_bytes,
+                                                   n * (longest_varint + 1),
+                                                   n * longest_varint,
+                                                   most_turns(n) * 4 * longest_varint,
+                                                   (n * 3 + 1) * longest_varint};
     std::size_t at = header, column = 0;
     order_.clear();
-    for (std::string* raw : {&table_, &classes_, &addresses_, &times_, &order_}) {
+    tiles_.clear();
+    for (std::string* raw : {&table_, &classes_, &addresses_, &times_, &order_, &tiles_}) {
         if (column == columns_of(version))
             break;
         const std::size_t raw_bytes = fixed_at<std::uint32_t>(bytes.data() + 24 + column * 8);
@@ -85,12 +95,17 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     get_table(limits, version, segments, classes, place, block);
     if (block.segments.back().end != n)
         refuse(place, "a block's table does not fit its counts");
-    if (coding == 0)
-        return get_columns(place, shift, set_bits, first_time, block);
+    if (coding == 0) {
+        get_columns(place, shift, set_bits, first_time, block);
+        if (const char* wrong = get_tiles(tiles_, limits.tiles, block))
+            refuse(place, wrong);
+        return;
+    }
     if (!model_)
         model_ = std::make_unique<ReferenceModel>();
     if (const char* wrong =
-            get_predicted(*model_, classes_, shift, set_bits, first_time, (coding & is_ordered) != 0, block))
+            get_predicted(*model_, classes_, shift, set_bits, first_time, (coding & is_ordered) != 0,
+                          (coding & has_tiles) != 0, limits.tiles, block))
         refuse(place, wrong);
 }
 
@@ -101,6 +116,7 @@ void Decoder::get_table(const Limits& limits, std::uint32_t version, std::size_t
     block.segments.clear();
     block.table.clear();
     block.order.clear();
+    block.tiles.clear();
     std::uint64_t stream = 0, site = 0;
     std::size_t end = 0;
     for (std::size_t i = 0; i < segments; ++i) {

@@ -54,20 +54,22 @@ std::string to_json(const Description& d) {
     json regions = json::array();
     for (const Description::Region& r : d.regions)
         regions.push_back(json::array({r.begin, r.end, r.structure, r.lasts}));
-    const json out = {{"program", d.program},
-                      {"level", d.level},
-                      {"time", d.time},
-                      {"line_bytes", d.line_bytes},
-                      {"sites", d.site_addresses ? "addresses" : "names"},
-                      {"sample", d.sample},
-                      {"window", d.window},
-                      {"filters", d.filters},
-                      {"structures", d.structures},
-                      {"phases", d.phases},
-                      {"work", d.work},
-                      {"streams", d.streams},
-                      {"regions", std::move(regions)},
-                      {"configuration", d.configuration}};
+    json out = {{"program", d.program},
+                {"level", d.level},
+                {"time", d.time},
+                {"line_bytes", d.line_bytes},
+                {"sites", d.site_addresses ? "addresses" : "names"},
+                {"sample", d.sample},
+                {"window", d.window},
+                {"filters", d.filters},
+                {"structures", d.structures},
+                {"phases", d.phases},
+                {"work", d.work},
+                {"streams", d.streams},
+                {"regions", std::move(regions)},
+                {"configuration", d.configuration}};
+    if (d.picture != Picture{})
+        out["picture"] = {d.picture.width, d.picture.height, d.picture.side};
     return out.dump(1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -91,10 +93,19 @@ Description description_from_json(const std::string& text, const std::string& pl
         if (in.contains("regions"))                      // likewise
             for (const json& r : in.at("regions"))
                 d.regions.push_back({r.at(0), r.at(1), r.at(2), r.at(3)});
+        if (in.contains("picture")) { // since version 5
+            const json& p = in.at("picture");
+            d.picture = {p.at(0), p.at(1), p.at(2)};
+        }
     } catch (const json::exception& e) {
         throw Error(fmt::format("{}: the description is not of this format ({}); record the trace again",
                                 place, e.what()));
     }
+    const Picture& p = d.picture;
+    if (p != Picture{} && (p.width == 0 || p.height == 0 || p.side == 0 || p.width > most_side ||
+                           p.height > most_side || p.side > most_side))
+        throw Error(
+            fmt::format("{}: the description's picture has impossible sides; record the trace again", place));
     std::uint64_t end = 0;
     for (const Description::Region& r : d.regions) {
         if (r.begin < end || r.end <= r.begin || r.structure >= d.structures.size())

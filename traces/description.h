@@ -7,6 +7,32 @@
 
 namespace traces {
 
+/// What was rendered while references were recorded: pixels, in screen tiles of `side` x `side`, row by row
+/// from the top, the first of which has number 1 (Reference::tile).
+struct Picture {
+    std::uint32_t width = 0, height = 0, side = 0; // pixels; 0: there was none
+    std::uint32_t columns() const { return (width + side - 1) / side; }
+    std::uint32_t rows() const { return (height + side - 1) / side; }
+    /// The number of the last tile, 0 without a picture.
+    std::uint32_t tiles() const { return side == 0 ? 0 : columns() * rows(); }
+    std::uint32_t tile_of(std::uint32_t x, std::uint32_t y) const {
+        return y / side * columns() + x / side + 1;
+    }
+    /// Of a pixel's number, row by row; 0 where there is no such pixel.
+    std::uint32_t tile_of(std::int64_t pixel) const {
+        const std::int64_t pixels = std::int64_t{width} * height;
+        return side == 0 || pixel < 0 || pixel >= pixels ? 0
+                                                         : tile_of(static_cast<std::uint32_t>(pixel % width),
+                                                                   static_cast<std::uint32_t>(pixel / width));
+    }
+    /// Its upper left pixel.
+    std::uint32_t left(std::uint32_t tile) const { return (tile - 1) % columns() * side; }
+    std::uint32_t top(std::uint32_t tile) const { return (tile - 1) / columns() * side; }
+    friend bool operator==(const Picture&, const Picture&) = default;
+};
+/// The longest side of a picture, in pixels.
+inline constexpr std::uint32_t most_side = 1U << 16U;
+
 struct Description {
     std::string program; // that made it, with its version
     std::string level;   // where references were seen: core, l1, l2, ..., dram; empty: unknown
@@ -29,6 +55,7 @@ struct Description {
         friend bool operator==(const Region&, const Region&) = default;
     };
     std::vector<Region> regions;
+    Picture picture; // of whose tiles references are
     /// Of some files they grow while these are read.
     std::vector<std::string> structures = {"unknown"}, phases = {"unknown"}, work = {"unknown"};
     std::vector<std::string> streams; // names, as far as there are any

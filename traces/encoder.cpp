@@ -2,6 +2,7 @@
 #include "traces/codec.h"
 #include "traces/evictions.h"
 #include "traces/predicted.h"
+#include "traces/tile_runs.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -168,6 +169,8 @@ void Encoder::put_columns(const Block& block, const std::vector<std::uint32_t>& 
     times_.resize(static_cast<std::size_t>(to - times_.data()));
     order_.clear();
     put_order(block, order_);
+    tiles_.clear();
+    put_tiles(block, tiles_);
 }
 
 void Encoder::encode(const Block& block, std::string& out) {
@@ -180,11 +183,12 @@ void Encoder::encode(const Block& block, std::string& out) {
     table_.clear();
     put_table(block, order, table_);
     if (model_) {
-        coding = is_predicted | (block.order.empty() ? 0 : is_ordered);
+        coding =
+            is_predicted | (block.order.empty() ? 0 : is_ordered) | (block.tiles.empty() ? 0 : has_tiles);
         std::vector<Class> table;
         for (const std::uint32_t number : order)
             table.push_back(block.table[number]);
-        for (std::string* column : {&classes_, &addresses_, &times_, &order_})
+        for (std::string* column : {&classes_, &addresses_, &times_, &order_, &tiles_})
             column->clear();
         put_predicted(*model_, block, rank, table, shift, set_bits, classes_);
     } else {
@@ -200,7 +204,7 @@ void Encoder::encode(const Block& block, std::string& out) {
     append_fixed(out, block.times.front());
     out.resize(begin + header_bytes(columns));
     std::string sizes;
-    for (const std::string* column : {&table_, &classes_, &addresses_, &times_, &order_}) {
+    for (const std::string* column : {&table_, &classes_, &addresses_, &times_, &order_, &tiles_}) {
         const std::size_t before = out.size();
         if (coding == 0 || column == &table_)
             compress(*column, set_bits == 0 ? level_ : std::max(level_, level_for_caches), out);

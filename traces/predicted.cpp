@@ -41,13 +41,13 @@ public:
 
 private:
     Coming coming(std::size_t i) const {
-        return {rank_[block_.classes[i]], block_.addresses[i] >> shift_, block_.times[i]};
+        return {rank_[block_.classes[i]], block_.addresses[i] >> shift_, block_.times[i], block_.tile(i)};
     }
     /// The place of a line that leaves at i, if it makes room for what comes next, else 0.
     std::uint64_t room(std::size_t i, std::size_t end) const {
         if (!pairs_ || i + 1 == end || !RecentLines::leaves(block_.what(i)) ||
             !RecentLines::comes(block_.what(i + 1)) || block_.what(i + 1).part == Part::piece ||
-            block_.times[i] != block_.times[i + 1])
+            block_.times[i] != block_.times[i + 1] || block_.tile(i) != block_.tile(i + 1))
             return 0;
         return model_.place_of(block_.addresses[i] >> shift_, block_.addresses[i + 1] >> shift_);
     }
@@ -83,8 +83,9 @@ private:
 
 class Get {
 public:
-    Get(ReferenceModel& model, const std::string& bytes, unsigned shift, Block& block)
-        : model_(model), block_(block), shift_(shift), coder_(bytes) {}
+    Get(ReferenceModel& model, const std::string& bytes, unsigned shift, std::uint32_t most_tile,
+        Block& block)
+        : model_(model), block_(block), shift_(shift), most_tile_(most_tile), coder_(bytes) {}
 
     const char* all() {
         for (const Segment& s : block_.segments)
@@ -108,7 +109,7 @@ public:
             } else if (step != Step::reference && step != Step::pair) {
                 return "a block has steps that there are none of";
             } else if (!reference(step == Step::pair)) {
-                return "a block's references are none of its classes, lines or streams";
+                return "a block's references are none of its classes, lines, tiles or streams";
             }
         }
         for (std::size_t s = 0; s < next_.size(); ++s)
@@ -122,6 +123,8 @@ private:
         block_.classes[i] = r.what;
         block_.addresses[i] = r.line << shift_;
         block_.times[i] = r.time;
+        if (!block_.tiles.empty())
+            block_.tiles[i] = r.tile;
     }
     bool reference(bool pair) {
         const Segment& s = block_.segments[segment_];
@@ -130,7 +133,7 @@ private:
         if (s.end - i < count)
             return false;
         Coming r, left;
-        if (!model_.come(coder_, r, pair, i == s.begin))
+        if (!model_.come(coder_, r, pair, i == s.begin) || r.tile > most_tile_)
             return false;
         std::uint64_t place = 0;
         if (pair) {
@@ -150,6 +153,7 @@ private:
     ReferenceModel& model_;
     Block& block_;
     unsigned shift_;
+    std::uint32_t most_tile_;
     BitReader coder_;
     std::vector<std::size_t> next_; // by segment
     std::uint32_t segment_ = 0;
@@ -159,19 +163,22 @@ private:
 
 void put_predicted(ReferenceModel& model, const Block& block, const std::vector<std::uint32_t>& rank,
                    const std::vector<Class>& table, unsigned shift, unsigned set_bits, std::string& out) {
-    model.begin(table, block.size(), block.segments.size(), set_bits, block.times.front());
+    model.begin(table, block.size(), block.segments.size(), set_bits, block.times.front(),
+                !block.tiles.empty());
     Put(model, block, rank, shift, set_bits, out)
         .all(block.order.empty() ? stream_by_stream(block) : block.order);
 }
 
 const char* get_predicted(ReferenceModel& model, const std::string& bytes, unsigned shift, unsigned set_bits,
-                          std::uint64_t first_time, bool ordered, Block& block) {
+                          std::uint64_t first_time, bool ordered, bool tiled, std::uint32_t most_tile,
+                          Block& block) {
     const std::size_t n = block.segments.back().end;
     block.times.resize(n);
     block.addresses.resize(n);
     block.classes.resize(n);
-    model.begin(block.table, n, block.segments.size(), set_bits, first_time);
-    const char* const wrong = Get(model, bytes, shift, block).all();
+    block.tiles.resize(tiled ? n : 0);
+    model.begin(block.table, n, block.segments.size(), set_bits, first_time, tiled);
+    const char* const wrong = Get(model, bytes, shift, most_tile, block).all();
     if (!ordered)
         block.order.clear();
     return wrong;

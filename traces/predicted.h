@@ -13,9 +13,10 @@ namespace traces {
 void put_predicted(ReferenceModel& model, const Block& block, const std::vector<std::uint32_t>& rank,
                    const std::vector<Class>& table, unsigned shift, unsigned set_bits, std::string& out);
 
-/// Fills a block whose segments and table are there. `ordered`: its order is known. Returns what is wrong
-/// with the bytes; null: nothing.
+/// Fills a block whose segments and table are there. `ordered`: its order is known; `tiled`: so are tiles, of
+/// numbers up to `most_tile`. Returns what is wrong with the bytes; null: nothing.
 const char* get_predicted(ReferenceModel& model, const std::string& bytes, unsigned shift, unsigned set_bits,
-                          std::uint64_t first_time, bool ordered, Block& block);
+                          std::uint64_t first_time, bool ordered, bool tiled, std::uint32_t most_tile,
+                          Block& block);
 
 } // namespace traces

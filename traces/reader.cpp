@@ -93,7 +93,8 @@ bool Reader::next(Block& block) {
             decoder_.decode(bytes_,
                             {description_.structures.size(), description_.phases.size(),
                              description_.work.size(),
-                             description_.site_addresses ? ~std::uint64_t{0} : description_.sites.size()},
+                             description_.site_addresses ? ~std::uint64_t{0} : description_.sites.size(),
+                             description_.picture.tiles()},
                             version_, fmt::format("{}: byte {}", source_->name(), begin), block);
             const auto [first, last] = std::minmax_element(block.times.begin(), block.times.end());
             seen_.blocks.push_back({begin, block.size(), *first, *last});

@@ -59,6 +59,7 @@ struct Reference {
     std::uint64_t time = 0, address = 0;
     std::uint32_t stream = 0;
     Class what{};
+    std::uint32_t tile = 0; // of the picture it is for (Picture in description.h); 0: none
 };
 
 /// The references [begin, end) of a block are of one stream, in its order.
@@ -86,10 +87,12 @@ struct Block {
     std::vector<std::uint64_t> times, addresses;
     std::vector<std::uint32_t> classes; // numbers in `table`
     std::vector<Class> table;
-    std::vector<Turn> order; // empty: only what times and streams say is known
+    std::vector<Turn> order;          // empty: only what times and streams say is known
+    std::vector<std::uint32_t> tiles; // of each reference, as Reference::tile; empty: all are of none
 
     std::size_t size() const { return addresses.size(); }
     const Class& what(std::size_t i) const { return table[classes[i]]; }
+    std::uint32_t tile(std::size_t i) const { return tiles.empty() ? 0 : tiles[i]; }
     void clear() {
         segments.clear();
         times.clear();
@@ -97,6 +100,7 @@ struct Block {
         classes.clear();
         table.clear();
         order.clear();
+        tiles.clear();
     }
 };
 

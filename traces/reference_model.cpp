@@ -13,7 +13,7 @@ unsigned line_bits_for(std::size_t references) {
 } // namespace
 
 void ReferenceModel::begin(const std::vector<Class>& table, std::size_t references, std::size_t streams,
-                           unsigned set_bits, std::uint64_t first_time) {
+                           unsigned set_bits, std::uint64_t first_time, bool tiled) {
     const unsigned line_bits = line_bits_for(references);
     for (Predictor<5>* p : {&step_, &what_, &head_, &time_})
         p->begin(line_bits);
@@ -21,6 +21,11 @@ void ReferenceModel::begin(const std::vector<Class>& table, std::size_t referenc
         p->begin(line_bits);
     for (Predictor<3>* p : {&stream_number_, &left_what_})
         p->begin(line_bits);
+    tiled_ = tiled;
+    if (tiled) {
+        which_tile_.begin(line_bits);
+        far_tile_.begin(line_bits);
+    }
     table_ = &table;
     place_ = without_parts(table.size(), [&](std::uint32_t c) -> const Class& { return table[c]; });
     class_bits_ = std::max(1U, static_cast<unsigned>(std::bit_width(table.size() - 1)));

@@ -6,6 +6,7 @@
 
 #include "traces/predictor.h"
 #include "traces/recent_lines.h"
+#include "traces/recent_tiles.h"
 #include "traces/reference.h"
 #include "traces/varint.h"
 
@@ -20,15 +21,16 @@ public:
     /// (Turn); references of another stream; nothing more.
     enum class Step : std::uint32_t { reference, pair, window, end, stream, done };
     static constexpr std::uint32_t steps = 6;
-    /// A reference: its class, its line (address without the bits that none has), its time.
+    /// A reference: its class, its line (address without the bits that none has), its time, its tile.
     struct Coming {
         std::uint32_t what = 0;
         std::uint64_t line = 0, time = 0;
+        std::uint32_t tile = 0;
     };
 
-    /// A block begins, with this table of classes.
+    /// A block begins, with this table of classes. `tiled`: it is known for which tile references are.
     void begin(const std::vector<Class>& table, std::size_t references, std::size_t streams,
-               unsigned set_bits, std::uint64_t first_time);
+               unsigned set_bits, std::uint64_t first_time, bool tiled);
 
     template <class Coder> Step step(Coder& coder, Step next) {
         const Stream& s = streams_[stream_];
@@ -85,6 +87,8 @@ public:
             time(coder, r, near, p);
         else
             r.time = s.time;
+        if (tiled_)
+            tile(coder, r, near);
         near.head->time = s.time = r.time;
         s.c3 = s.c2;
         s.c2 = s.c1;
@@ -105,6 +109,7 @@ public:
             return false;
         left.line = gone.line;
         left.time = came.time;
+        left.tile = came.tile;
         left.what =
             left_what_.symbol(coder,
                               {context(gone.what, came.what),
@@ -126,11 +131,13 @@ private:
     struct Stream {
         std::uint32_t c1 = 0, c2 = 0, c3 = 0; // the classes of the last ones
         std::uint64_t time = 0, line = 0;
+        RecentTiles tiles;
+        std::uint32_t last_place = 0; // among them
     };
     /// Where somebody walks through a structure.
     struct Head {
         std::uint64_t line = 0, time = 0, step = 0;
-        std::uint32_t what = 0;
+        std::uint32_t what = 0, tile = 0;
     };
     struct Heads {
         static constexpr std::uint32_t most = 15;
@@ -145,6 +152,7 @@ private:
     struct Near {
         Head* head;
         std::uint64_t time; // the head's
+        std::uint32_t tile; // likewise
         int step;           // -3 to 3; 4: it follows none
         bool next;          // it is the next one to the stream's last
     };
@@ -181,6 +189,7 @@ private:
                              0, 4, place);
         last.place = heads.last_place = place;
         std::uint64_t time = 0;
+        std::uint32_t tile = 0;
         int q = 4;
         if (place != 0 && place <= heads.count) {
             const Head h = heads.all[place - 1];
@@ -191,6 +200,7 @@ private:
                              0, zigzag(line - h.line)));
             line = h.line + step;
             time = h.time;
+            tile = h.tile;
             q = static_cast<int>(limited(step, -3, 3)) - 3;
             std::copy_backward(heads.all.begin(), heads.all.begin() + place - 1, heads.all.begin() + place);
             heads.all[0] = {line, 0, step, what};
@@ -207,7 +217,28 @@ private:
         }
         last.step = line - last.line;
         last.line = line;
-        return {heads.all.data(), time, q, line == s.line + 1};
+        return {heads.all.data(), time, tile, q, line == s.line + 1};
+    }
+
+    /// For which tile: mostly one of the stream's last ones.
+    template <class Coder> void tile(Coder& coder, Coming& r, const Near& near) {
+        Stream& s = streams_[stream_];
+        const std::uint32_t of_head = near.step == 4 ? RecentTiles::most + 1 : s.tiles.place_of(near.tile);
+        const std::uint64_t later = limited(r.time - s.time, 0, 20);
+        const std::uint32_t place = which_tile_.symbol(
+            coder,
+            {context(s.last_place), context(r.what, of_head),
+             context(of_head, s.last_place, std::min<std::uint64_t>(later, 3)), context(r.what, s.c1, later),
+             context((*table_)[r.what].structure, of_head, later)},
+            in_window_ == 0 ? 1 : 0, 4, s.tiles.place_of(r.tile));
+        r.tile = place != 0
+                     ? s.tiles.at(place)
+                     : s.tiles.last() + static_cast<std::uint32_t>(unzigzag(far_tile_.number(
+                                            coder, {context(0), context(s.tiles.last()), context(r.what)}, 0,
+                                            zigzag(std::uint64_t{r.tile} - s.tiles.last()))));
+        s.tiles.use(r.tile, place);
+        s.last_place = place;
+        near.head->tile = r.tile;
     }
 
     template <class Coder> void time(Coder& coder, Coming& r, const Near& near, std::uint32_t pair) {
@@ -224,12 +255,13 @@ private:
                                                 static_cast<std::uint32_t>(how), zigzag(r.time - s.time)));
     }
 
-    Predictor<5> step_, what_, head_, time_;
+    Predictor<5> step_, what_, head_, time_, which_tile_;
     Predictor<4> turn_, near_, far_, leaving_;
-    Predictor<3> stream_number_, left_what_;
+    Predictor<3> stream_number_, left_what_, far_tile_;
 
     const std::vector<Class>* table_ = nullptr;
     std::vector<std::uint32_t> place_; // by class: the first that differs in its part alone
+    bool tiled_ = false;
     unsigned class_bits_ = 0, stream_bits_ = 0, set_bits_ = 0;
     std::vector<Stream> streams_;
     std::unordered_map<std::uint64_t, Heads> heads_; // by stream and structure

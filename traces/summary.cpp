@@ -22,6 +22,11 @@ void Summary::add(const Block& block) {
         first_ = std::min(first_, t);
         last_ = std::max(last_, t);
     }
+    for (std::size_t i = 0; i < block.tiles.size(); ++i) {
+        for_tiles_ += block.tiles[i] != 0 ? 1 : 0;
+        if (block.tiles[i] != 0 && (i == 0 || block.tiles[i] != block.tiles[i - 1]))
+            tiles_.insert(block.tiles[i]);
+    }
     std::vector<std::uint64_t> count(block.table.size(), 0);
     for (const std::uint32_t c : block.classes)
         ++count[c];
@@ -69,6 +74,10 @@ std::string Summary::text(const Description& d, const File& file) const {
         out += fmt::format(", only {}", d.filters);
     if (references_ != 0)
         out += fmt::format("\ntimes {} to {} ({}), {} bytes referenced", first_, last_, d.time, bytes_);
+    if (const Picture& p = d.picture; p.tiles() != 0)
+        out += fmt::format(
+            "\n{} references are for {} of {} screen tiles of {} x {} pixels, of a picture of {} x {}",
+            for_tiles_, tiles_.size(), p.tiles(), p.side, p.side, p.width, p.height);
     out += '\n';
     for (const Table& t : tables(d)) {
         out += fmt::format("\n{:<40} {:>15} {:>7}\n", t.name, "references", "%");
@@ -98,6 +107,10 @@ std::string Summary::json(const Description& d, const File& file) const {
         out["bytes"] = file.bytes;
         out["bytes_per_reference"] = each(file.bytes, references_);
     }
+    if (const Picture& p = d.picture; p.tiles() != 0)
+        out["screen_tiles"] = {
+            {"width", p.width},   {"height", p.height},          {"side", p.side},
+            {"tiles", p.tiles()}, {"referenced", tiles_.size()}, {"references", for_tiles_}};
     for (const Table& t : tables(d)) {
         nlohmann::ordered_json& rows = out[t.name] = nlohmann::ordered_json::array();
         for (const Row& row : t.rows)

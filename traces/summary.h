@@ -5,6 +5,7 @@
 #include "traces/reference.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ private:
     std::vector<Table> tables(const Description& description) const;
 
     std::uint64_t references_ = 0, bytes_ = 0, first_ = ~std::uint64_t{0}, last_ = 0;
+    std::uint64_t for_tiles_ = 0; // references
+    std::set<std::uint32_t> tiles_;
     Counts streams_, structures_, phases_, work_, kinds_;
 };
 

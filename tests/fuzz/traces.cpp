@@ -24,7 +24,7 @@ std::string own_seed(const char* level) {
     Writer writer(memory_sink(out), description);
     writer.add_sites({"a:1", "b:2", "c:3"});
     BlockBuilder builder;
-    for (const Reference& r : test::mixed_references(40, 1, 3))
+    for (const Reference& r : test::with_tiles(test::mixed_references(40, 1, 3)))
         builder.add(r);
     Block block;
     builder.take(block);
@@ -56,6 +56,9 @@ void check(const Block& block, const Description& d, bool own) {
     require(at == block.size());
     require(std::all_of(block.classes.begin(), block.classes.end(),
                         [&](std::uint32_t c) { return c < block.table.size(); }));
+    require(block.tiles.empty() || block.tiles.size() == block.size());
+    require(std::all_of(block.tiles.begin(), block.tiles.end(),
+                        [&](std::uint32_t tile) { return tile <= d.picture.tiles(); }));
     std::vector<std::size_t> taken(block.segments.size(), 0);
     for (const Turn& t : block.order)
         if (t.what == Turn::What::references)

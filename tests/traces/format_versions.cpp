@@ -1,6 +1,10 @@
 // Files of earlier versions are read as they were.
 #include "tests/traces/samples.h"
+#include "traces/chunk.h"
+#include "traces/codec.h"
+#include "traces/error.h"
 #include "traces/reader.h"
+#include "traces/varint.h"
 
 #include <gtest/gtest.h>
 
@@ -121,6 +125,30 @@ TEST(TraceFormat, FilesOfVersionThreeAreRead) {
     EXPECT_FALSE(reader.next(block));
     EXPECT_TRUE(reader.complete()) << reader.note();
     EXPECT_EQ(reader.description().sites, (std::vector<std::string>{"a:1", "b:2", "0"}));
+}
+
+/// Blocks of version 4 are those of version 5 without the last column, of tiles.
+TEST(TraceFormat, BlocksOfVersionFourAreRead) {
+    for (const Coding coding : {Coding::columns, Coding::predicted}) {
+        BlockBuilder builder;
+        for (const Reference& r : test::mixed_references(500, 4))
+            builder.add(r);
+        Block block, back;
+        builder.take(block);
+        std::string bytes;
+        Encoder(coding).encode(block, bytes);
+        constexpr std::size_t sizes = 24 + 5 * 8; // of the last column
+        const auto stored = fixed_at<std::uint32_t>(bytes.data() + sizes + 4);
+        ASSERT_EQ(fixed_at<std::uint32_t>(bytes.data() + sizes), 0U);
+        bytes.resize(bytes.size() - stored);
+        bytes.erase(sizes, 8);
+        Decoder().decode(bytes, {3, 2, 3, 9}, 4, "old", back);
+        EXPECT_EQ(back.addresses, block.addresses);
+        EXPECT_EQ(back.times, block.times);
+        EXPECT_EQ(back.order, block.order);
+        EXPECT_TRUE(back.tiles.empty());
+        EXPECT_THROW(Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "new", back), Error);
+    }
 }
 
 } // namespace

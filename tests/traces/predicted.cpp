@@ -45,6 +45,7 @@ void expect_same(const Block& got, const Block& want) {
     EXPECT_EQ(got.addresses, want.addresses);
     EXPECT_EQ(got.times, want.times);
     EXPECT_EQ(got.order, want.order);
+    EXPECT_EQ(got.tiles, want.tiles);
     ASSERT_EQ(got.segments.size(), want.segments.size());
     for (std::size_t s = 0; s < got.segments.size(); ++s) {
         EXPECT_EQ(got.segments[s].stream, want.segments[s].stream);

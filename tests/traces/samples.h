@@ -22,6 +22,7 @@ inline Description small_description() {
     d.streams = {"thread 0", "thread 1"};
     d.window = 200;
     d.regions = {{0, 65536, 1, false}, {65536, 131072, 2, true}};
+    d.picture = {60, 44, 8}; // 8 x 6 tiles
     d.configuration = "chip.tiles = 1\n# \"quoted\"\n";
     return d;
 }
@@ -51,6 +52,13 @@ inline std::vector<Reference> mixed_references(std::size_t count, std::uint32_t 
         out.push_back(r);
     }
     return out;
+}
+
+/// Each stream works some references long for a tile of small_description(), and now and then for none.
+inline std::vector<Reference> with_tiles(std::vector<Reference> all, std::size_t length = 9) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i].tile = static_cast<std::uint32_t>((i / length * 31 + all[i].stream % 3 * 7) % 49);
+    return all;
 }
 
 /// What two caches of 32 sets pass on: a line that comes, and mostly one of the oldest of its set that makes
@@ -94,7 +102,8 @@ inline void hide_evictions(Block& block) {
 }
 
 inline bool equal(const Reference& a, const Reference& b) {
-    return a.time == b.time && a.address == b.address && a.stream == b.stream && a.what == b.what;
+    return a.time == b.time && a.address == b.address && a.stream == b.stream && a.what == b.what &&
+           a.tile == b.tile;
 }
 
 /// Of a block, in its own order.
@@ -102,7 +111,7 @@ inline std::vector<Reference> references_of(const Block& block) {
     std::vector<Reference> out;
     for (const Segment& s : block.segments)
         for (std::size_t i = s.begin; i < s.end; ++i)
-            out.push_back({block.times[i], block.addresses[i], s.stream, block.what(i)});
+            out.push_back({block.times[i], block.addresses[i], s.stream, block.what(i), block.tile(i)});
     return out;
 }
 

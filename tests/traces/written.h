@@ -28,7 +28,8 @@ inline Written write_sample(std::size_t blocks, std::size_t references) {
     for (std::size_t b = 0; b < blocks; ++b) {
         if (b == 1)
             writer.add_sites({"f:6", "g:7", "h:8", "i:9"});
-        for (const Reference& r : mixed_references(references, static_cast<std::uint32_t>(b), b == 0 ? 5 : 9))
+        for (const Reference& r :
+             with_tiles(mixed_references(references, static_cast<std::uint32_t>(b), b == 0 ? 5 : 9)))
             builder.add(r);
         builder.take(block);
         writer.write(block);

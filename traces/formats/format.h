@@ -53,6 +53,7 @@ struct Holds {
     bool parts = false; // of which operation a reference is, and the details of its class
     bool order =
         false; // in which all streams' references were made, and the windows in which streams went on
+    bool tiles = false; // of the picture
     bool holds(Kind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 

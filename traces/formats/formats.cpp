@@ -20,12 +20,12 @@ constexpr std::array<bool, kind_names.size()> all =
                                               lackey = {true, true, true, true}, plain = {true, true},
                                               requests = {true}, drmemtrace = {true, true, false, true, true};
 
-// time, streams, size, sites, names, kinds, parts, order
+// time, streams, size, sites, names, kinds, parts, order, tiles
 constexpr Format table[] = {
     {"rzt",
      "this project's own, by blocks",
      ".rzt",
-     {true, true, true, true, true, all, true, true},
+     {true, true, true, true, true, all, true, true, true},
      read_own,
      write_own},
     {"din",
