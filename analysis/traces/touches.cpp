@@ -13,17 +13,19 @@ Touches::Touches(unsigned line_shift, Kinds kinds, Grouping grouping)
     : shift_(line_shift), kinds_(kinds), grouping_(std::move(grouping)) {
     std::erase(grouping_.by, By::all);
     for (const By by : grouping_.by) {
-        static_key_ = static_key_ && by != By::thread && by != By::window;
+        static_key_ = static_key_ && by != By::thread && by != By::window && by != By::tile;
         by_window_ = by_window_ || by == By::window;
     }
 }
 
-std::uint32_t Touches::group_of(Key key, std::uint32_t stream, std::uint64_t window) {
+std::uint32_t Touches::group_of(Key key, std::uint32_t stream, std::uint64_t window, std::uint32_t tile) {
     for (std::size_t i = 0; i < key.size(); ++i)
         if (grouping_.by[i] == By::thread)
             key[i] = stream;
         else if (grouping_.by[i] == By::window)
             key[i] = window;
+        else if (grouping_.by[i] == By::tile)
+            key[i] = tile;
     const auto [found, fresh] = groups_.try_emplace(std::move(key), static_cast<std::uint32_t>(keys_.size()));
     if (fresh)
         keys_.push_back(found->first);
@@ -52,7 +54,7 @@ void Touches::classify(const traces::Block& block) {
                           : by == By::site    ? c.site
                                               : 0);
         if (static_key_) {
-            counted.group = group_of(key, 0, 0);
+            counted.group = group_of(key, 0, 0, 0);
             continue;
         }
         const auto [found, fresh] = numbers.try_emplace(key, static_cast<std::uint32_t>(combined_.size()));
@@ -93,6 +95,11 @@ std::vector<Table::Cell> Touches::cells(std::size_t group, const traces::Descrip
             break;
         case By::window:
             out.emplace_back(key * grouping_.window);
+            break;
+        case By::tile: // by its upper left pixel
+            out.emplace_back(key == 0 ? "none"
+                                      : fmt::format("{},{}", d.picture.left(static_cast<std::uint32_t>(key)),
+                                                    d.picture.top(static_cast<std::uint32_t>(key))));
             break;
         case By::all:
             break;

@@ -17,16 +17,18 @@
 namespace analysis {
 
 /// What references are told apart by.
-enum class By { all, structure, phase, work, kind, thread, site, window };
-inline constexpr std::array<const char*, 8> by_names = {"all",  "structure", "phase", "work",
-                                                        "kind", "thread",    "site",  "window"};
+enum class By { all, structure, phase, work, kind, thread, site, window, tile };
+inline constexpr std::array<const char*, 9> by_names = {"all",    "structure", "phase",  "work", "kind",
+                                                        "thread", "site",      "window", "tile"};
 
 /// By several at once: each combination that is met is a group. None, or `all`: all are one.
 struct Grouping {
     Grouping(By what = By::all) : by{what} {} // NOLINT: one is a grouping
-    Grouping(std::vector<By> what, std::uint64_t length) : by(std::move(what)), window(length) {}
+    Grouping(std::vector<By> what, std::uint64_t length, std::uint32_t tile = 0)
+        : by(std::move(what)), window(length), only_tile(tile) {}
     std::vector<By> by;
-    std::uint64_t window = 1; // units of the trace's time, of By::window
+    std::uint64_t window = 1;    // units of the trace's time, of By::window
+    std::uint32_t only_tile = 0; // references for other tiles of the picture are passed over; 0: none are
 };
 
 /// A reference, as a trace has it.
@@ -36,7 +38,8 @@ struct Access {
     std::uint32_t group;
     std::uint32_t stream;
     std::uint64_t time;
-    bool writes; // or modifies, or writes back or through
+    bool writes;            // or modifies, or writes back or through
+    std::uint32_t tile = 0; // traces::Reference::tile
 };
 
 /// What it touches of a line.
@@ -47,6 +50,7 @@ struct Touch {
     std::uint32_t stream;
     std::uint64_t time;
     bool writes;
+    std::uint32_t tile = 0;
 };
 
 class Touches {
@@ -63,13 +67,14 @@ public:
         classify(block);
         in_time_.each(block, [&](const traces::Segment& s, std::size_t i) {
             const Counted& c = counted_[block.classes[i]];
-            if (!c.counts)
+            const std::uint32_t tile = block.tile(i);
+            if (!c.counts || (grouping_.only_tile != 0 && tile != grouping_.only_tile))
                 return;
             const std::uint64_t address = block.addresses[i], time = block.times[i];
             const std::uint64_t more = std::min(c.more, ~std::uint64_t{0} - address);
             const auto segment = static_cast<std::size_t>(&s - block.segments.data());
-            visit(Access{address, more, static_key_ ? c.group : group_of(segment, s.stream, c, time),
-                         s.stream, time, c.writes});
+            visit(Access{address, more, static_key_ ? c.group : group_of(segment, s.stream, c, time, tile),
+                         s.stream, time, c.writes, tile});
         });
     }
     /// visit(Touch) for each line of each reference.
@@ -77,7 +82,8 @@ public:
         const std::uint64_t within = (std::uint64_t{1} << shift_) - 1;
         each_access(block, [&](const Access& a) {
             const std::uint64_t last = a.address + a.more;
-            Touch touch{a.address >> shift_, a.address & within, within, a.group, a.stream, a.time, a.writes};
+            Touch touch{
+                a.address >> shift_, a.address & within, within, a.group, a.stream, a.time, a.writes, a.tile};
             for (; touch.line != last >> shift_; ++touch.line, touch.low = 0)
                 visit(touch);
             touch.high = last & within;
@@ -104,17 +110,18 @@ private:
     };
     struct Recent { // group of a stream and of what classes say
         std::uint64_t window = 0;
-        std::uint32_t group = none;
+        std::uint32_t tile = 0, group = none;
     };
     void classify(const traces::Block& block);
-    std::uint32_t group_of(std::size_t segment, std::uint32_t stream, const Counted& c, std::uint64_t time) {
+    std::uint32_t group_of(std::size_t segment, std::uint32_t stream, const Counted& c, std::uint64_t time,
+                           std::uint32_t tile) {
         const std::uint64_t window = by_window_ ? time / grouping_.window : 0;
         Recent& recent = recent_[segment * combined_.size() + c.combined];
-        if (recent.group == none || recent.window != window)
-            recent = {window, group_of(combined_[c.combined], stream, window)};
+        if (recent.group == none || recent.window != window || recent.tile != tile)
+            recent = {window, tile, group_of(combined_[c.combined], stream, window, tile)};
         return recent.group;
     }
-    std::uint32_t group_of(Key key, std::uint32_t stream, std::uint64_t window);
+    std::uint32_t group_of(Key key, std::uint32_t stream, std::uint64_t window, std::uint32_t tile);
 
     unsigned shift_;
     Kinds kinds_;

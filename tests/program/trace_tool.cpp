@@ -273,7 +273,15 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"picture a.din -o no/a.png", "no/a.png: cannot be written"},
              {"report - --from din -o a.html < a.din", "write it into a file first"},
              {"report a.din -o a.html --sizes 1KiB,2KiB", "give one"},
-             {"objects a.din", "--sizes"}}) {
+             {"objects a.din", "--sizes"},
+             {"tiles a.din", "does not say for which screen tile"},
+             {"causes a.din --sizes 1KiB --by tile", "does not say for which screen tile"},
+             {"strides a.din --tile 0,0", "does not say for which screen tile"},
+             {"report a.din -o a.html --over a.png", "does not say for which screen tile"},
+             {"tiles a.din --figure colour", "there is no such thing; give references"},
+             {"tiles a.din --over a.png", "give both"},
+             {"tiles a.din --over a.png -o a.jpg", "name a .png file"},
+             {"tiles a.din --linear", "--over"}}) {
         const Outcome result = tool(arguments);
         EXPECT_EQ(result.code, 2) << arguments;
         EXPECT_EQ(result.error_lines(), 1) << result.err;

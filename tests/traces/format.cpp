@@ -75,7 +75,7 @@ TEST(TraceFormat, LinesThatLeaveCachesTakeLittle) {
 }
 
 TEST(TraceFormat, TheOrderOfAllStreamsIsKept) {
-    const std::vector<Reference> all = mixed_references(3000, 5);
+    const std::vector<Reference> all = test::with_tiles(mixed_references(3000, 5));
     BlockBuilder builder;
     std::vector<Turn> marks;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -88,14 +88,15 @@ TEST(TraceFormat, TheOrderOfAllStreamsIsKept) {
     builder.take(block);
     std::string bytes;
     Encoder().encode(block, bytes);
-    Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "here", back);
+    Decoder().decode(bytes, {3, 2, 3, 9, 48}, format_version, "here", back);
     EXPECT_EQ(back.order, block.order);
     std::size_t at = 0;
     std::vector<Turn> got;
     each_in_order(
         back,
         [&](const Segment& s, std::size_t i) {
-            EXPECT_TRUE(equal({back.times[i], back.addresses[i], s.stream, back.what(i)}, all[at++]));
+            EXPECT_TRUE(
+                equal({back.times[i], back.addresses[i], s.stream, back.what(i), back.tile(i)}, all[at++]));
         },
         [&](const Turn& turn) {
             EXPECT_EQ(at, std::min<std::size_t>(got.size() * 700, all.size()));
@@ -107,7 +108,7 @@ TEST(TraceFormat, TheOrderOfAllStreamsIsKept) {
 
 TEST(TraceFormat, BlocksHoldEveryStreamInItsOrder) {
     BlockBuilder builder;
-    const std::vector<Reference> all = mixed_references(5000, 3);
+    const std::vector<Reference> all = test::with_tiles(mixed_references(5000, 3));
     for (const Reference& r : all)
         builder.add(r);
     Block block;
@@ -120,7 +121,7 @@ TEST(TraceFormat, BlocksHoldEveryStreamInItsOrder) {
                      [&](const Reference& r) { return r.stream == s.stream; });
         std::vector<Reference> got;
         for (std::size_t i = s.begin; i < s.end; ++i)
-            got.push_back({block.times[i], block.addresses[i], s.stream, block.what(i)});
+            got.push_back({block.times[i], block.addresses[i], s.stream, block.what(i), block.tile(i)});
         EXPECT_TRUE(equal_blocks(got, expected)) << s.stream;
     }
 }

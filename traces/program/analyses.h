@@ -54,6 +54,7 @@ std::unique_ptr<AnalysisCommand> footprint_command();
 std::unique_ptr<AnalysisCommand> replicas_command();
 std::unique_ptr<AnalysisCommand> objects_command();
 std::unique_ptr<AnalysisCommand> picture_command();
+std::unique_ptr<AnalysisCommand> tiles_command();
 std::unique_ptr<AnalysisCommand> report_command();
 /// In builds with the machine.
 std::unique_ptr<AnalysisCommand> rows_command();

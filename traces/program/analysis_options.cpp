@@ -35,6 +35,23 @@ std::vector<std::string> split(const std::string& text) {
     return out;
 }
 
+/// The number of the tile that pixel "X,Y" lies in.
+std::uint32_t parse_tile(const std::string& text, const Picture& picture) {
+    std::array<std::uint32_t, 2> at{};
+    const char *from = text.data(), *const end = from + text.size();
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const auto [next, error] = std::from_chars(from, end, at[i]);
+        if (error != std::errc() || (i == 0 ? next == end || *next != ',' : next != end))
+            throw Error(
+                fmt::format("--tile '{}': give a pixel as X,Y, from the upper left one, 0,0, on", text));
+        from = next + 1;
+    }
+    if (at[0] >= picture.width || at[1] >= picture.height)
+        throw Error(fmt::format("--tile {}: the picture has {} x {} pixels, numbered from 0", text,
+                                picture.width, picture.height));
+    return picture.tile_of(at[0], at[1]);
+}
+
 } // namespace
 
 std::uint64_t parse_size(std::string_view option, std::string_view text) {
@@ -116,6 +133,9 @@ void AnalysisOptions::add_to(CLI::App& app, const char* by, bool draws) {
         app.add_option("--window", window_, "units of the trace's time a window, for --by window")
             ->type_name("N");
     }
+    app.add_option("--tile", tile_,
+                   "only references for the screen tile that this pixel lies in, of traces that know tiles")
+        ->type_name("X,Y");
     app.add_option("--csv", csv_, "write the table for programs, whole or not at all; - is standard output")
         ->type_name("FILE");
     app.add_option("--json", json_, "likewise, with what was analysed")->type_name("FILE");
@@ -143,6 +163,12 @@ void AnalysisOptions::prepare() {
     if (windows)
         window_length_ = parse_window("--window", window_);
     open();
+    if (!tile_.empty()) {
+        require_tiles();
+        only_tile_ = parse_tile(tile_, description_.picture);
+    }
+    if (std::find(by_.begin(), by_.end(), analysis::By::tile) != by_.end())
+        require_tiles();
     if (!line_.empty())
         line_bytes_ = parse_size("--line", line_);
     else if (description_.line_bytes != 0)
@@ -169,6 +195,13 @@ void AnalysisOptions::refuse_pipe() const {
         throw Error(fmt::format("{}: is read twice, and this is a pipe; write it into a file first", file_));
 }
 
+void AnalysisOptions::require_tiles() const {
+    if (description_.picture.tiles() == 0)
+        throw Error(fmt::format("{}: does not say for which screen tile a reference was; record it by "
+                                "`razor render --trace` or `razor-sim run --trace`, and keep it as .rzt",
+                                file_));
+}
+
 void AnalysisOptions::refuse_sample() const {
     if (description_.sample < 1)
         throw Error(fmt::format("{}: is a sample of {:g} of all lines, of which this cannot be told; record "
@@ -181,7 +214,8 @@ analysis::Touches AnalysisOptions::touches() const {
 }
 
 analysis::Touches AnalysisOptions::touches(std::uint64_t line_bytes) const {
-    return {static_cast<unsigned>(std::countr_zero(line_bytes)), kinds_in_, {by_, window_length_}};
+    return {
+        static_cast<unsigned>(std::countr_zero(line_bytes)), kinds_in_, {by_, window_length_, only_tile_}};
 }
 
 std::string AnalysisOptions::by() const {

@@ -38,6 +38,8 @@ public:
     /// `by`: what references are told apart by without --by; null: there is no such option. `draws`: with
     /// --svg.
     void add_to(CLI::App& app, const char* by, bool draws);
+    /// References are told apart by tiles of the picture, without an option.
+    void always_by_tile() { by_names_ = "tile"; }
     /// Other kinds than Touches::demand count without --kinds.
     void count_without_option(const analysis::Touches::Kinds& kinds) { kinds_in_ = kinds; }
     /// Visits all blocks. Throws Error, Interrupted.
@@ -66,6 +68,8 @@ public:
     void reopen() { open(); }
     const std::string& file() const { return file_; }
     const std::string& note() const { return note_; }
+    /// After prepare(), where tiles of the picture are asked for. Throws Error.
+    void require_tiles() const;
     /// After prepare(), where a sample of lines tells nothing. Throws Error.
     void refuse_sample() const;
     /// Prints the table, or writes it as asked; what the trace lacks is said.
@@ -76,10 +80,11 @@ public:
 private:
     void open();
 
-    std::string file_, from_, line_, kinds_, by_names_, window_, csv_, json_, svg_;
+    std::string file_, from_, line_, kinds_, by_names_, window_, tile_, csv_, json_, svg_;
     analysis::Touches::Kinds kinds_in_ = analysis::Touches::demand;
     std::vector<analysis::By> by_; // without `all`
     std::uint64_t window_length_ = 1;
+    std::uint32_t only_tile_ = 0; // of the picture; 0: all
     std::uint64_t line_bytes_ = 64;
     std::unique_ptr<Input> input_;
     Description description_;

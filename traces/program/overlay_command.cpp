@@ -11,10 +11,8 @@
 #include <cmath>
 
 namespace traces {
-namespace {
 
-/// "LOW,HIGH".
-analysis::OverlayScale parse_range(const std::string& text, bool logarithmic) {
+analysis::OverlayScale parse_overlay_range(const std::string& text, bool logarithmic) {
     analysis::OverlayScale out{0, 0, logarithmic};
     const char* const end = text.data() + text.size();
     const auto low = std::from_chars(text.data(), end, out.low);
@@ -26,8 +24,6 @@ analysis::OverlayScale parse_range(const std::string& text, bool logarithmic) {
                                 logarithmic ? " and above 0, or --linear" : ""));
     return out;
 }
-
-} // namespace
 
 void OverlayCommand::add_to(CLI::App& app) {
     app_ = app.add_subcommand("overlay", "draw what each pixel's rays touched over the picture");
@@ -68,7 +64,7 @@ void OverlayCommand::run() const {
     for (std::size_t i = 0; i < picture.size(); ++i)
         values.push_back(layer->value(i));
     const analysis::OverlayScale scale =
-        range_.empty() ? analysis::scale_of(values, !linear_) : parse_range(range_, !linear_);
+        range_.empty() ? analysis::scale_of(values, !linear_) : parse_overlay_range(range_, !linear_);
     const analysis::Pixels pixels = analysis::overlaid(picture, values, scale);
     const auto sink = open_sink(output_);
     sink->write(png ? analysis::png_bytes(pixels) : analysis::overlay_svg(pixels, scale, layer_));

@@ -3,6 +3,7 @@
 #include "analysis/plots/chart.h"
 #include "analysis/traces/address_picture.h"
 #include "traces/program/analysis_options.h"
+#include "traces/program/tile_picture.h"
 
 #include <fmt/format.h>
 
@@ -44,10 +45,14 @@ BarChart bars(const char* label, Unit unit, std::initializer_list<const char*> p
 
 } // namespace
 
-Report::Report(analysis::CacheShape shape, std::uint64_t first_time, std::uint64_t last_time)
+Report::Report(analysis::CacheShape shape, std::uint64_t first_time, std::uint64_t last_time,
+               std::uint32_t tiles)
     : shape_(shape), curve_(powers()),
       windows_(std::max<std::uint64_t>(1, (last_time - first_time) / windows_of_a_trace), {shape.lines()}),
-      causes_(shape), residency_(shape), lines_(shape.line_bytes) {}
+      causes_(shape), residency_(shape), lines_(shape.line_bytes) {
+    if (tiles != 0)
+        tiles_.emplace(shape, tiles);
+}
 
 void Report::write(Page& page, const Names& names, const Description& description) {
     causes_.finish();
@@ -70,6 +75,21 @@ void Report::write(Page& page, const Names& names, const Description& descriptio
     write_reuse(page, names);
     write_strides(page, names);
     write_lines(page, names);
+}
+
+void Report::write_tiles(Page& page, const std::string& file, const Names& names,
+                         const Picture& picture) const {
+    page.heading("Over the picture");
+    page.paragraph(
+        fmt::format("What references for each screen tile of {} x {} pixels were, and what of them "
+                    "missed: caches of {}.",
+                    picture.side, picture.side, names.caches));
+    TilePicture over(file, picture);
+    for (const auto figure :
+         {analysis::TileFigure::references, analysis::TileFigure::misses, analysis::TileFigure::ratio}) {
+        over.draw(*tiles_, figure, "", true);
+        page.drawing(over.svg());
+    }
 }
 
 void Report::write_curve(Page& page, const Names& names) const {

@@ -8,10 +8,12 @@
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/miss_causes.h"
 #include "analysis/traces/strides.h"
+#include "analysis/traces/tile_counts.h"
 #include "analysis/traces/windows.h"
 #include "traces/description.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +23,9 @@ namespace traces {
 class Report {
 public:
     /// Of references in [first_time, last_time]; caches of one shape for what misses and what lines are used
-    /// for.
-    Report(analysis::CacheShape shape, std::uint64_t first_time, std::uint64_t last_time);
+    /// for. `tiles`: of the picture to draw over, if there is one.
+    Report(analysis::CacheShape shape, std::uint64_t first_time, std::uint64_t last_time,
+           std::uint32_t tiles);
 
     void touch(const analysis::Touch& touch, std::uint32_t cache) {
         curve_.touch(touch.line, touch.group);
@@ -30,6 +33,8 @@ public:
         causes_.touch(touch, cache);
         residency_.touch(touch, cache);
         lines_.touch(touch);
+        if (tiles_)
+            tiles_->touch(touch, cache);
     }
     void access(const analysis::Access& access) {
         strides_.add(access);
@@ -43,6 +48,9 @@ public:
     };
     /// After the last touch: adds the charts and tables. `description`: the trace's.
     void write(analysis::Page& page, const Names& names, const Description& description);
+    /// Adds what tiles asked for, over the picture.
+    void write_tiles(analysis::Page& page, const std::string& file, const Names& names,
+                     const Picture& picture) const;
     const std::vector<analysis::MissCauses::Group>& causes() const { return causes_.groups(); }
 
 private:
@@ -63,6 +71,7 @@ private:
     analysis::LineUse lines_;
     analysis::Strides strides_;
     analysis::AddressTime addresses_;
+    std::optional<analysis::TileCounts> tiles_;
 };
 
 } // namespace traces

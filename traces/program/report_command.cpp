@@ -4,6 +4,7 @@
 #include "traces/program/analyses.h"
 #include "traces/program/cache_options.h"
 #include "traces/program/report.h"
+#include "traces/program/tile_picture.h"
 #include "traces/summary.h"
 
 #include <fmt/format.h>
@@ -27,6 +28,11 @@ public:
         caches_.prepare(options_.line_bytes());
         if (caches_.sizes().size() != 1)
             throw Error("--sizes: a report is of one size; give one");
+        const Picture picture = options_.description().picture;
+        if (!over_.empty()) {
+            options_.require_tiles();
+            TilePicture(over_, picture); // which may not be one
+        }
         Summary summary;
         std::uint64_t first = ~std::uint64_t{0}, last = 0;
         options_.each_block([&](const Block& block) {
@@ -39,7 +45,7 @@ public:
         if (summary.references() == 0)
             throw Error(fmt::format("{}: holds no references", options_.file()));
         options_.reopen();
-        Report report(caches_.shapes()[0], first, last);
+        Report report(caches_.shapes()[0], first, last, over_.empty() ? 0 : picture.tiles());
         analysis::Touches touches = options_.touches();
         options_.each_block([&](const Block& block) {
             touches.each(block, [&](const Touch& t) { report.touch(t, caches_.cache_of(t.stream)); });
@@ -62,6 +68,8 @@ public:
         for (const std::string& text : {options_.note(), description.filters})
             if (!text.empty())
                 page.paragraph(text);
+        if (!over_.empty())
+            report.write_tiles(page, over_, names, picture);
         report.write(page, names, description);
         const std::unique_ptr<Sink> sink = open_sink(output_);
         sink->write(page.html());
@@ -81,9 +89,12 @@ private:
         app.add_option("-o,--output", output_, "the page, FILE.html; it needs nothing beside it")
             ->type_name("FILE")
             ->required();
+        app.add_option("--over", over_,
+                       "also draw what each screen tile asked for over this picture, OpenEXR or PNG")
+            ->type_name("PICTURE");
         caches_.add_to(app);
     }
-    std::string output_;
+    std::string output_, over_;
     CacheOptions caches_{"1", "32KiB"};
 };
 
