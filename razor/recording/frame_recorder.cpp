@@ -40,6 +40,8 @@ traces::Description FrameRecorder::describe(Frame& frame) {
     d.configuration = configuration_;
     d.phases.assign(std::begin(phase_names), std::end(phase_names));
     d.work.assign(std::begin(kind_names), std::end(kind_names));
+    d.picture = picture_ = {static_cast<std::uint32_t>(frame.header().width),
+                            static_cast<std::uint32_t>(frame.header().height), tile_side};
     for (int worker = 0; worker < frame.workers(); ++worker)
         d.streams.push_back(fmt::format("worker {}", worker));
     for (const isa::region& r : frame.memory().regions()) {
@@ -77,7 +79,8 @@ void FrameRecorder::Worker::note(traces::Kind what, const void* p, std::uint32_t
                             address,
                             static_cast<std::uint32_t>(number_),
                             {site_, bytes, recorder_.structure_of_region_[region_],
-                             static_cast<std::uint16_t>(phase), static_cast<std::uint16_t>(kind), what}});
+                             static_cast<std::uint16_t>(phase), static_cast<std::uint16_t>(kind), what},
+                            recorder_.picture_.tile_of(pixel)});
 }
 
 void FrameRecorder::run(Frame& frame, const std::function<void(double)>& progress,

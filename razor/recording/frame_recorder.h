@@ -45,6 +45,7 @@ private:
     std::optional<traces::BackgroundWriter> writer_;
     std::map<std::string, std::uint16_t> structures_; // numbers of names
     std::vector<std::uint16_t> structure_of_region_;
+    traces::Picture picture_;
     struct Place {
         const char* file;
         std::uint32_t line;

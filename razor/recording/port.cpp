@@ -163,13 +163,23 @@ std::int32_t set_kind(std::int32_t kind) {
     razor::FrameRecorder::Worker* worker = recorded_worker;
     return worker == nullptr ? 0 : std::exchange(worker->kind, kind);
 }
-std::uint64_t set_owners(const std::int32_t*, std::uint64_t) {
-    return 0;
+/// Words for whom it was before are pixels, from 1 on.
+std::uint64_t set_owners(const std::int32_t* owner, std::uint64_t lanes) {
+    razor::FrameRecorder::Worker* worker = recorded_worker;
+    if (worker == nullptr)
+        return 0;
+    const std::int64_t pixel = lanes == 0 ? -1 : owner[std::countr_zero(lanes)];
+    return static_cast<std::uint64_t>(std::exchange(worker->pixel, pixel) + 1);
 }
+/// All lanes of a packet are of one tile.
 std::uint64_t narrow_owners(std::uint64_t) {
-    return 0;
+    razor::FrameRecorder::Worker* worker = recorded_worker;
+    return worker == nullptr ? 0 : static_cast<std::uint64_t>(worker->pixel + 1);
 }
-void restore_owners(std::uint64_t) {}
+void restore_owners(std::uint64_t before) {
+    if (razor::FrameRecorder::Worker* worker = recorded_worker)
+        worker->pixel = static_cast<std::int64_t>(before) - 1;
+}
 void note_level(const void*, std::uint64_t, std::int32_t) {}
 void note_level_of(const void*, std::uint64_t, const void*) {}
 

@@ -29,6 +29,7 @@ public:
     void note(traces::Kind kind, const void* p, std::uint32_t bytes);
 
     std::int32_t phase = 0, kind = 0;
+    std::int64_t pixel = -1; // for which the first active lane works; -1: none
 
 private:
     /// Long enough that changing threads costs little, short enough that workers share what they make.

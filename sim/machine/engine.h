@@ -382,7 +382,7 @@ private:
     void move_looks(const Hart& sleeper, cycle since, std::uint64_t looks);
     [[noreturn]] static void outside(const void* p);
     void enter(Hart& h, std::size_t column) const {
-        if (options_.owners != nullptr) [[unlikely]] {
+        if (options_.owners != nullptr || recorder_ != nullptr) [[unlikely]] {
             enter_for(h, column, h.party);
             return;
         }

@@ -1,5 +1,8 @@
-// Whom work is for: threads are charged whenever that, or the phase or kind of their work, changes.
+// Whom work is for: threads are charged whenever that, or the phase or kind of their work, changes. A trace
+// alone asks no more than who the first active lane works for.
 #include "sim/machine/engine.h"
+
+#include <bit>
 
 namespace sim {
 
@@ -24,17 +27,22 @@ void Engine::charge_owners(Hart& h) const {
 }
 
 void Engine::enter_for(Hart& h, std::size_t column, std::size_t party) const {
-    charge_owners(h);
+    if (options_.owners != nullptr)
+        charge_owners(h);
     h.enter(column);
     h.column |= party;
     h.party = party;
-    h.charged = h.cost_of_column();
+    if (options_.owners != nullptr)
+        h.charged = h.cost_of_column();
 }
 
 std::size_t Engine::set_owners(Hart& h, const std::int32_t* owner, std::uint64_t lanes) {
     const std::size_t before = h.party;
     if (options_.owners != nullptr)
         enter_for(h, plain_column(h.column), options_.owners->party(h.tile->number, owner, lanes));
+    else if (recorder_ != nullptr)
+        enter_for(h, plain_column(h.column),
+                  lanes == 0 ? 0 : column_of_owner(owner[std::countr_zero(lanes)]));
     return before;
 }
 
@@ -46,7 +54,7 @@ std::size_t Engine::narrow_owners(Hart& h, std::uint64_t lanes) {
 }
 
 void Engine::restore_owners(Hart& h, std::size_t before) {
-    if (options_.owners != nullptr)
+    if (options_.owners != nullptr || recorder_ != nullptr)
         enter_for(h, plain_column(h.column), before);
 }
 

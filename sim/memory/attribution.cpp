@@ -27,7 +27,8 @@ void Attribution::note_always(traces::Kind kind, std::uint64_t address, std::uin
     const LineMap::Line* line = map_.line(address);
     const LineKind what = line == nullptr ? map_.spill() : line->kind(tile_);
     tap_->note({t, address, stream, bytes, site, static_cast<std::uint16_t>(LineMap::structure_of(what)),
-                static_cast<std::uint16_t>(column), kind, part, detail});
+                static_cast<std::uint16_t>(column), kind, part, detail,
+                owners_ != nullptr ? owners_->first_owner(column) : owner_of_column(column)});
 }
 
 std::vector<TrafficRow> Attribution::traffic(const std::vector<const Attribution*>& tiles) {

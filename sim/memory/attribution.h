@@ -67,15 +67,19 @@ public:
     /// From now on nobody asks what belongs to what, until it is said again.
     void set_idle(bool on) {
         idle_ = on;
-        unusual_ = idle_ || owners_ != nullptr;
+        unusual_ = idle_ || owners_ != nullptr || tap_ != nullptr;
     }
     /// Columns name parties there, to which misses and traffic of memory are charged.
     void charge(OwnerCosts& owners) {
         owners_ = &owners;
         unusual_ = true;
     }
-    /// References of the tile are noted there, if any are.
-    void trace(TraceTap& tap) { tap_ = &tap; }
+    /// References of the tile are noted there, if any are. Columns name parties, or owners where none are
+    /// charged.
+    void trace(TraceTap& tap) {
+        tap_ = &tap;
+        unusual_ = true;
+    }
     /// What happens at a level is noted for a trace of that level.
     void note(unsigned level, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
               std::size_t column, std::uint32_t stream, std::uint32_t detail = 0) {
@@ -113,7 +117,7 @@ private:
     std::vector<LineMap::Line*> notes_;
     Traffic* spill_;
     bool idle_ = false;
-    bool unusual_ = false; // idle, or with owners
+    bool unusual_ = false; // idle, or columns name owners
     OwnerCosts* owners_ = nullptr;
     TraceTap* tap_ = nullptr;
 };

@@ -60,6 +60,15 @@ std::size_t OwnerCosts::narrowed(std::size_t party, std::uint64_t lanes) {
     return left == 0 ? party : party_of(tile, {whole.block, left});
 }
 
+std::int32_t OwnerCosts::first_owner(std::size_t column) const {
+    const std::size_t number = number_of(column);
+    if (number == 0)
+        return -1;
+    const OfTile& tile = tiles_[tile_of(column)];
+    const Party& party = tile.parties[number];
+    return tile.owners[party.block * lanes_ + static_cast<std::size_t>(std::countr_zero(party.lanes))];
+}
+
 OwnerCost& OwnerCosts::cost(std::size_t tile, std::size_t column) {
     const std::size_t number = number_of(column), phase = plain_column(column) % phases_;
     Party& party = tiles_[number == 0 ? tile : tile_of(column)].parties[number];

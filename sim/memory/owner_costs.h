@@ -53,6 +53,14 @@ constexpr std::size_t plain_column(std::size_t column) {
     return column & ((std::size_t{1} << column_bits) - 1);
 }
 
+/// The same of who is known by one owner alone, of a number from 0 on, without a party.
+constexpr std::size_t column_of_owner(std::int32_t owner) {
+    return static_cast<std::size_t>(owner + std::int64_t{1}) << column_bits;
+}
+constexpr std::int32_t owner_of_column(std::size_t column) {
+    return static_cast<std::int32_t>(static_cast<std::int64_t>(column >> column_bits) - 1);
+}
+
 /// Tiles use it side by side, each for its own parties; between windows all are counted for.
 class OwnerCosts {
 public:
@@ -67,6 +75,8 @@ public:
     std::size_t party(std::size_t tile, const std::int32_t* owner, std::uint64_t lanes);
     /// ... those of its owners that these lanes have; the same one if there are none.
     std::size_t narrowed(std::size_t party, std::uint64_t lanes);
+    /// The owner of the first lane of a column's party; -1: nobody.
+    std::int32_t first_owner(std::size_t column) const;
     /// In the tile, whoever it is for.
     void count(std::size_t tile, std::size_t column, std::uint64_t Traffic::*what) {
         ++(cost(tile, column).traffic.*what);

@@ -377,6 +377,8 @@ int RunCommand::run() const {
     if (trace_.wanted()) {
         trace.program = fmt::format("razor-sim {}", razor::version());
         trace.configuration = print_machine(machine_description) + "\n# scene\n" + scene;
+        trace.picture = {static_cast<std::uint32_t>(description.settings.width),
+                         static_cast<std::uint32_t>(description.settings.height), razor::tile_side};
         recorder.emplace(std::move(trace), config, traces::open_sink(trace_.file()));
         run_options.recorder = &*recorder;
     }

@@ -122,6 +122,7 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
     d.streams = stream_names();
     d.regions = std::move(regions);
     d.window = window_cycles(config_);
+    d.picture = settings_.picture;
 
     phases_ = labels.phases.size();
     filter_.begin = settings_.begin;
@@ -197,7 +198,8 @@ void Recorder::collect(std::size_t tile) {
                       n.address,
                       n.stream,
                       {site[n.site], n.size, n.structure, static_cast<std::uint16_t>(n.column % phases_),
-                       static_cast<std::uint16_t>(n.column / phases_), n.kind, n.part, n.detail}});
+                       static_cast<std::uint16_t>(n.column / phases_), n.kind, n.part, n.detail},
+                      settings_.picture.tile_of(std::int64_t{n.pixel})});
     noted.clear();
 }
 

@@ -27,6 +27,7 @@ struct TraceSettings {
     Span tiles, cores;                                // cores of the chip, numbered through
     std::uint64_t begin = 0, end = ~std::uint64_t{0}; // cycles, `end` no more
     double sample = 1;                                // of all lines
+    traces::Picture picture;                          // whose pixels owners of work are, if any
     std::string program, configuration;               // for the trace's description
 };
 

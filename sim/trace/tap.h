@@ -35,6 +35,7 @@ public:
         traces::Kind kind;
         traces::Part part;
         std::uint32_t detail; // passing.h
+        std::int32_t pixel;   // of the picture, for which it was; below 0: none
     };
 
     explicit TraceTap(const Filter& filter) : filter_(&filter) {}

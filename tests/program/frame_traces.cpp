@@ -1,5 +1,5 @@
-// razor render --trace: the lines that a simulated machine touches, the picture that any kernels render, the
-// same bytes each time; mistakes leave no file.
+// razor render --trace: the lines that a simulated machine touches, for the same screen tiles, the picture
+// that any kernels render, the same bytes each time; mistakes leave no file.
 #include "tests/program/simulator.h"
 #include "traces/reader.h"
 
@@ -17,9 +17,10 @@ protected:
     Outcome razor(const std::string& arguments) const {
         return run(quoted_argument(RAZOR_PROGRAM) + " " + arguments, folder_.path());
     }
-    /// Structure, phase, kind of ray, line of 64 bytes, whether it is written: each once. (Which bytes of a
-    /// line a masked access means, a machine does not note.)
-    using Lines = std::set<std::tuple<std::string, std::string, std::string, std::uint64_t, bool>>;
+    /// Structure, phase, kind of ray, line of 64 bytes, whether it is written, screen tile: each once. (Which
+    /// bytes of a line a masked access means, a machine does not note.)
+    using Lines =
+        std::set<std::tuple<std::string, std::string, std::string, std::uint64_t, bool, std::uint32_t>>;
     Lines lines(const std::string& file) const {
         traces::Reader reader(traces::open_source(folder_ / file));
         Lines out;
@@ -33,7 +34,8 @@ protected:
                 const std::uint64_t last = (block.addresses[i] + c.size - 1) / 64;
                 const bool writes = c.kind != traces::Kind::read; // a machine writes through what is released
                 for (std::uint64_t line = block.addresses[i] / 64; line <= last; ++line)
-                    out.emplace(d.structures[c.structure], d.phases[c.phase], d.work[c.work], line, writes);
+                    out.emplace(d.structures[c.structure], d.phases[c.phase], d.work[c.work], line, writes,
+                                block.tile(i));
             }
         }
         EXPECT_TRUE(reader.complete()) << reader.note();
@@ -51,6 +53,10 @@ TEST_F(FrameTraces, TouchTheLinesThatAMachineTouches) {
               0);
     const Lines machine = lines("b.rzt"), none = lines("a.rzt");
     EXPECT_GT(none.size(), 2000U);
+    std::set<std::uint32_t> tiles;
+    for (const auto& line : machine)
+        tiles.insert(std::get<5>(line));
+    EXPECT_EQ(tiles.size(), 13U); // all of 32 x 24 pixels, and none
     std::map<std::string, std::size_t> differ;
     for (const auto& line : machine)
         if (!none.contains(line))

@@ -1,6 +1,7 @@
 // razor-sim run --trace: the file holds what the report counts, at every level; recording changes nothing;
 // the host's threads neither; what is filtered is what a filter of the whole trace gives; mistakes leave no
 // file.
+#include "razor/image/exr.h"
 #include "tests/program/simulator.h"
 #include "traces/reader.h"
 #include "traces/sample.h"
@@ -138,6 +139,41 @@ TEST_F(Recording, CountsWhatTheReportCountsAndChangesNothing) {
                 EXPECT_EQ(sum(noted, {Kind::write_through}), a.at(level).at("written_through"));
             }
         }
+    }
+}
+
+/// Lines that memory is asked for, by screen tile: what pixels cost (--costs) sums to the same over each
+/// tile, and what is nobody's is for none. Tiles are the same without costs.
+TEST_F(Recording, KnowsForWhichScreenTile) {
+    for (const std::string level : {"l1", "dram"}) {
+        const std::string more = start("-g chip.tiles=2 -g chip.cores=2 -g l2.size_bytes=16384", "20x12") +
+                                 "--trace-level " + level;
+        succeed(more + " --trace plain.rzt");
+        succeed(more + " --trace costs.rzt --costs -o c.exr --json c.json");
+        EXPECT_TRUE(text("plain.rzt") == text("costs.rzt"));
+        traces::Reader reader(traces::open_source(folder_ / "plain.rzt"));
+        const traces::Picture picture = reader.description().picture;
+        ASSERT_EQ(picture, (traces::Picture{20, 12, 8}));
+        std::vector<std::uint64_t> asked(picture.tiles() + 1, 0), expected(asked);
+        for (traces::Block block; reader.next(block);)
+            for (std::size_t i = 0; i < block.size(); ++i)
+                asked[block.tile(i)] += demand.contains(block.what(i).kind) ? 1 : 0;
+        const Film film = read_exr(folder_ / "c.exr");
+        for (const char* layer : {"cost.l1_misses", "cost.dram_reads", "cost.dram_writes"}) {
+            if (std::string(layer).starts_with("cost.l1") != (level == "l1"))
+                continue;
+            const Plane* plane = film.find(layer);
+            ASSERT_NE(plane, nullptr) << layer;
+            for (std::uint32_t y = 0; y < picture.height; ++y)
+                for (std::uint32_t x = 0; x < picture.width; ++x)
+                    expected[picture.tile_of(x, y)] +=
+                        static_cast<std::uint64_t>(plane->values[std::size_t{y} * picture.width + x]);
+        }
+        for (std::uint32_t tile = 1; tile <= picture.tiles(); ++tile) {
+            EXPECT_EQ(asked[tile], expected[tile]) << level << ' ' << tile;
+            EXPECT_GT(asked[tile], 20U) << level << ' ' << tile;
+        }
+        EXPECT_GT(asked[0], 0U);
     }
 }
 
