@@ -161,7 +161,7 @@ Seed seed_of_json(const json& from) {
     return s;
 }
 
-std::string unknown_to_seed(const Config& seed, const Config& machine) {
+bool known_to_seed(std::string_view key) {
     // What changes only how many there are of what, and how long each takes. Timings of memory, its clock and
     // its channels, are all of [memory]'s.
     constexpr std::string_view known[] = {"chip.tiles",
@@ -183,14 +183,15 @@ std::string unknown_to_seed(const Config& seed, const Config& machine) {
                                           "l4.latency",
                                           "l5.latency",
                                           "coherence.remote_cycles"};
-    for (const Parameter& p : parameters()) {
-        const std::string_view key = p.key;
-        if (key.starts_with("memory.") || key.starts_with("energy.") ||
-            std::find(std::begin(known), std::end(known), key) != std::end(known))
-            continue;
-        if (applies(p, seed) != applies(p, machine) || print_value(p, seed) != print_value(p, machine))
+    return key.starts_with("memory.") || key.starts_with("energy.") ||
+           std::find(std::begin(known), std::end(known), key) != std::end(known);
+}
+
+std::string unknown_to_seed(const Config& seed, const Config& machine) {
+    for (const Parameter& p : parameters())
+        if (!known_to_seed(p.key) &&
+            (applies(p, seed) != applies(p, machine) || print_value(p, seed) != print_value(p, machine)))
             return p.key;
-    }
     return "";
 }
 

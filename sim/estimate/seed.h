@@ -9,6 +9,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sim {
@@ -42,6 +43,8 @@ Seed seed_of(const Report& crowded, const Report& lone, const std::vector<bool>&
 nlohmann::ordered_json json_of_seed(const Seed& seed);
 Seed seed_of_json(const nlohmann::ordered_json& json);
 
+/// Whether one tile says the same of a machine in which this parameter is another.
+bool known_to_seed(std::string_view key);
 /// The first parameter in which the machine differs from the seed's and that changes what one tile would have
 /// said (misses, instructions): its key; empty where there is none.
 std::string unknown_to_seed(const Config& seed, const Config& machine);

@@ -4,6 +4,7 @@
 #include "razor/program/interrupt.h"
 #include "razor/program/study/scene_knobs.h"
 #include "razor/scene/error.h"
+#include "sim/program/study_program.h"
 #include "sim/program/study_runs.h"
 
 #include <fmt/format.h>
@@ -46,8 +47,12 @@ int StudyCommand::run() const {
         const analysis::Store store(options_.folder());
         return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>& missing) {
             return std::vector<razor::StudyStage>{
+                {machines.tile_seeds(missing),
+                 [&](const analysis::Point& seed) { return machines.measure_tile_seed(seed, store); }, true},
                 {machines.references(missing),
-                 [&](const analysis::Point& reference) { return machines.measure_reference(reference); },
+                 [&](const analysis::Point& reference) {
+                     return machines.measure_reference(reference, store);
+                 },
                  true},
                 {points, [&](const analysis::Point& point) { return machines.measure(point, store); },
                  false}};

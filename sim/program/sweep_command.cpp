@@ -4,6 +4,7 @@
 #include "razor/program/interrupt.h"
 #include "razor/program/study/scene_knobs.h"
 #include "razor/scene/error.h"
+#include "sim/program/study_program.h"
 #include "sim/program/study_runs.h"
 
 #include <fmt/format.h>
@@ -58,8 +59,10 @@ int SweepCommand::run() const {
         const auto points = analysis::resolve_points(
             study, [&](const analysis::Point& point) { return machines.body(point); });
         const analysis::Store store(options_.folder());
-        return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>&) {
+        return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>& missing) {
             return std::vector<razor::StudyStage>{
+                {machines.tile_seeds(missing),
+                 [&](const analysis::Point& seed) { return machines.measure_tile_seed(seed, store); }, true},
                 {points, [&](const analysis::Point& point) { return machines.measure(point, store); },
                  false}};
         });

@@ -109,6 +109,63 @@ TEST_F(MachineStudy, TakesSampledRuns) {
     EXPECT_NEAR(figure(1, "dram_bytes"), figure(0, "dram_bytes"), 0.1 * figure(0, "dram_bytes"));
 }
 
+// Points in closed form share the seed of their tile, which is kept and whose cost is told apart; what a seed
+// cannot know has another one.
+TEST_F(MachineStudy, ComputesPointsFromKeptSeeds) {
+    const auto study = [&](const std::string& knobs) {
+        std::string content = text("study.toml");
+        const std::size_t begin = content.find("[knobs]"), end = content.find("[reference]");
+        content.replace(begin, end - begin, "[knobs]\n" + knobs);
+        content.replace(content.find("workers = 2\n"), 12, "");
+        const std::string mode = "sim.mode = \"reference\"\n";
+        content.replace(content.find(mode), mode.size(), "");
+        content.replace(content.find("sim.quantum = 0"), 15, "estimate = \"none\"");
+        folder_.file("computed.toml", content);
+    };
+    const auto seeds = [&] {
+        std::map<std::string, std::string> out;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / "s" / "seeds"))
+            out[entry.path().filename().string()] = text("s/seeds/" + entry.path().filename().string());
+        return out;
+    };
+    study("estimate = [\"closed-form\", \"none\"]\nchip.tiles = [1, 2]\n");
+    const Outcome outcome = simulator("study computed.toml -o s");
+    ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+    EXPECT_NE(outcome.out.find("4 points: 4 measured, 0 failed"), std::string::npos) << outcome.out;
+    const auto kept = seeds();
+    ASSERT_EQ(kept.size(), 1U);
+    const nlohmann::json all = points("s");
+    const auto figure = [&](std::size_t point, const char* name) {
+        return all.at(point)["figures"][name]["median"].get<double>();
+    };
+    // What razor-sim run computes from that seed, which took what its file says.
+    const std::string run =
+        "run --quiet --machine tiny.toml --scene box.toml --size 16x16 --spp 1 -g chip.tiles=2 "
+        "--estimate closed-form --seed-report s/seeds/" +
+        kept.begin()->first + " --json a.json";
+    ASSERT_EQ(simulator(run).code, 0);
+    for (std::size_t i = 0; i < 2; ++i) {
+        ASSERT_EQ(all.at(i)["settings"]["estimate"], "closed-form");
+        EXPECT_EQ(figure(i, "seed_processor_seconds"),
+                  nlohmann::json::parse(kept.begin()->second)["host"]["processor_seconds"]);
+        EXPECT_NEAR(figure(i, "cycles_error"), std::abs(figure(i, "cycles") / figure(i + 2, "cycles") - 1),
+                    1e-12);
+        EXPECT_GT(figure(i, "cycles_error"), 0);
+        EXPECT_FALSE(all.at(i + 2)["figures"].contains("seed_processor_seconds"));
+    }
+    ASSERT_EQ(all.at(1)["settings"]["chip.tiles"], 2);
+    EXPECT_EQ(figure(1, "cycles"), report("a.json")["cycles"]);
+    // Further points take the seed that is there, unless it cannot know what they differ in.
+    study("estimate = [\"closed-form\"]\nchip.tiles = [1, 3]\nmemory.channels = [1, 2]\n");
+    ASSERT_EQ(simulator("study computed.toml -o s --quiet").code, 0);
+    EXPECT_TRUE(seeds() == kept);
+    study("estimate = [\"closed-form\"]\nl2.size_bytes = [8192, 16384]\n");
+    ASSERT_EQ(simulator("study computed.toml -o s --quiet").code, 0);
+    EXPECT_EQ(seeds().size(), 3U);
+    for (const nlohmann::json& point : points("s"))
+        EXPECT_EQ(point["state"], "measured") << point;
+}
+
 TEST_F(MachineStudy, SaysWhatIsImpossible) {
     std::string content = text("study.toml");
     content.replace(content.find("[8192, 16384]"), 13, "[8192, 500]");
