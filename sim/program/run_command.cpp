@@ -4,7 +4,6 @@
 #include "razor/frame/phases.h"
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
-#include "razor/kernels/code_size.h"
 #include "razor/native/render.h"
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
@@ -18,6 +17,7 @@
 #include "sim/machine/machine.h"
 #include "sim/program/calibration.h"
 #include "sim/program/estimates.h"
+#include "sim/program/frame_report.h"
 #include "sim/program/native_run.h"
 #include "sim/program/provenance.h"
 
@@ -26,7 +26,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <thread>
 #include <tuple>
@@ -50,117 +49,6 @@ public:
 private:
     std::jthread thread_;
 };
-
-json renderer(const razor::FrameStatistics& s, const razor::CountersByKind& counted,
-              const razor::Duplicates& twice, const std::vector<int>& tree_of_worker) {
-    json out;
-    out["plan"] = s.plan;
-    out["trees"] = s.trees;
-    out["tree_of_worker"] = tree_of_worker;
-    out["counters"] = counted.sum();
-    out["counters_by_kind"] = counted;
-    out["built"] = {{"inner_nodes", s.inner_nodes},
-                    {"leaves", s.leaves},
-                    {"grid_bytes", s.grid_bytes},
-                    {"node_bytes", s.node_bytes},
-                    {"list_bytes", s.list_bytes}};
-    out["duplicates"] = {{"kd_nodes", twice.nodes},
-                         {"patches", twice.patches},
-                         {"blocks", twice.blocks},
-                         {"normals", twice.normals}};
-    out["topology_page_bytes"] = s.page_bytes;
-    return out;
-}
-
-/// The part of a frame that counts.
-struct Counted {
-    int first_tile = 0, last_tile = 0;
-    razor::CountersByKind before; // what the frame's tiles before them took
-
-    int tiles() const { return last_tile - first_tile + 1; }
-    razor::CountersByKind of(const razor::FrameStatistics& f) const {
-        razor::CountersByKind c = f.by_kind;
-        c -= before;
-        return c;
-    }
-};
-
-/// A line on the memory budget, if there is one.
-std::string memory_text(const razor::BudgetStatistics& b) {
-    if (b.budget_bytes == 0)
-        return "";
-    return fmt::format(
-        "memory budget          {:.1f} of {:.1f} KiB at most; {} of {} blocks and {} of {} kd nodes were "
-        "made again; {} tiles begun again\n",
-        static_cast<double>(b.peak_bytes) / 1024, static_cast<double>(b.budget_bytes) / 1024,
-        b.regenerated_blocks, b.made_blocks, b.regenerated_nodes, b.made_nodes, b.restarted_tiles);
-}
-
-/// What was rendered and what it took, above the machine's own report.
-std::string frame_text(const razor::Settings& s, int workers, const Counted& counted,
-                       const razor::FrameStatistics& f, const razor::BudgetStatistics& b, const Report& r) {
-    const std::int64_t opened = f.counters.patches_opened - b.regenerated_patches;
-    const int screen_tiles = counted.tiles();
-    // With few screen tiles a worker, the last one to end decides the time: that says little of the machine.
-    const char* few =
-        screen_tiles < 4 * workers ? ": few, so workers will be idle; a larger picture says more" : "";
-    const std::string& share = r.config.kdtree.share;
-    const razor::CountersByKind c = counted.of(f);
-    auto rays = [&](razor::RayKind kind) { return c.kind[kind].rays; };
-    const std::string bounces =
-        rays(razor::kind_bounce) > 0 ? fmt::format(", {} bounce", rays(razor::kind_bounce)) : "";
-    return fmt::format(
-               "frame                  {} x {} pixels, {} samples each; {} workers, {} kd-tree{} ({})\n"
-               "screen tiles           {} ({} to {}), {:.1f} a worker{}\n"
-               "rays                   {} camera, {} light, {} sky{}; {:.3f} million a second of simulated "
-               "time\n"
-               "built                  {} of {} patches opened, {} triangles, {} kd nodes split, {} leaves\n"
-               "never needed           {} patches, {} kd nodes, normals of {} of {} blocks\n",
-               s.width, s.height, s.samples, workers, f.trees, f.trees == 1 ? "" : "s",
-               "kdtree.share = " + share, screen_tiles, counted.first_tile, counted.last_tile,
-               static_cast<double>(screen_tiles) / workers, few, rays(razor::kind_camera),
-               rays(razor::kind_light), rays(razor::kind_sky), bounces,
-               static_cast<double>(c.sum().rays) / r.seconds() * 1e-6, opened, f.patches,
-               f.counters.triangles_made, f.inner_nodes, f.leaves, f.patches - opened, f.unsplit_nodes,
-               f.counters.blocks_made - f.counters.normal_blocks, f.counters.blocks_made) +
-           memory_text(b);
-}
-
-/// Machine code of the kernels that this plan may run, in bytes: by native target, then by phase.
-json code_bytes(const razor::Plan& plan) {
-    json out = json::object();
-    for (const razor::CodeSize& size : razor::code_sizes()) {
-        json& row = out[size.target];
-        for (int phase = 0; phase < razor::phase_count; ++phase)
-            row[razor::phase_names[phase]] = size.phase[plan.look][plan.grids][phase];
-        row["common"] = size.common[plan.look][plan.grids];
-    }
-    return out;
-}
-
-/// The same as a table, with a sum.
-std::string code_text(const razor::Plan& plan) {
-    const auto sizes = razor::code_sizes();
-    std::string out = fmt::format("\n{:<16}", "native code");
-    for (const razor::CodeSize& size : sizes)
-        out += fmt::format(" {:>10}", size.target);
-    out += "   bytes by kernel; the machine fetches no instructions\n";
-    const auto row = [&](const char* name, auto bytes) {
-        out += fmt::format("{:<16}", name);
-        for (const razor::CodeSize& size : sizes)
-            out += fmt::format(" {:>10}", bytes(size));
-        out += '\n';
-    };
-    for (int phase = 0; phase < razor::phase_count; ++phase)
-        row(razor::phase_names[phase],
-            [&](const razor::CodeSize& size) { return size.phase[plan.look][plan.grids][phase]; });
-    row("common", [&](const razor::CodeSize& size) { return size.common[plan.look][plan.grids]; });
-    row("all", [&](const razor::CodeSize& size) {
-        const auto& phases = size.phase[plan.look][plan.grids];
-        return std::accumulate(std::begin(phases), std::end(phases), size.common[plan.look][plan.grids]);
-    });
-    return out;
-}
 
 } // namespace
 
@@ -240,6 +128,7 @@ void RunCommand::add_to(CLI::App& app) {
            "what --estimate closed-form knows of one tile: read if it is there, else made and kept, for "
            "other numbers of tiles and threads, clocks, latencies of caches and memories")
         ->type_name("FILE.json");
+    add_fidelity_to(run);
     trace_.add_to(run);
     costs_.add_to(run);
     run.add_flag("--no-native", no_native_,
@@ -320,6 +209,8 @@ int RunCommand::run() const {
         std::tie(counted.first_tile, counted.last_tile) =
             razor::parse_span("--tiles", tiles_, {0, static_cast<double>(counted.last_tile)});
     }
+    if (!fidelity_.empty() || !error_.empty())
+        return run_fidelity(wanted_error(), settings, workers, description);
     if (in_closed_form()) {
         check_closed_form(config);
         return run_closed_form(machine_description, workers, description);
@@ -446,14 +337,14 @@ int RunCommand::run() const {
         out["machine_provenance"] = provenance_json(machine_description);
         if (calibration)
             out["calibration"] = calibration_json(*calibration);
-        out["renderer"] = renderer(statistics, counted.of(statistics), frame.duplicates(), trees);
+        out["renderer"] = renderer_json(statistics, counted.of(statistics), frame.duplicates(), trees);
         out["renderer"]["screen_tiles"] = counted.tiles();
         if (memory != 0)
             out["renderer"]["memory"] = frame.budget();
         host["topology_page_seconds"] = statistics.page_seconds;
         if (native)
             host["native"] = native_json(*native, report.host_seconds);
-        host["code_bytes"] = code_bytes(frame.plan());
+        host["code_bytes"] = code_json(frame.plan());
         out["host"] = host;
         razor::write_text_file(json_, out.dump(2) + "\n");
     }

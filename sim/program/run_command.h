@@ -36,10 +36,15 @@ private:
     void check_closed_form(const Config& config) const;
     int run_closed_form(const MachineDescription& machine, int workers,
                         const razor::SceneDescription& scene) const;
+    void add_fidelity_to(CLI::App& run);
+    /// Checks --fidelity and --error, and that nothing else contradicts them.
+    double wanted_error() const;
+    int run_fidelity(double wanted, const std::vector<std::string>& settings, int workers,
+                     const razor::SceneDescription& scene) const;
 
     MachineOptions machine_;
     razor::SceneOptions scene_;
-    std::string estimate_, seed_, seed_report_;
+    std::string estimate_, seed_, seed_report_, fidelity_, error_;
     TraceOptions trace_;
     PixelCostOptions costs_;
     std::vector<std::string> outputs_;

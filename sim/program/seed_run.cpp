@@ -2,15 +2,13 @@
 
 #include "razor/frame/frame.h"
 #include "razor/frame/phases.h"
-#include "razor/frame/ray_kinds.h"
 #include "razor/image/output_file.h"
 #include "razor/program/arguments.h"
 #include "razor/program/progress.h"
 #include "razor/scene/error.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
-#include "sim/config/placement.h"
-#include "sim/machine/machine.h"
+#include "sim/program/frame_run.h"
 #include "sim/program/screen_work.h"
 
 #include <fmt/format.h>
@@ -24,34 +22,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// A run of the machine by so many workers on the screen tiles from `first` to, not including, `end`.
-struct TileRun {
-    Report report;
-    razor::FrameStatistics statistics;
-};
-
-TileRun run_tile(const Config& config, const razor::Scene& scene, int workers, int first, int end,
-                 const std::atomic<bool>& interrupted) {
-    const Machine machine(config);
-    const Placement placement(config.chip);
-    razor::Frame frame(scene, {.workers = workers,
-                               .tree_of_worker = placement.trees(workers, config.kdtree.share),
-                               .place_of_worker = placement.places(workers),
-                               .apart = true,
-                               .discards = config.renderer.discard == "on"});
-    frame.take_tiles(first, end);
-    const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
-                        {std::begin(razor::kind_names), std::end(razor::kind_names)}};
-    RunOptions options;
-    options.stop = &interrupted;
-    TileRun out;
-    out.report = machine.run(
-        frame.memory(), workers, labels, [&](int worker) { frame.render(razor::simulated::kernels, worker); },
-        1, options);
-    out.statistics = frame.statistics();
-    return out;
-}
-
 } // namespace
 
 KeptSeed make_seed(const Config& machine, const razor::Scene& scene, const std::string& scene_text,
@@ -63,11 +33,11 @@ KeptSeed make_seed(const Config& machine, const razor::Scene& scene, const std::
     const int threads = static_cast<int>(out.machine.all_threads());
     const int tiles = razor::screen_tiles(scene.settings);
     razor::Progress progress(!quiet);
-    const TileRun crowded = run_tile(out.machine, scene, threads, 0, tiles, interrupted);
+    const FrameRun crowded = run_frame(out.machine, scene, threads, 0, tiles, interrupted);
     progress.show(0.8);
     // The middle of the curve shows more than its ends; an eighth says what instructions take.
     const int some = std::max(1, tiles / 8), first = (tiles - some) / 2;
-    const TileRun lone = run_tile(out.machine, scene, 1, first, first + some, interrupted);
+    const FrameRun lone = run_frame(out.machine, scene, 1, first, first + some, interrupted);
     out.seed = seed_of(crowded.report, lone.report, once_a_frame(), std::min(threads, tiles));
     out.drivers = drivers(crowded.statistics.counters, static_cast<double>(crowded.statistics.inner_nodes));
     out.processor_seconds = crowded.report.processor_seconds + lone.report.processor_seconds;
