@@ -1,6 +1,7 @@
 #include "sim/machine/engine.h"
 
 #include "sim/config/placement.h"
+#include "sim/trace/line_sharing.h"
 #include "sim/trace/recorder.h"
 
 #include <fmt/core.h>
@@ -439,8 +440,17 @@ bool Engine::run_window() {
     if (recorder_ != nullptr)
         recorder_->collect();
     end_window();
-    if (recorder_ != nullptr)
-        recorder_->collect();
+    if (recorder_ == nullptr)
+        return true;
+    recorder_->collect();
+    if (LineSharing* const sharing = recorder_->sharing(); sharing != nullptr && sharing->due(window_end_)) {
+        const auto cores = wide(config_.chip.cores);
+        sharing->look(window_end_, [&](unsigned level, std::uint64_t core, std::uint64_t address) {
+            Tile& tile = tiles_[core / cores];
+            return level == 0 ? tile.cores[core % cores].l1.holds(address)
+                              : tile.cache_of(level, core % cores).holds(address);
+        });
+    }
     return true;
 }
 

@@ -189,11 +189,14 @@ bool explains(const Explanation& e, std::string_view path) {
     return pattern.empty() && path.empty();
 }
 
+bool is_named(const Explanation& e, std::string_view words) {
+    return fmt::format(".{}.", plain(e.path)).find(fmt::format(".{}.", plain(words))) != std::string::npos;
+}
+
 std::vector<const Explanation*> find_explanations(std::string_view words) {
-    const std::string wanted = fmt::format(".{}.", plain(words));
     std::vector<const Explanation*> out;
     for (const Explanation& e : explanations())
-        if (fmt::format(".{}.", plain(e.path)).find(wanted) != std::string::npos)
+        if (is_named(e, words))
             out.push_back(&e);
     return out;
 }

@@ -20,8 +20,10 @@ const std::vector<Explanation>& explanations();
 /// Whether `path` (of a figure, arrays as []) is one that the pattern stands for.
 bool explains(const Explanation& e, std::string_view path);
 
-/// Those that have `words` in their path, which may leave out names on the left ("l1.hits", "hits") or on the
-/// right ("stack").
+/// Whether `words` are in its path; they may leave out names on the left ("l1.hits", "hits") or on the right
+/// ("stack").
+bool is_named(const Explanation& e, std::string_view words);
+/// Those of which that is true.
 std::vector<const Explanation*> find_explanations(std::string_view words);
 
 } // namespace sim

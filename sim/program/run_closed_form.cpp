@@ -33,6 +33,7 @@ void RunCommand::check_closed_form(const Config& config) const {
         {"--memory", !memory_.empty()},      {"--host-threads", !host_threads_.empty()},
         {"--trace", trace_.wanted()},        {"--tiles-in-rows", tiles_in_rows_},
         {"--estimate-seed", !seed_.empty()}, {"--costs and --false-colour", costs_.given()},
+        {"--sharing", sharing_.wanted()},
     };
     for (const auto& [option, given] : others)
         if (given)

@@ -131,6 +131,7 @@ void RunCommand::add_to(CLI::App& app) {
     add_fidelity_to(run);
     trace_.add_to(run);
     costs_.add_to(run);
+    sharing_.add_to(run);
     run.add_flag("--no-native", no_native_,
                  "do not render the frame natively as well, to compare time and picture");
     run.add_flag("--no-calibration", no_calibration_,
@@ -158,7 +159,8 @@ std::optional<Sampling> RunCommand::sampling(const Machine& machine) const {
     const std::pair<const char*, bool> others[] = {
         {"--intervals", !intervals_.empty()}, {"--frames", !frames_.empty()},
         {"--tiles", !tiles_.empty()},         {"--host-threads", !host_threads_.empty()},
-        {"--trace", trace_.wanted()},         {"--costs and --false-colour", costs_.given()}};
+        {"--trace", trace_.wanted()},         {"--costs and --false-colour", costs_.given()},
+        {"--sharing", sharing_.wanted()}};
     for (const auto& [option, given] : others)
         if (given)
             throw razor::UserError(fmt::format(
@@ -221,6 +223,11 @@ int RunCommand::run() const {
     const bool estimated = sampling && sampling->fraction < 1;
     const std::string scene = razor::to_toml(description);
     TraceSettings trace = trace_.settings();
+    std::optional<LineSharing> sharing = sharing_.begin();
+    if (sharing && trace_.wanted())
+        throw razor::UserError(
+            "--sharing and --trace both look at what cores access; give them to runs of their "
+            "own, which are alike to the cycle");
     for (const std::string& output : outputs_)
         razor::check_output(output);
     costs_.check(outputs_, config.cache_levels());
@@ -271,8 +278,11 @@ int RunCommand::run() const {
         trace.picture = {static_cast<std::uint32_t>(description.settings.width),
                          static_cast<std::uint32_t>(description.settings.height), razor::tile_side};
         recorder.emplace(std::move(trace), config, traces::open_sink(trace_.file()));
-        run_options.recorder = &*recorder;
+    } else if (sharing) {
+        recorder.emplace(config, *sharing);
     }
+    if (recorder)
+        run_options.recorder = &*recorder;
     Report report;
     std::optional<NativeRun> native;
     try {
@@ -316,7 +326,9 @@ int RunCommand::run() const {
     const razor::Film colours = costs_.shows() ? costs_.shown(film) : razor::Film();
     for (const std::string& output : outputs_)
         razor::write_image(output, costs_.shows() && razor::is_png(output) ? colours : film, attributes);
-    if (recorder)
+    if (sharing)
+        sharing->check(report);
+    else if (recorder)
         recorder->finish();
     if (!intervals_.empty())
         razor::write_text_file(intervals_, print_intervals(report));
@@ -335,6 +347,8 @@ int RunCommand::run() const {
         run.erase("host");
         out.update(run);
         out["machine_provenance"] = provenance_json(machine_description);
+        if (sharing)
+            out["sharing"] = sharing_json(*sharing, report);
         if (calibration)
             out["calibration"] = calibration_json(*calibration);
         out["renderer"] = renderer_json(statistics, counted.of(statistics), frame.duplicates(), trees);
@@ -352,7 +366,10 @@ int RunCommand::run() const {
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +
         frame_text(description.settings, workers, counted, statistics, frame.budget(), report) +
         (estimated ? sampled_text(report, estimate, *sampling) : print_text(report)) +
-        (pixel_costs ? costs_.text(report, film) : "") + (recorder ? trace_.text(*recorder) : "") +
+        (pixel_costs ? costs_.text(report, film) : "") +
+        (sharing    ? sharing_text(*sharing, report)
+         : recorder ? trace_.text(*recorder)
+                    : "") +
         (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
     if (report_.empty())
         fmt::print("{}", text);

@@ -5,6 +5,7 @@
 #include "sim/config/machine_file.h"
 #include "sim/machine/machine.h"
 #include "sim/program/pixel_costs.h"
+#include "sim/program/sharing_report.h"
 #include "sim/program/trace_options.h"
 
 #include <CLI/CLI.hpp>
@@ -47,6 +48,7 @@ private:
     std::string estimate_, seed_, seed_report_, fidelity_, error_;
     TraceOptions trace_;
     PixelCostOptions costs_;
+    SharingOptions sharing_;
     std::vector<std::string> outputs_;
     std::string json_, report_, workers_, share_, host_threads_, jitter_, interval_, intervals_, frames_,
         tiles_, memory_;

@@ -58,7 +58,8 @@ double RunCommand::wanted_error() const {
                                                    {"--memory", !memory_.empty()},
                                                    {"--host-threads", !host_threads_.empty()},
                                                    {"--trace", trace_.wanted()},
-                                                   {"--costs and --false-colour", costs_.given()}};
+                                                   {"--costs and --false-colour", costs_.given()},
+                                                   {"--sharing", sharing_.wanted()}};
     for (const auto& [option, given] : others)
         if (given)
             throw razor::UserError(fmt::format(

@@ -2,6 +2,7 @@
 
 #include "sim/config/error.h"
 #include "sim/machine/windows.h"
+#include "sim/trace/line_sharing.h"
 #include "traces/site_name.h"
 
 #include <fmt/format.h>
@@ -65,6 +66,8 @@ Recorder::Recorder(TraceSettings settings, const Config& config, std::unique_ptr
     if (!settings_.cores.all() && filter_.level > 1)
         throw ConfigError("--trace-cores: only what cores and L1s do is known by core; use --trace-tiles");
 }
+
+Recorder::Recorder(const Config& config, LineSharing& sharing) : config_(config), sharing_(&sharing) {}
 
 /// By number: threads, caches, or the tiles that ask memory.
 std::vector<std::string> Recorder::stream_names() const {
@@ -142,12 +145,18 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
     for (std::size_t tile = 0; tile < wide(config_.chip.tiles); ++tile)
         taps_.emplace_back(filter_);
     names_.resize(taps_.size());
+    if (sharing_ != nullptr) {
+        sharing_->begin(config_, structures.size());
+        return;
+    }
     // What is asked for beyond the tiles is in no order of its own.
     writer_.emplace(std::move(sink_), d, block_references, is_of_tiles());
 }
 
 void Recorder::start(std::uint64_t cycle) {
     origin_ = cycle;
+    if (sharing_ != nullptr)
+        sharing_->start(cycle);
     for (std::size_t tile = 0; tile < taps_.size(); ++tile)
         if (tile >= settings_.tiles.first && tile <= settings_.tiles.last)
             taps_[tile].start(cycle);
@@ -189,6 +198,12 @@ void Recorder::collect(std::size_t tile) {
     std::vector<TraceTap::Noted>& noted = taps_[tile].noted();
     if (noted.empty())
         return;
+    if (sharing_ != nullptr) {
+        for (const TraceTap::Noted& n : noted)
+            sharing_->note(n);
+        noted.clear();
+        return;
+    }
     if (window_)
         writer_->mark(*std::exchange(window_, std::nullopt));
     learn_sites(tile);
@@ -205,6 +220,8 @@ void Recorder::collect(std::size_t tile) {
 
 void Recorder::end(std::uint64_t until, std::uint64_t begin) {
     collect();
+    if (sharing_ != nullptr)
+        return;
     end_ = traces::Turn{traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_};
     writer_->mark(*end_);
 }

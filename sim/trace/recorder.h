@@ -31,10 +31,16 @@ struct TraceSettings {
     std::string program, configuration;               // for the trace's description
 };
 
+class LineSharing;
+
 class Recorder {
 public:
     /// Throws ConfigError where the settings do not fit the machine.
     Recorder(TraceSettings settings, const Config& config, std::unique_ptr<traces::Sink> sink);
+
+    /// Writes nothing: all that cores do is for `sharing` to see.
+    Recorder(const Config& config, LineSharing& sharing);
+    LineSharing* sharing() const { return sharing_; } // or null
 
     /// A run begins; once. Throws ConfigError where there is no such structure or phase.
     void begin(const Labels& labels, const std::vector<std::string>& structures,
@@ -69,6 +75,7 @@ private:
 
     TraceSettings settings_;
     const Config config_;
+    LineSharing* sharing_ = nullptr;
     std::unique_ptr<traces::Sink> sink_;
     TraceTap::Filter filter_;
     std::size_t phases_ = 1;
