@@ -28,6 +28,7 @@ endif()
 # Flags and definitions of one target and logical width, for any CMake target that includes isa/isa.h. A width other than
 # RAZOR_WIDTH is for tests: one program holds one width, and links nothing that was compiled for another.
 function(isa_compile_for CMAKE_TARGET ISA WIDTH)
+  set_target_properties(${CMAKE_TARGET} PROPERTIES UNITY_BUILD OFF) # what is inlined into what is the sources' choice
   string(TOUPPER ${ISA} ISA_UPPER)
   target_compile_options(${CMAKE_TARGET} PRIVATE -fno-math-errno ${ISA_FLAGS_${ISA}})
   target_compile_definitions(${CMAKE_TARGET} PRIVATE ISA_TARGET=${ISA} ISA_TARGET_${ISA_UPPER}=1 ISA_WIDTH=${WIDTH})

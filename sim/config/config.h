@@ -12,6 +12,11 @@ namespace sim {
 
 using integer = std::int64_t;
 
+/// Of a number that is none below zero.
+inline std::uint64_t wide(integer x) {
+    return static_cast<std::uint64_t>(x);
+}
+
 struct ChipConfig {
     integer clock_ps = 0, tiles = 0, cores = 0, threads = 0; // cores of a tile, threads of a core
     std::string placement;

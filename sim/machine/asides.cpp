@@ -5,10 +5,6 @@
 namespace sim {
 namespace {
 
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
 /// Word of a line.
 void note_line(const Asker& who, unsigned level, traces::Kind kind, std::uint64_t address, cycle t) {
     note_word(who, level, kind, {address, 0, t, who.column}, Passing::to(level));

@@ -15,10 +15,6 @@ bool after(const Request& a, const Request& b) {
            std::tie(b.at, b.tile, b.sequence, b.stage, b.to);
 }
 
-std::size_t wide(integer x) {
-    return static_cast<std::size_t>(x);
-}
-
 } // namespace
 
 std::unique_ptr<Beyond> Beyond::make(const Config& config, Reply reply) {

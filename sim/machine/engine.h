@@ -32,9 +32,6 @@ using isa::timing::stamp;
 inline constexpr std::uint32_t width = ISA_WIDTH; // logical lanes
 inline constexpr std::uint64_t all_lanes = ~std::uint64_t{0} >> (64U - width);
 
-inline std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
 inline std::uint32_t narrow(integer x) {
     return static_cast<std::uint32_t>(x);
 }

@@ -8,10 +8,6 @@
 namespace sim {
 namespace {
 
-std::size_t wide(integer x) {
-    return static_cast<std::size_t>(x);
-}
-
 bool later(const Request& a, const Request& b) {
     return a.sequence > b.sequence;
 }

@@ -9,10 +9,6 @@
 namespace sim {
 namespace {
 
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
 std::uint64_t busiest(const std::vector<CacheCounters>& caches) {
     std::uint64_t most = 0;
     for (const CacheCounters& c : caches)

@@ -7,14 +7,6 @@
 #include <algorithm>
 
 namespace sim {
-namespace {
-
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
-} // namespace
-
 std::uint64_t to_core_cycles(const Config& c, integer memory_clocks) {
     return wide((memory_clocks * c.memory.clock_ps + c.chip.clock_ps - 1) / c.chip.clock_ps);
 }

@@ -7,9 +7,6 @@
 namespace sim {
 namespace {
 
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
 unsigned log2(integer x) {
     return static_cast<unsigned>(std::countr_zero(wide(x)));
 }

@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace sim {
-namespace {
-
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
-} // namespace
-
 Memory::Memory(const Config& config, std::uint64_t disorder)
     : MemoryLines(config), shortest_(shortest_read(config)) {
     channels_.reserve(wide(config.memory.channels));

@@ -3,14 +3,6 @@
 #include <bit>
 
 namespace sim {
-namespace {
-
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
-} // namespace
-
 MemoryLines::MemoryLines(const Config& config)
     : core_ps_(wide(config.chip.clock_ps)), memory_ps_(wide(config.memory.clock_ps)),
       there_(wide(config.memory.controller_cycles) / 2),

@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
 } // namespace
 
 std::string QueuedMemory::mistake(const Config& config) {

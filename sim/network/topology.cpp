@@ -7,10 +7,6 @@
 namespace sim {
 namespace {
 
-std::size_t wide(integer x) {
-    return static_cast<std::size_t>(x);
-}
-
 /// The least divisor of n that is no less than its square root.
 std::size_t near_square(std::size_t n) {
     std::size_t columns = 1;

