@@ -7,20 +7,9 @@ picture=tests/kernels/picture
 # Run by g++'s build alone: studies and whole runs, of which every part has tests of its own.
 only_by_gcc='ValidatesItself|^absent_code|^Sweep\.|^DesignSweep\.|^Whole\.|^sweep_|^calibration_|^sharing_|^analysis_|^embree_'
 only_by_gcc+='|^kernels_operand_order|^isa_refused|^isa_lint|^tree$|^api_example'
-# Not under sanitizers either: the longest ones that take the paths of others.
-not_sanitized='^Zoom|LevelsOfTorus|_stretched|_bilinear|/female_generic|/catmark_car|/spot|/urchin|/tapered|/prism'
-not_sanitized+='|^Furnace\.|^DirectLight\.|^Convergence\.|^BounceLevels\.|^TextureLevels\.|^SkyMap.Light'
-not_sanitized+='|^Paths.Diffuse|^Paths.Mirror|^Paths.Plastic|^Paths.Glass'
-not_sanitized+='|/courtyard|/interior|/forest|/showcase|/lights'
-not_sanitized+='|LevelsThatJumpHaveHoles|OfChecksAreTheScenes|RunsCopernicus|CountsTheSameInAllUnits|DiscardsWhatIsDead'
-not_sanitized+='|WritesATimeSeries|CacheOracle.SyntheticStream|ReportsDoNotDependOn|HostThreadsChangeNothing'
-not_sanitized+='|DoNotDependOnWorkers|TilesThatFight|HitsDoNotPop|Fields.*/instances|OnePairOfLevelsAtATimeLeaks'
-not_sanitized+='|NoReportDependsOn|IsAsANewFrame|ClosedFormsPass|SharesTreesAsAsked|HostThreadsChangeNoDigit|LawsHoldOnTheLast|NoRayPassesBetweenLevels|Cutouts.AreNotThere'
-not_sanitized+='|LetNoRayThrough/[d-z]|LetNoRayThrough/ch|LetNoRayThrough/cr|HaveTheirMeanWhereItIs|^Emitters.Of|^Emitters.Placed|^Emitters.InMetal|EmittersOf.All|^Paths.Sheen'
-not_sanitized+='|StaysWithinItsMemory|KnowsWhatAFrameTakes|^Study.GoesOn|^Study.Measures|^ProgramTargetError|^Recording.Counts'
-not_sanitized+='|^EdgeChoice|^Emitters.WithMaps|^NearLights|^TargetFrames|^AdaptiveFrames|AreClosedUnderBothSchemes/100|AreClosedUnderBothSchemes/360|ReferenceReplay|^RandomCages|TheSameBytesOnAny|FiltersGiveWhatIsLeft'
-not_sanitized+='|^Sampling.EstimatesCycles|^Sampling.IntervalsHold|^Sampling.AllInDetail|TakesSampledRuns'
-not_sanitized+='|^PathsOf|^Paths.Patterns|^Paths.Bumps|^Paths.Surf|^Paths.Disp|^ManyLights.Matte|^ManyLights.What|^IndependentReplay.TenMillion'
+# Ten times as slow under sanitizers: what took longer than this in g++'s build is not run again, but for what is shortened there.
+sanitized_seconds=0.7
+shortened='^Properties\.|^Scenes/(Watertight|Fields)\.'
 scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
 simulated=(--size 48x48 --spp 1) # of the picture that compilers are compared by
@@ -130,10 +119,20 @@ run_tests() {
     fi
 }
 
-# Ten times as slow, and one trial shows an error of memory as well as ten do.
+# One trial shows an error of memory as well as ten do.
 run_sanitized_tests() {
-    export RAZOR_WATERTIGHT_RAYS=20000 RAZOR_RANDOM_MACHINES=12
-    run_tests asan-ubsan -E "$not_sanitized|$only_by_gcc"
+    local slow
+    slow=$(slow_tests $sanitized_seconds)
+    export RAZOR_WATERTIGHT_RAYS=2000 RAZOR_RANDOM_MACHINES=12
+    run_tests asan-ubsan -E "$only_by_gcc${slow:+|^($slow)( |\$)}"
+}
+
+# slow_tests SECONDS: those that took as long in g++'s last run, as a regular expression; without one, none.
+slow_tests() {
+    local tests=build/release/tests.xml
+    [[ ! -e $tests ]] ||
+        sed -n -E 's/^[[:space:]]*<testcase name="([^" ]+).* time="([0-9.e+-]+)" status=.*/\2 \1/p' $tests |
+        awk -v least="$1" '$1 >= least { print $2 }' | grep -v -E "$shortened" | sort -u | paste -s -d '|'
 }
 
 # The lint of kernels is among the tests.
