@@ -121,11 +121,11 @@ run_tests() {
 
 # One trial shows an error of memory as well as ten do. Numbers, as ctest's regular expressions do not hold so many names.
 run_sanitized_tests() {
-    local numbers=build/asan-ubsan/numbers.txt
+    local numbers=$PWD/build/asan-ubsan/numbers.txt
     export RAZOR_WATERTIGHT_RAYS=2000 RAZOR_RANDOM_MACHINES=12
     ctest --preset asan-ubsan -N -E "$only_by_gcc" | sed -n -E 's/^ +Test +#([0-9]+): ([^ ]+).*/\1 \2/p' |
-        awk 'NR == FNR { slow[$1]; next } !($2 in slow) { list = list "," $1 } END { print "0,0,0" list }' <(slow_tests) - >$numbers
-    run_tests asan-ubsan -I $numbers
+        awk 'NR == FNR { slow[$1]; next } !($2 in slow) { list = list "," $1 } END { print "0,0,0" list }' <(slow_tests) - >"$numbers"
+    run_tests asan-ubsan -I "$numbers"
 }
 
 # Names of those that took long in g++'s last run; without one, none.
