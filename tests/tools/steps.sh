@@ -8,7 +8,7 @@ picture=tests/kernels/picture
 only_by_gcc='ValidatesItself|^absent_code|^Sweep\.|^DesignSweep\.|^Whole\.|^sweep_|^calibration_|^sharing_|^analysis_|^embree_'
 only_by_gcc+='|^kernels_operand_order|^isa_refused|^isa_lint|^tree$|^api_example'
 # Ten times as slow under sanitizers: what took longer than this in g++'s build is not run again, but for what is shortened there.
-sanitized_seconds=0.5
+sanitized_seconds=0.3
 shortened='^Properties\.|^Scenes/(Watertight|Fields)\.'
 scene=configs/scenes/default.toml
 machines=(configs/machines/tiny.toml configs/machines/copernicus.toml)
