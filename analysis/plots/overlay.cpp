@@ -96,7 +96,7 @@ std::string overlay_svg(const Pixels& pixels, const OverlayScale& scale, const s
     svg.text(10 + 4 * steps, height + 54, short_text(scale.high, Unit::plain), Svg::Anchor::end, 11);
     svg.text(20 + 4 * steps, height + 33, name + (scale.logarithmic ? ", logarithmic" : ""),
              Svg::Anchor::start, 12);
-    return svg.file();
+    return svg.str();
 }
 
 } // namespace analysis

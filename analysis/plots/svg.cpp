@@ -131,8 +131,12 @@ std::string Svg::str() const {
         number(width_), number(height_), body_);
 }
 
+std::string svg_file(const std::string& element) {
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + element;
+}
+
 std::string Svg::file() const {
-    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + str();
+    return svg_file(str());
 }
 
 std::string_view colour(std::size_t number) {

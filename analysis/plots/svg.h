@@ -11,6 +11,8 @@ namespace analysis {
 
 /// `& < > "` as entities; bytes that are no text (control characters) as question marks.
 std::string escaped(std::string_view text);
+/// A file of an SVG element.
+std::string svg_file(const std::string& element);
 
 /// x to the right, y down, in pixels.
 class Svg {

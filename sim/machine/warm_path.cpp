@@ -121,15 +121,6 @@ inline void Engine::warm_reload(Hart& h, std::uint32_t value, bool unstored) {
     } else {
         pass(h, vector_load, pieces);
     }
-    if (unstored && !broadcast && whole_lines_ != 0 && !tlb_) [[likely]] {
-        // They were written just now.
-        const std::uint32_t taken = line_bytes_ >> piece_shift_;
-        Cache& l1 = h.core->l1;
-        if (l1.read_again(place >> line_shift_, whole_lines_, taken, h.column)) [[likely]] {
-            l1.counters().busy_cycles += std::uint64_t{whole_lines_} * taken * slots_of(piece_lanes_ * 4);
-            return;
-        }
-    }
     touch(false);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 namespace sim {
+
 std::uint64_t to_core_cycles(const Config& c, integer memory_clocks) {
     return wide((memory_clocks * c.memory.clock_ps + c.chip.clock_ps - 1) / c.chip.clock_ps);
 }

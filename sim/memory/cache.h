@@ -71,20 +71,6 @@ public:
             (write ? cell.l1_writes : cell.l1_reads) += accesses;
         }
     }
-    /// Of an L1: the lines that were accessed last in their sets, from this number on, are read at once
-    /// again, as a hit. False where an access does more than that: then nothing has happened.
-    bool read_again(std::uint64_t line, std::uint32_t lines, std::uint32_t accesses, std::size_t column) {
-        if (special_) [[unlikely]]
-            return false;
-        for (std::uint32_t i = 0; i < lines; ++i)
-            if (!array_.use_recent(line + i, false))
-                return false;
-        counters_.hits += std::uint64_t{lines} * accesses;
-        counters_.reads += std::uint64_t{lines} * accesses;
-        for (std::uint32_t i = 0; i < lines; ++i)
-            attribution_->touch((line + i) << line_shift_, column).l1_reads += accesses;
-        return true;
-    }
     /// `upper` lies directly above this one.
     void add_above(Cache& upper) {
         upper.number_ = static_cast<std::uint32_t>(above_.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace sim {
+
 Memory::Memory(const Config& config, std::uint64_t disorder)
     : MemoryLines(config), shortest_(shortest_read(config)) {
     channels_.reserve(wide(config.memory.channels));

@@ -3,6 +3,7 @@
 #include <bit>
 
 namespace sim {
+
 MemoryLines::MemoryLines(const Config& config)
     : core_ps_(wide(config.chip.clock_ps)), memory_ps_(wide(config.memory.clock_ps)),
       there_(wide(config.memory.controller_cycles) / 2),

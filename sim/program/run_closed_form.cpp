@@ -70,10 +70,7 @@ int RunCommand::run_closed_form(const MachineDescription& machine, int workers,
         razor::write_text_file(json_, out.dump(2) + "\n");
     }
     const std::string text = provenance_text(machine) + closed_form_text(*result, machine.config, workers);
-    if (report_.empty())
-        fmt::print("{}", text);
-    else
-        razor::write_text_file(report_, text);
+    give(text);
     return 0;
 }
 

@@ -371,11 +371,15 @@ int RunCommand::run() const {
          : recorder ? trace_.text(*recorder)
                     : "") +
         (native ? native_text(*native, report.host_seconds) : "") + code_text(frame.plan());
-    if (report_.empty())
-        fmt::print("{}", text);
-    else
-        razor::write_text_file(report_, text);
+    give(text);
     return 0;
+}
+
+void RunCommand::give(const std::string& report) const {
+    if (report_.empty())
+        fmt::print("{}", report);
+    else
+        razor::write_text_file(report_, report);
 }
 
 } // namespace sim

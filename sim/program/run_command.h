@@ -42,6 +42,8 @@ private:
     double wanted_error() const;
     int run_fidelity(double wanted, const std::vector<std::string>& settings, int workers,
                      const razor::SceneDescription& scene) const;
+    /// To the file of --report, or to standard output.
+    void give(const std::string& report) const;
 
     MachineOptions machine_;
     razor::SceneOptions scene_;

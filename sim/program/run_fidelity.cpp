@@ -135,10 +135,7 @@ int RunCommand::run_fidelity(double wanted, const std::vector<std::string>& sett
                            found->frame->report) +
                 (sampled ? sampled_text(found->frame->report, found->frame->estimate, found->sampling)
                          : print_text(found->frame->report));
-    if (report_.empty())
-        fmt::print("{}", text);
-    else
-        razor::write_text_file(report_, text);
+    give(text);
     return 0;
 }
 

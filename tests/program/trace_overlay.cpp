@@ -76,13 +76,17 @@ TEST_F(TraceOverlay, FiguresAreLaidOverThePicture) {
         }
     const Outcome drawn = tool("tiles a.rzt --over a.png -o o.svg");
     EXPECT_EQ(drawn.code, 0) << drawn.err;
-    EXPECT_NE(text("o.svg").find("misses of a tile"), std::string::npos);
+    const std::string svg = text("o.svg");
+    EXPECT_NE(svg.find("misses of a tile"), std::string::npos);
+    EXPECT_TRUE(svg.starts_with("<?xml"));
+    EXPECT_EQ(svg.find("<?xml", 1), std::string::npos) << "no XML";
     const Outcome page = tool("report a.rzt -o o.html --over a.exr");
     EXPECT_EQ(page.code, 0) << page.err;
     const std::string html = text("o.html");
     for (const char* name :
          {"references of a tile", "misses of a tile", "miss ratio of a tile", "Over the picture"})
         EXPECT_NE(html.find(name), std::string::npos) << name;
+    EXPECT_EQ(html.find("<?xml"), std::string::npos);
 }
 
 TEST_F(TraceOverlay, MistakesAreALineAndLeaveNothing) {

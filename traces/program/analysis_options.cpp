@@ -1,5 +1,6 @@
 #include "traces/program/analysis_options.h"
 
+#include "analysis/plots/svg.h"
 #include "traces/error.h"
 #include "traces/program/interrupt.h"
 #include "traces/program/progress.h"
@@ -274,7 +275,7 @@ void AnalysisOptions::give(std::string_view command, const analysis::Table& tabl
         write(json_, out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     }
     if (!svg_.empty())
-        write(svg_, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + draw());
+        write(svg_, analysis::svg_file(draw()));
     if (csv_ != "-" && json_ != "-" && svg_ != "-")
         fmt::print("{}\n\n{}", heading, table.text());
     if (!note_.empty())

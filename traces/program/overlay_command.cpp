@@ -2,6 +2,7 @@
 
 #include "analysis/images/linear_image.h"
 #include "analysis/plots/overlay.h"
+#include "analysis/plots/svg.h"
 #include "traces/error.h"
 #include "traces/io/sink.h"
 
@@ -67,7 +68,8 @@ void OverlayCommand::run() const {
         range_.empty() ? analysis::scale_of(values, !linear_) : parse_overlay_range(range_, !linear_);
     const analysis::Pixels pixels = analysis::overlaid(picture, values, scale);
     const auto sink = open_sink(output_);
-    sink->write(png ? analysis::png_bytes(pixels) : analysis::overlay_svg(pixels, scale, layer_));
+    sink->write(png ? analysis::png_bytes(pixels)
+                    : analysis::svg_file(analysis::overlay_svg(pixels, scale, layer_)));
     sink->commit();
 }
 

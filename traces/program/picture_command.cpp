@@ -1,4 +1,5 @@
 // razor-trace picture: which addresses are referenced when, as a picture.
+#include "analysis/plots/svg.h"
 #include "analysis/traces/address_picture.h"
 #include "traces/error.h"
 #include "traces/program/analyses.h"
@@ -33,10 +34,9 @@ public:
         for (std::size_t g = 0; g < touches.groups(); ++g)
             names.push_back(touches.name(g, options_.description()));
         const std::unique_ptr<Sink> sink = open_sink(file_);
-        sink->write(suffix == ".png"
-                        ? analysis::png_bytes(picture.pixels)
-                        : "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
-                              analysis::with_legend(picture, counts, names, options_.description().time));
+        sink->write(suffix == ".png" ? analysis::png_bytes(picture.pixels)
+                                     : analysis::svg_file(analysis::with_legend(
+                                           picture, counts, names, options_.description().time)));
         sink->commit();
         // What the picture shows, from its top.
         Table table = options_.table(

@@ -1,4 +1,5 @@
 // razor-trace tiles: what each screen tile of the picture asked memory for, and that over the picture.
+#include "analysis/plots/svg.h"
 #include "traces/error.h"
 #include "traces/program/analyses.h"
 #include "traces/program/cache_options.h"
@@ -60,10 +61,11 @@ public:
         if (over) {
             over->draw(tiles, figure, range_, !linear_);
             const std::unique_ptr<Sink> sink = open_sink(output_);
-            sink->write(png ? over->png() : "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + over->svg());
+            sink->write(png ? over->png() : analysis::svg_file(over->svg()));
             sink->commit();
-            text = fmt::format("; {}: {} from {:.6g} to {:.6g}", output_, figure_, over->scale().low,
-                               over->scale().high);
+            // Counts are whole.
+            text = fmt::format("; {0}: {1} from {2:.{4}f} to {3:.{4}f}", output_, figure_, over->scale().low,
+                               over->scale().high, figure == analysis::TileFigure::ratio ? 4 : 0);
         }
         give(tiles, picture, text);
     }
