@@ -3,6 +3,7 @@
 #include "tests/sim/kernels.h"
 #include "tests/sim/machines.h"
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -41,6 +42,49 @@ void mix(std::byte* data, std::byte* more, int worker, int pieces) {
                    40);
 }
 
+/// Operations whose vectors were all made some time ago, more of them than registers hold; by a seed.
+void use_old_values(std::byte* data, int count) {
+    using namespace isa::timing;
+    std::mt19937 random(5);
+    constexpr std::uint64_t all = ~std::uint64_t{0} >> (64 - ISA_WIDTH);
+    std::array<std::int32_t, 64> index{};
+    std::array<stamp, 12> values{};
+    const auto some = [&]() -> stamp& { return values[random() % values.size()]; };
+    const auto place = [&](std::uint32_t step) { return data + random() % 400000 / step * step; };
+    const auto site_of = [](std::uint32_t line) { return site{"sampling.cpp", line}; };
+    for (int i = 0; i < count; ++i) {
+        const std::uint64_t lanes =
+            random() % 2 == 0 ? all : (std::uint64_t{random()} << 32U | random()) & all;
+        for (std::int32_t& k : index)
+            k = static_cast<std::int32_t>(random() % 1000);
+        switch (random() % 9) {
+        case 0:
+            some() = load_vector(site_of(1), place(4), lanes, stamp{}, some());
+            break;
+        case 1:
+            some() = load_broadcast(site_of(2), place(4), 4, stamp{});
+            break;
+        case 2:
+            store_vector(site_of(3), place(64), lanes, stamp{}, some(), some());
+            break;
+        case 3:
+            some() = gather(site_of(4), place(64), index.data(), lanes, stamp{}, some(), some());
+            break;
+        case 4:
+            scatter(site_of(5), place(64), index.data(), lanes, stamp{}, some(), some(), some());
+            break;
+        case 5:
+            branch(site_of(6), cross_to_scalar(operation::reduce, some(), stamp{}), random() % 2 == 0);
+            break;
+        case 6:
+            some() = cross_op(operation::shuffle, some(), some());
+            break;
+        default:
+            some() = vector_op(operation::fused, some(), some(), some());
+        }
+    }
+}
+
 Config shipped(const std::string& name) {
     return read_machine(std::string(RAZOR_SOURCE_DIR "/configs/machines/") + name);
 }
@@ -63,30 +107,33 @@ TEST(Sampling, WarmingCountsWhatADetailedRunCounts) {
                           {"lanes", {"core.gather=lane", "lanes.scatter=on", "lanes.masked=on"}},
                           {"moves", {"core.scalar_moves=0.25", "core.vector_moves=0.5"}},
                           {"folding", {"core.address_folding=on", "core.memory_operands=1"}}};
-    const Body body = [](std::byte* data, std::byte* more, int w) { mix(data, more, w, 30); };
-    for (const Case& k : cases) {
-        SCOPED_TRACE(k.what);
-        const Config c = describe_machine(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml", k.settings).config;
-        const Report all = run_in_detail(c, body);
-        // One unit at the beginning, and the rest is warmed.
-        const Sampled s = run_sampled(c, {.fraction = 1e-6, .unit = 200, .before = 200}, body);
-        ASSERT_EQ(s.estimate.units, 1U);
-        ASSERT_LT(s.estimate.detailed, 0.1 * static_cast<double>(all.cycles));
-        for (const auto& row : core_counters)
-            EXPECT_EQ(s.report.core.*row.count, all.core.*row.count) << row.name;
-        EXPECT_EQ(s.report.by_kind, all.by_kind);
-        for (unsigned level = 0; level < 2; ++level) {
-            SCOPED_TRACE(level);
-            const CacheCounters a = s.report.cache_total(level), b = all.cache_total(level);
-            EXPECT_EQ(a.reads, b.reads);
-            EXPECT_EQ(a.writes, b.writes);
-            EXPECT_EQ(a.hits, b.hits);
-            EXPECT_EQ(a.misses, b.misses);
-            EXPECT_EQ(a.write_backs, b.write_backs);
+    const Body kernels = [](std::byte* data, std::byte* more, int w) { mix(data, more, w, 30); };
+    const Body old_values = [](std::byte* data, std::byte*, int) { use_old_values(data, 20000); };
+    for (const Case& k : cases)
+        for (const Body& body : {kernels, old_values}) {
+            SCOPED_TRACE(k.what);
+            const Config c =
+                describe_machine(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml", k.settings).config;
+            const Report all = run_in_detail(c, body);
+            // One unit at the beginning, and the rest is warmed.
+            const Sampled s = run_sampled(c, {.fraction = 1e-6, .unit = 200, .before = 200}, body);
+            ASSERT_EQ(s.estimate.units, 1U);
+            ASSERT_LT(s.estimate.detailed, 0.1 * static_cast<double>(all.cycles));
+            for (const auto& row : core_counters)
+                EXPECT_EQ(s.report.core.*row.count, all.core.*row.count) << row.name;
+            EXPECT_EQ(s.report.by_kind, all.by_kind);
+            for (unsigned level = 0; level < 2; ++level) {
+                SCOPED_TRACE(level);
+                const CacheCounters a = s.report.cache_total(level), b = all.cache_total(level);
+                EXPECT_EQ(a.reads, b.reads);
+                EXPECT_EQ(a.writes, b.writes);
+                EXPECT_EQ(a.hits, b.hits);
+                EXPECT_EQ(a.misses, b.misses);
+                EXPECT_EQ(a.write_backs, b.write_backs);
+            }
+            EXPECT_EQ(s.report.memory.reads, all.memory.reads);
+            EXPECT_EQ(s.report.memory.writes, all.memory.writes);
         }
-        EXPECT_EQ(s.report.memory.reads, all.memory.reads);
-        EXPECT_EQ(s.report.memory.writes, all.memory.writes);
-    }
 }
 
 TEST(Sampling, AllInDetailIsTheDetailedRun) {
