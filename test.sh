@@ -39,7 +39,8 @@ step "g++: tests" run_tests release
 if $all; then
     step "code style" check_style
     step "benchmarks start" start_benchmarks
-    step "clang, address and undefined-behaviour sanitizers: build" build asan-ubsan -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON
+    step "clang, address and undefined-behaviour sanitizers: build" build asan-ubsan -DRAZOR_TESTS=ON -DRAZOR_FUZZ=ON \
+        "$without_lines"
     step "clang: reports and pictures equal those of g++" compare_compilers
     step "fuzzers, $fuzz_seconds s each" fuzz
     step "address and undefined-behaviour sanitizers: tests" run_sanitized_tests
