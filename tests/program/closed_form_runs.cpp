@@ -61,6 +61,9 @@ TEST_F(Simulator, RefusesWhatASeedCannotKnow) {
     const std::string spp = "--spp 1 ", how = "--estimate closed-form ", seed = "--seed-report seed.json ";
     ASSERT_EQ(simulator(start + spp + how + seed).code, 0);
     folder_.file("bad.json", "{\"kind\": 3}");
+    nlohmann::json minus = nlohmann::json::parse(text("seed.json"));
+    minus["seed"]["phases"][1]["alone_cycles"] = -2;
+    folder_.file("minus.json", minus.dump());
     const std::pair<std::string, const char*> wrong[] = {
         {spp + how + seed + "-g l1.size_bytes=16384", "l1.size_bytes is another"},
         {spp + how + seed + "-g core.lanes=16", "core.lanes is another"},
@@ -71,6 +74,7 @@ TEST_F(Simulator, RefusesWhatASeedCannotKnow) {
         {spp + how + seed + "--estimate-seed 2", "leave out --estimate-seed"},
         {spp + how + "--seed-report bad.json", "bad.json is no seed"},
         {spp + how + "--seed-report s.toml", "s.toml is no seed"},
+        {spp + how + "--seed-report minus.json", "minus.json: alone_cycles is below 0"},
         {spp + "--estimate closed", "or closed-form"},
     };
     for (const auto& [options, message] : wrong) {
