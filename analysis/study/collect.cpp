@@ -169,7 +169,10 @@ Collection collect(const Study& study, const std::vector<Point>& points, const S
         if (std::any_of(out.points.begin(), out.points.end(),
                         [&](const CollectedPoint& p) { return !p.samples(figure.name).empty(); }))
             out.figures.push_back(figure);
-    out.words = views.words;
+    for (const std::string& word : views.words)
+        if (std::any_of(out.points.begin(), out.points.end(),
+                        [&](const CollectedPoint& p) { return p.word(word) != "-"; }))
+            out.words.push_back(word);
     for (const PlotRequest& request : study.plots.empty() ? views.plots : study.plots)
         out.plots.push_back(plot_of(out, request, figures));
     const std::vector<std::string>& rank = study.rank.empty() ? views.rank : study.rank;

@@ -33,7 +33,7 @@ struct Collection {
     std::vector<std::string> knobs;
     std::vector<Figure> figures; // those that some result has
     std::vector<CollectedPoint> points;
-    std::vector<std::string> words;
+    std::vector<std::string> words; // likewise
     std::vector<CollectedPlot> plots;
     std::vector<Ranking> rankings;
     std::vector<Curve> curves;

@@ -79,6 +79,8 @@ std::string wrong_setting(std::string_view key, Value& value) {
             if (text != "none" && text != "closed-form")
                 parse_sampling("estimate", text);
         });
+    if (key == "fidelity_error")
+        return razor::wrong_number(key, value, 0, 1);
     if (key == "share")
         return "share is kdtree.share among the settings of machines; write that";
     if (key == "jitter" || key == "sim.jitter")
@@ -125,8 +127,9 @@ double machine_number(const Settings& point, std::string_view key, const std::st
 } // namespace
 
 const std::vector<std::string_view>& run_keys() {
-    static const std::vector<std::string_view> keys{"machine", "workers", "host_threads", "frames",
-                                                    "tiles",   "memory",  "seed",         "estimate"};
+    static const std::vector<std::string_view> keys{"machine", "workers",  "host_threads",
+                                                    "frames",  "tiles",    "memory",
+                                                    "seed",    "estimate", "fidelity_error"};
     return keys;
 }
 
@@ -148,6 +151,7 @@ razor::StudyProgram machine_study_program() {
     out.vocabulary.preset = machine_number;
     out.name_figures();
     out.views.plots = {{"host_processor_seconds", "cycles_error", {}}};
+    out.views.words = {"fidelity"};
     out.remarks = {
         "Errors are beside the mean of the reference's runs. Runs of a point differ in sim.jitter alone: "
         "errors below what that moves mean nothing."};
@@ -166,8 +170,10 @@ razor::StudyProgram sweep_program() {
     out.vocabulary.wrong = wrong_setting;
     out.vocabulary.preset = machine_number;
     out.name_figures();
-    out.views = {
-        {{"seconds", "energy_joules", {}}}, {"cycles", "dram_bytes", "energy_joules"}, true, {"limited_by"}};
+    out.views = {{{"seconds", "energy_joules", {}}},
+                 {"cycles", "dram_bytes", "energy_joules"},
+                 true,
+                 {"limited_by", "fidelity"}};
     out.remarks = {
         "Runs of a design differ in sim.jitter alone (seeds 1 to N): designs whose runs overlap are not told "
         "apart."};

@@ -39,6 +39,18 @@ bool in_closed_form(const Settings& settings) {
     return estimate != settings.end() && plain_text(estimate->second) == "closed-form";
 }
 
+/// Where the run itself chooses how it is simulated.
+bool chooses_fidelity(const Settings& settings) {
+    return settings.contains("fidelity_error");
+}
+
+/// What most of them say.
+std::string most_said(const std::map<std::string, int>& counts) {
+    return std::max_element(counts.begin(), counts.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+}
+
 double mean_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -68,11 +80,15 @@ std::vector<std::string> MachineStudy::command(const Settings& settings, int see
         } else if (key == "estimate") {
             if (plain_text(value) == "none")
                 continue;
-            add("--estimate", plain_text(value));
+            if (!chooses_fidelity(settings))
+                add("--estimate", plain_text(value));
             if (in_closed_form(settings))
                 add("--seed-report", tile_seed);
             else
                 add("--estimate-seed", fmt::format("{}", std::max(seed, 1)));
+        } else if (key == "fidelity_error") {
+            add("--fidelity", "auto");
+            add("--error", plain_text(value));
         } else if (key == "host_threads")
             add("--host-threads", plain_text(value));
         else if (std::find(run_keys().begin(), run_keys().end(), key) != run_keys().end())
@@ -135,12 +151,19 @@ std::string MachineStudy::own_body(const Settings& settings, int seeds, bool of_
 Point MachineStudy::reference_of(const Point& point) const {
     Point out;
     out.settings = analysis::overlaid(point.settings, study_.reference);
+    out.settings.erase("fidelity_error"); // a reference is what errors are beside
     out.body = own_body(out.settings, study_.reference_seeds);
     out.name = analysis::point_name(out.body);
     return out;
 }
 
 std::string MachineStudy::body(const Point& point) const {
+    const auto estimate = point.settings.find("estimate");
+    if (chooses_fidelity(point.settings) && estimate != point.settings.end())
+        if (const std::string how = plain_text(estimate->second); how != "none" && how != "closed-form")
+            throw razor::UserError(fmt::format("fidelity_error chooses samples itself; leave out estimate = "
+                                               "\"{}\"",
+                                               how));
     std::string out = own_body(point.settings, study_.seeds);
     if (in_closed_form(point.settings))
         out += fmt::format("\n# computed from {}\n", tile_seed_of(point.settings, study_.seeds).name);
@@ -165,6 +188,7 @@ Point MachineStudy::tile_seed_of(const Settings& settings, int seeds) const {
             return;
         point.insert_or_assign("chip.tiles", Value(std::int64_t{1}));
         point.erase("workers");
+        point.erase("fidelity_error");
         Point out;
         out.body = own_body(point, seeds, true);
         out.name = analysis::point_name(out.body);
@@ -239,7 +263,7 @@ Result MachineStudy::measure_tile_seed(const Point& seed, const analysis::Store&
 Result MachineStudy::run_all(const Settings& settings, int seeds, const analysis::Store& store) const {
     Result out;
     const bool computed = in_closed_form(settings);
-    std::map<std::string, int> limiters; // how many runs each limits
+    std::map<std::string, int> limiters, ways; // of how many runs
     for (int seed = 1; seed <= seeds; ++seed)
         for (int repeat = 0; repeat < std::max(study_.repeats, 1); ++repeat) {
             const razor::ScratchFolder folder;
@@ -251,20 +275,25 @@ Result MachineStudy::run_all(const Settings& settings, int seeds, const analysis
                 folder / "log");
             const nlohmann::ordered_json report = razor::read_figures(json, "razor-sim run");
             out.host["host_seconds"].push_back(number_at(report, "/host/seconds"));
-            out.host["host_processor_seconds"].push_back(number_at(report, "/host/processor_seconds"));
+            // With all that was tried, where the run chose.
+            out.host["host_processor_seconds"].push_back(
+                number_at(report, chooses_fidelity(settings) ? "/host/fidelity/processor_seconds"
+                                                             : "/host/processor_seconds"));
             out.host["instructions_per_second"].push_back(number_at(report, "/host/instructions_per_second"));
-            if (computed)
+            if (report["host"].contains("seed_processor_seconds"))
                 out.host["seed_processor_seconds"].push_back(
                     number_at(report, "/host/seed_processor_seconds"));
             if (repeat == 0) {
                 add_figures(out.values, report);
                 ++limiters[limiter_name(report)];
+                if (chooses_fidelity(settings))
+                    ++ways[report.at("fidelity").at("chosen").get<std::string>()];
             }
         }
-    const auto most = std::max_element(limiters.begin(), limiters.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
     out.details = nlohmann::ordered_json::object();
-    out.details["limited_by"] = most->first;
+    out.details["limited_by"] = most_said(limiters);
+    if (!ways.empty())
+        out.details["fidelity"] = most_said(ways);
     return out;
 }
 

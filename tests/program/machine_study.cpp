@@ -166,6 +166,39 @@ TEST_F(MachineStudy, ComputesPointsFromKeptSeeds) {
         EXPECT_EQ(point["state"], "measured") << point;
 }
 
+// A point may leave it to the run how it is simulated: told are what it chose and the time of all it tried.
+TEST_F(MachineStudy, LetsRunsChooseTheirFidelity) {
+    std::string content = text("study.toml");
+    const std::size_t begin = content.find("[knobs]"), end = content.find("[reference]");
+    content.replace(begin, end - begin,
+                    "[[points]]\nfidelity_error = [0.0, 1.0]\nestimate = \"closed-form\"\n"
+                    "[[points]]\nsim.quantum = 1\n"
+                    "[[points]]\nfidelity_error = 0.1\nestimate = \"sample:0.1\"\n");
+    content.replace(content.find("workers = 2\n"), 12, "");
+    content.replace(content.find("sim.quantum = 0"), 15,
+                    "sim.quantum = 0\nmemory.controller = \"queued\"\nestimate = \"none\"");
+    folder_.file("chosen.toml", content);
+    const Outcome outcome = simulator("study chosen.toml -o s");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const nlohmann::json all = points("s");
+    ASSERT_EQ(all.size(), 4U);
+    const auto figure = [&](std::size_t point, const char* name) {
+        return all.at(point)["figures"][name]["median"].get<double>();
+    };
+    EXPECT_EQ(all.at(0)["words"]["fidelity"], "reference mode");
+    EXPECT_EQ(figure(0, "cycles_error"), 0);
+    EXPECT_FALSE(all.at(0)["figures"].contains("seed_processor_seconds"));
+    EXPECT_EQ(all.at(1)["words"]["fidelity"], "closed form");
+    EXPECT_GT(figure(1, "cycles_error"), 0);
+    EXPECT_GT(figure(1, "seed_processor_seconds"), figure(1, "host_processor_seconds"));
+    EXPECT_EQ(all.at(2)["words"]["fidelity"], "-");
+    EXPECT_NE(all.at(3)["failed"].get<std::string>().find("leave out estimate"), std::string::npos);
+    // What no point has is no column.
+    EXPECT_NE(text("s/study.csv").find(",fidelity,"), std::string::npos);
+    ASSERT_EQ(simulator("study study.toml -o plain --quiet").code, 0);
+    EXPECT_EQ(text("plain/study.csv").find("fidelity"), std::string::npos);
+}
+
 TEST_F(MachineStudy, SaysWhatIsImpossible) {
     std::string content = text("study.toml");
     content.replace(content.find("[8192, 16384]"), 13, "[8192, 500]");
