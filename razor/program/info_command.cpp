@@ -15,7 +15,7 @@ namespace razor {
 void InfoCommand::add_to(CLI::App& app) {
     command_ = app.add_subcommand(
         "info", "list a scene's meshes, instances, materials, textures and lights, and what "
-                "cameras, lights and animations glTF files and what tags MD3 files hold");
+                "cameras, lights, animations and nodes glTF files and what tags MD3 files hold");
     scene_.add_to(*command_, "scene");
     command_->add_option("--json", json_, "write it for programs")->type_name("FILE.json");
 }

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 namespace razor {
 namespace {
@@ -17,6 +19,32 @@ template <class List, class Show> std::string line_of(std::string_view title, co
     for (const auto& entry : list)
         text +=
             fmt::format("{}{} ({})", text.empty() ? "" : ", ", printable(entry.called(), 100), show(entry));
+    return text.empty() ? "" : fmt::format("    {}: {}\n", title, text);
+}
+
+/// The names of joints, or of other nodes, each once: as many as a line should have.
+std::string names_of(std::string_view title, const std::vector<NamedNode>& nodes, bool joints) {
+    constexpr std::size_t most_bytes = 1000;
+    std::vector<std::pair<std::string_view, int>> names; // and how many nodes are called so
+    std::map<std::string_view, std::size_t> known;
+    for (const NamedNode& node : nodes) {
+        if (node.joint != joints)
+            continue;
+        const auto [at, is_new] = known.try_emplace(node.name, names.size());
+        if (is_new)
+            names.emplace_back(node.name, 0);
+        ++names[at->second].second;
+    }
+    std::string text;
+    std::size_t listed = 0;
+    for (; listed < names.size() && text.size() < most_bytes; ++listed) {
+        const auto& [name, times] = names[listed];
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", printable(name, 100));
+        if (times > 1)
+            text += fmt::format(" ({} of this name)", times);
+    }
+    if (listed < names.size())
+        text += fmt::format(", and {} more", names.size() - listed);
     return text.empty() ? "" : fmt::format("    {}: {}\n", title, text);
 }
 
@@ -62,6 +90,8 @@ std::string text_of(const std::vector<GltfContents>& files) {
                         [](const CarriedLight& light) { return word_of(light_words, light.light.kind); });
         text += line_of("animations", file.clips,
                         [](const ClipLength& clip) { return fmt::format("{:g} s", clip.seconds); });
+        text += names_of("joints", file.nodes, true);
+        text += names_of("nodes", file.nodes, false);
     }
     return text;
 }
@@ -71,7 +101,7 @@ nlohmann::ordered_json json_of(const std::vector<GltfContents>& files) {
     Json list = Json::array();
     for (const GltfContents& file : files) {
         Json json{{"file", file.file}};
-        for (const char* const part : {"cameras", "lights", "animations"})
+        for (const char* const part : {"cameras", "lights", "animations", "nodes"})
             json[part] = Json::array();
         for (const CarriedCamera& camera : file.cameras) {
             Json entry{{"name", camera.called()},
@@ -89,6 +119,8 @@ nlohmann::ordered_json json_of(const std::vector<GltfContents>& files) {
                 {{"name", light.called()}, {"kind", word_of(light_words, light.light.kind)}});
         for (const ClipLength& clip : file.clips)
             json["animations"].push_back({{"name", clip.name}, {"seconds", clip.seconds}});
+        for (const NamedNode& node : file.nodes)
+            json["nodes"].push_back({{"name", node.name}, {"joint", node.joint}});
         list.push_back(std::move(json));
     }
     return list;

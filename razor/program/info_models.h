@@ -1,5 +1,5 @@
-// What the models of a scene hold that scene files may choose by name: cameras, lights and animations of glTF
-// files, tags of MD3 files.
+// What the models of a scene hold that scene files may choose by name: cameras, lights, animations and nodes
+// of glTF files, tags of MD3 files.
 #pragma once
 
 #include "razor/scene/description.h"

@@ -6,6 +6,7 @@
 #include "razor/scene/animation/deformer.h"
 #include "razor/scene/animation/keys.h"
 #include "razor/scene/animation/moving_cage.h"
+#include "razor/scene/animation/named_nodes.h"
 #include "razor/scene/animation/playback.h"
 #include "razor/scene/animation/tags.h"
 #include "razor/scene/from_model.h"
@@ -45,7 +46,8 @@ struct MeshDescription {
     // if any.
     std::shared_ptr<const Mesh> source;
     std::shared_ptr<const MovingCage> motion;
-    std::shared_ptr<const Tags> tags; // of MD3 models that have some, of the frames played
+    std::shared_ptr<const Tags> tags;        // of MD3 models that have some, of the frames played
+    std::shared_ptr<const NamedNodes> nodes; // of glTF models that have some, as its clip moves them
     std::shared_ptr<const Mesh> cage; // when the scene begins, or at playback.moment; before scale and so on
 };
 
@@ -58,11 +60,13 @@ struct LightsFromModel {
 /// Whether the cage has other shapes at other moments.
 bool changes_shape(const MeshDescription& mesh);
 
-/// Where an object hangs: on a tag of the mesh that another object of its list places (attachment.h).
+/// Where an object hangs: on a tag, or a node, of the mesh that another object of its list places
+/// (attachment.h).
 struct Attachment {
-    std::string object, tag; // names
-    // The same by number, which readers find: in the list, of its mesh in the scene, in the mesh's tags.
-    std::size_t carrier = 0, mesh = 0, tag_number = 0;
+    std::string object, tag, node; // names; of tag and node one is empty
+    // The same by number, which readers find: in the list, of its mesh in the scene, in the mesh's tags or
+    // nodes.
+    std::size_t carrier = 0, mesh = 0, place = 0;
 };
 
 /// Puts a mesh, a group, or all rows of a table of instances somewhere, once or as a regular array.

@@ -62,8 +62,9 @@ void print_object(std::string& text, const ObjectDescription& object, std::strin
         fmt::format_to(out, "mesh = {}\n", toml_text(object.mesh));
     }
     if (object.attachment) {
-        fmt::format_to(out, "attach = {}\ntag = {}\n", toml_text(object.attachment->object),
-                       toml_text(object.attachment->tag));
+        const Attachment& on = *object.attachment;
+        fmt::format_to(out, "attach = {}\n{} = {}\n", toml_text(on.object), on.node.empty() ? "tag" : "node",
+                       toml_text(on.node.empty() ? on.tag : on.node));
     }
     if (!object.material.empty()) {
         fmt::format_to(out, "material = {}\n", toml_text(object.material));

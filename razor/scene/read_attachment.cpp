@@ -1,5 +1,6 @@
 #include "razor/scene/read_attachment.h"
 
+#include "razor/scene/nearest.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -25,21 +26,19 @@ public:
         const auto named = std::find_if(scene_.meshes.begin(), scene_.meshes.end(),
                                         [&](const MeshDescription& m) { return m.name == carrier.mesh; });
         on.mesh = static_cast<std::size_t>(named - scene_.meshes.begin());
-        if (carrier.mesh.empty() || !named->tags)
-            table.fail("attach", fmt::format("'{}' has no tags to attach to; name an object that places an "
-                                             ".md3 model with tags",
-                                             printable(on.object)));
+        const bool by_node = !on.node.empty();
+        if (carrier.mesh.empty() || !(by_node ? named->nodes != nullptr : named->tags != nullptr))
+            table.fail("attach", missing_places(on, carrier.mesh.empty() ? nullptr : &*named));
         if (carrier.copies != glm::ivec3(1))
             table.fail("attach",
                        fmt::format("'{}' is an array, and this would hang on one of many; put both into a "
                                    "[[group]] and that into the array",
                                    printable(on.object)));
         if (!named->deformers.empty())
-            table.fail("attach",
-                       fmt::format("the mesh '{}' has deformations, which tags do not follow; leave "
-                                   "them out",
-                                   printable(named->name)));
-        on.tag_number = tag(table, on, *named);
+            table.fail("attach", fmt::format("the mesh '{}' has deformations, which {}s do not follow; "
+                                             "leave them out",
+                                             printable(named->name), by_node ? "node" : "tag"));
+        on.place = by_node ? node(table, on, *named) : tag(table, on, *named);
     }
 
     /// Throws where one hangs on itself by way of others. Each object is passed once.
@@ -73,6 +72,53 @@ private:
         return found->second.front();
     }
 
+    /// `mesh`: null where the carrier places no single one.
+    static std::string missing_places(const Attachment& on, const MeshDescription* mesh) {
+        if (on.node.empty())
+            return fmt::format("'{}' has no tags to attach to; {}", printable(on.object),
+                               mesh != nullptr && mesh->nodes
+                                   ? "name one of its model's nodes, node = \"NAME\""
+                                   : "name an object that places an .md3 model with tags");
+        return fmt::format("'{}' has no nodes to attach to; {}", printable(on.object),
+                           mesh != nullptr && mesh->tags ? "name one of its model's tags, tag = \"NAME\""
+                                                         : "name an object that places a .gltf or .glb model "
+                                                           "whose nodes have names");
+    }
+
+    static std::size_t node(const TomlTable& table, const Attachment& on, const MeshDescription& mesh) {
+        const std::vector<NamedNode>& named = mesh.nodes->named();
+        const auto is_it = [&](const NamedNode& n) { return n.name == on.node; };
+        const auto first = std::find_if(named.begin(), named.end(), is_it);
+        const auto times = std::count_if(named.begin(), named.end(), is_it);
+        if (times == 0) {
+            const std::vector<std::string_view> names = names_of(named);
+            table.fail("node",
+                       fmt::format("the model of '{}' has no node '{}'; did you mean '{}'? It has: {}",
+                                   printable(mesh.name), printable(on.node),
+                                   printable(nearest(on.node, names)),
+                                   list_of(names, [](const auto& name) { return name; })));
+        }
+        if (times > 1)
+            table.fail("node",
+                       fmt::format("{} nodes of the model of '{}' are called '{}'; rename them in the "
+                                   "file, or attach to another one",
+                                   times, printable(mesh.name), printable(on.node)));
+        const auto number = static_cast<std::size_t>(first - named.begin());
+        if (const auto flat = mesh.nodes->flat_at(number, mesh.playback.moment))
+            table.fail("node",
+                       fmt::format("the axes of the node '{}' of '{}' are flat or not finite {} s after its "
+                                   "motion's beginning; give it, and nodes above it, scales other than 0",
+                                   printable(on.node), printable(mesh.name), *flat));
+        return number;
+    }
+
+    static std::vector<std::string_view> names_of(const std::vector<NamedNode>& named) {
+        std::vector<std::string_view> names;
+        for (const NamedNode& n : named)
+            names.push_back(n.name);
+        return names;
+    }
+
     static std::size_t tag(const TomlTable& table, const Attachment& on, const MeshDescription& mesh) {
         const Tags& tags = *mesh.tags;
         std::vector<std::string> names;
@@ -98,7 +144,7 @@ private:
         std::string text;
         for (const auto& entry : list)
             if (text.size() <= most_bytes)
-                text += (text.empty() ? "" : ", ") + name_of(entry);
+                text += fmt::format("{}{}", text.empty() ? "" : ", ", name_of(entry));
         return printable(text, most_bytes);
     }
 
@@ -120,13 +166,22 @@ private:
 } // namespace
 
 std::optional<Attachment> read_attachment(TomlTable& table) {
-    const bool stated = table.has("attach");
-    if (stated != table.has("tag"))
-        table.fail(stated ? "attach" : "tag",
-                   "attach names another object and tag where this one hangs on it; write both or neither");
+    const bool stated = table.has("attach"), by_tag = table.has("tag"), by_node = table.has("node");
+    if (by_tag && by_node)
+        table.fail("node", "an object hangs on a tag or on a node, not on both; leave one out");
+    if (stated != (by_tag || by_node))
+        table.fail(
+            stated   ? "attach"
+            : by_tag ? "tag"
+                     : "node",
+            "attach names another object, tag or node where on its model this one hangs; write attach and "
+            "one of them, or nothing");
     Attachment on;
     on.object = table.text("attach", "");
     on.tag = table.text("tag", "");
+    on.node = table.text("node", "");
+    if (by_node && on.node.empty())
+        table.fail("node", "the name of the node is empty; write that of one of the model's nodes");
     return stated ? std::optional(on) : std::nullopt;
 }
 

@@ -68,7 +68,10 @@ TEST_F(Info, TellsWhatGltfFilesHold) {
         {{"type", "orthographic"}, {"name", "plan"}, {"orthographic", {{"xmag", 3}, {"ymag", 2}}}}};
     w.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}}};
     w.add("nodes", {{"camera", 1}});
-    w.json["scenes"][0]["nodes"] = {0, 1};
+    for (const char* const name : {"Hand", "Lamp", "Hand", "Foot"})
+        w.add("nodes", {{"name", name}});
+    w.add("skins", {{"joints", {2, 4, 5}}});
+    w.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5};
     w.channel(0, "translation", {0, 1.25}, {0, 0, 0, 1, 0, 0}, 3);
     w.json["animations"][0]["name"] = "Run";
     folder_.file("m.glb", w.glb());
@@ -81,7 +84,7 @@ TEST_F(Info, TellsWhatGltfFilesHold) {
             result.out.find("glTF files: 1\n  " + (folder_ / "m.glb").string() +
                             "\n    cameras: Body (90 degrees, 2 times as wide as high), plan (orthographic, "
                             "height 4, 1.5 times as wide as high)\n    lights: Body (spot)\n    animations: "
-                            "Run (1.25 s)\n"),
+                            "Run (1.25 s)\n    joints: Hand (2 of this name), Foot\n    nodes: Body, Lamp\n"),
             std::string::npos)
             << result.out;
         std::ifstream file(folder_ / "i.json");
@@ -92,6 +95,10 @@ TEST_F(Info, TellsWhatGltfFilesHold) {
         EXPECT_EQ(json[0]["cameras"][1]["height"], 4.0);
         EXPECT_EQ(json[0]["lights"][0]["kind"], "spot");
         EXPECT_EQ(json[0]["animations"][0]["seconds"], 1.25);
+        ASSERT_EQ(json[0]["nodes"].size(), 5U);
+        EXPECT_EQ(json[0]["nodes"][2]["name"], "Lamp");
+        EXPECT_EQ(json[0]["nodes"][2]["joint"], false);
+        EXPECT_EQ(json[0]["nodes"][4]["joint"], true);
     }
     EXPECT_EQ(info("o.obj").out.find("glTF"), std::string::npos);
 }

@@ -233,8 +233,8 @@ TEST_F(Attachments, MistakesAreNamed) {
         return text.replace(at, what.size(), by);
     };
     const std::string good = figure();
-    expect(replaced(good, "tag = \"tag_head\"", ""), "write both or neither");
-    expect(replaced(good, "attach = \"lower\"", ""), "write both or neither");
+    expect(replaced(good, "tag = \"tag_head\"", ""), "write attach and one of them, or nothing");
+    expect(replaced(good, "attach = \"lower\"", ""), "write attach and one of them, or nothing");
     expect(
         replaced(good, "attach = \"upper\"", "attach = \"uper\""),
         "there is no object 'uper' beside this one, in the group or the scene that holds it; it has: head, "

@@ -1,6 +1,7 @@
 #include "razor/scene/animation/model_stage.h"
 
-#include <cmath>
+#include "razor/scene/animation/skeleton_motion.h"
+
 #include <utility>
 
 namespace razor {
@@ -31,9 +32,7 @@ ModelStage::ModelStage(Skeleton skeleton, std::optional<Clip> clip, double cycle
 std::vector<Affine> ModelStage::nodes_at(double seconds) const {
     if (!clip_)
         return rest_pose(skeleton_).world;
-    if (cycle_ > 0)
-        seconds -= cycle_ * std::floor(seconds / cycle_);
-    return pose_at(skeleton_, *clip_, seconds).world;
+    return pose_at(skeleton_, *clip_, in_cycle(seconds, cycle_)).world;
 }
 
 bool ModelStage::moves(int node) const {

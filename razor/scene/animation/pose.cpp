@@ -70,7 +70,7 @@ void check(const std::optional<Mistake>& mistake, const SceneDescription& scene,
 } // namespace
 
 bool is_animated(const SceneDescription& d) {
-    const auto moves = [](const ObjectDescription& o) { return o.keys.any(); };
+    const auto moves = [&](const ObjectDescription& o) { return o.keys.any() || hangs_on_motion(d, o); };
     return d.camera_keys.any() || (d.camera_from && camera_moves(*d.camera_from)) ||
            std::any_of(d.lights_from.begin(), d.lights_from.end(),
                        [](const LightsFromModel& l) { return lights_move(l.from); }) ||

@@ -28,7 +28,8 @@ public:
     SkeletonPose at(double seconds) const override;
     double length() const override { return clip_.length(); }
     /// Of the target: those that follow what the clip moves, and all below them.
-    std::vector<bool> moved() const;
+    std::vector<bool> moved() const override;
+    std::vector<double> scale_times(int /*node*/) const override { return {}; } // scales are not played
 
 private:
     Skeleton source_;

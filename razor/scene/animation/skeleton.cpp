@@ -87,6 +87,17 @@ SkeletonPose pose_at(const Skeleton& skeleton, const Clip& clip, double seconds)
     return pose_of(nodes_at(skeleton, clip, seconds), skeleton.order);
 }
 
+std::vector<double> scale_times(const Skeleton& skeleton, const Clip& clip, int node) {
+    std::vector<double> times;
+    for (int n = node; n >= 0; n = skeleton.nodes[static_cast<std::size_t>(n)].parent)
+        for (const Channel& channel : clip.channels)
+            if (channel.node == n && channel.path == Channel::Path::scale)
+                times.insert(times.end(), channel.curve.times.begin(), channel.curve.times.end());
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
 std::vector<bool> moved_nodes(const Skeleton& skeleton, const Clip& clip) {
     std::vector<bool> moved(skeleton.nodes.size());
     for (const Channel& channel : clip.channels)

@@ -60,6 +60,9 @@ SkeletonPose rest_pose(const Skeleton& skeleton);
 /// ... and `seconds` after the clip's beginning.
 SkeletonPose pose_at(const Skeleton& skeleton, const Clip& clip, double seconds);
 
+/// When scales of a node, or of those above it, have keys: in order, each once. Seconds.
+std::vector<double> scale_times(const Skeleton& skeleton, const Clip& clip, int node);
+
 /// Nodes whose world matrices the clip changes: those of its channels and all below them.
 std::vector<bool> moved_nodes(const Skeleton& skeleton, const Clip& clip);
 

@@ -72,6 +72,7 @@ CageCache::Entry read_clip(const MeshDescription& mesh, TextureCache& textures) 
         p.clip = model.clips.front();
     entry.source = model.cage;
     entry.motion = model.motion;
+    entry.nodes = model.nodes;
     return entry;
 }
 
@@ -119,6 +120,7 @@ void load_cage(MeshDescription& mesh, CageCache& cages) {
         mesh.source = entry.source;
         mesh.motion = entry.motion;
         mesh.tags = entry.tags;
+        mesh.nodes = entry.nodes;
         // Start, speed and moment are the mesh's own.
         mesh.playback.frames = entry.playback.frames;
         mesh.playback.clip = entry.playback.clip;

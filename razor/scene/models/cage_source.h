@@ -19,6 +19,7 @@ struct CageCache {
         std::shared_ptr<const Mesh> source{};
         std::shared_ptr<const MovingCage> motion{};
         std::shared_ptr<const Tags> tags{};
+        std::shared_ptr<const NamedNodes> nodes{};
     };
     std::unordered_map<std::string, Entry> entries;
     TextureCache textures;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "razor/scene/animation/model_stage.h"
+#include "razor/scene/animation/named_nodes.h"
 
 #include <filesystem>
 #include <string>
@@ -21,6 +22,7 @@ struct GltfContents {
     std::vector<CarriedCamera> cameras;
     std::vector<CarriedLight> lights;
     std::vector<ClipLength> clips;
+    std::vector<NamedNode> nodes; // that objects can be attached to
 };
 
 /// Throws UserError.

@@ -5,6 +5,7 @@
 #include "razor/scene/models/gltf/drawn_mesh.h"
 #include "razor/scene/models/gltf/joints.h"
 #include "razor/scene/models/gltf/materials.h"
+#include "razor/scene/models/gltf/named_nodes.h"
 #include "razor/scene/models/gltf/nodes.h"
 #include "razor/scene/models/own_materials.h"
 #include "razor/scene/text_file.h"
@@ -39,20 +40,18 @@ std::vector<glm::dvec3> pose_all(const std::vector<Skin>& skins, const SkeletonP
 class GltfMotion final : public MovingCage {
 public:
     GltfMotion(std::shared_ptr<const Mesh> cage, std::vector<Skin> skins,
-               std::unique_ptr<const SkeletonMotion> motion, double cycle)
+               std::shared_ptr<const SkeletonMotion> motion, double cycle)
         : cage_(std::move(cage)), skins_(std::move(skins)), motion_(std::move(motion)), cycle_(cycle) {}
 
     std::shared_ptr<const Mesh> at(double seconds) const override {
-        if (cycle_ > 0)
-            seconds -= cycle_ * std::floor(seconds / cycle_);
-        return moved(*cage_, pose_all(skins_, motion_->at(seconds)));
+        return moved(*cage_, pose_all(skins_, motion_->at(in_cycle(seconds, cycle_))));
     }
     double length() const override { return motion_->length(); }
 
 private:
     std::shared_ptr<const Mesh> cage_;
     std::vector<Skin> skins_;
-    std::unique_ptr<const SkeletonMotion> motion_;
+    std::shared_ptr<const SkeletonMotion> motion_;
     double cycle_;
 };
 
@@ -119,35 +118,37 @@ bool moves(const Clip& clip, const Skeleton& skeleton, const std::vector<Skin>& 
            });
 }
 
-/// By the chosen clip of the file itself; sets nothing where it moves none of the cage.
-void set_clip(GltfModel& model, const Document& document, const std::string& clip_name, double cycle,
-              const Skeleton& skeleton, std::vector<Skin> skins) {
+/// What moves the nodes, and whether it moves the cage.
+struct NodeMotion {
+    std::shared_ptr<const SkeletonMotion> motion; // null: nothing
+    bool moves_cage = false;
+};
+
+/// By the chosen clip of the file itself.
+NodeMotion own_motion(GltfModel& model, const Document& document, const std::string& clip_name,
+                      const Skeleton& skeleton, const std::vector<Skin>& skins) {
     model.clips = clip_names(document);
     if (model.clips.empty() && clip_name.empty())
-        return;
+        return {};
     Clip clip =
         read_clip(document, skeleton, clip_name.empty() ? 0 : find_clip(document, model.clips, clip_name));
-    if (moves(clip, skeleton, skins))
-        model.motion = std::make_shared<const GltfMotion>(
-            model.cage, std::move(skins), std::make_unique<const ClipMotion>(skeleton, std::move(clip)),
-            cycle);
+    const bool moves_cage = moves(clip, skeleton, skins);
+    return {std::make_shared<const ClipMotion>(skeleton, std::move(clip)), moves_cage};
 }
 
 /// By one of another file.
-void set_clip_of(const std::filesystem::path& path, GltfModel& model, const Document& document,
-                 const std::string& clip_name, double cycle, const Skeleton& skeleton,
-                 std::vector<Skin> skins) {
+NodeMotion motion_of(const std::filesystem::path& path, GltfModel& model, const Document& document,
+                     const std::string& clip_name, const Skeleton& skeleton, const std::vector<Skin>& skins) {
     const Document other = load_document(path);
     model.clips = clip_names(other);
     if (model.clips.empty())
         other.fail("has no animation; give a file that has one");
     Skeleton source = read_skeleton(other);
     Clip clip = read_clip(other, source, clip_name.empty() ? 0 : find_clip(other, model.clips, clip_name));
-    auto motion = std::make_unique<const RetargetedMotion>(std::move(source), std::move(clip), skeleton,
+    auto motion = std::make_shared<const RetargetedMotion>(std::move(source), std::move(clip), skeleton,
                                                            match_joints(document, other));
-    if (follows(skins, motion->moved()))
-        model.motion =
-            std::make_shared<const GltfMotion>(model.cage, std::move(skins), std::move(motion), cycle);
+    const bool moves_cage = follows(skins, motion->moved());
+    return {std::move(motion), moves_cage};
 }
 
 GltfModel read(const std::filesystem::path& path, const std::string& clip_name, double cycle,
@@ -183,11 +184,14 @@ GltfModel read(const std::filesystem::path& path, const std::string& clip_name, 
         set_own_materials(cage, std::make_shared<const ModelMaterials>(materials->finish()));
     cage.points = pose_all(skins, rest);
     check_cage(document, cage);
-    GltfModel model{std::make_shared<const Mesh>(std::move(cage)), nullptr, {}};
-    if (clip_file.empty())
-        set_clip(model, document, clip_name, cycle, skeleton, std::move(skins));
-    else
-        set_clip_of(clip_file, model, document, clip_name, cycle, skeleton, std::move(skins));
+    GltfModel model{std::make_shared<const Mesh>(std::move(cage)), nullptr, nullptr, {}};
+    const NodeMotion played = clip_file.empty()
+                                  ? own_motion(model, document, clip_name, skeleton, skins)
+                                  : motion_of(clip_file, model, document, clip_name, skeleton, skins);
+    if (played.moves_cage)
+        model.motion = std::make_shared<const GltfMotion>(model.cage, std::move(skins), played.motion, cycle);
+    if (std::vector<NamedNode> named = named_nodes(document, skeleton); !named.empty())
+        model.nodes = std::make_shared<const NamedNodes>(std::move(named), skeleton, played.motion, cycle);
     return model;
 }
 

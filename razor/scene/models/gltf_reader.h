@@ -9,6 +9,7 @@
 #pragma once
 
 #include "razor/scene/animation/moving_cage.h"
+#include "razor/scene/animation/named_nodes.h"
 #include "razor/scene/models/hard_edges.h"
 #include "razor/scene/textures/texture_cache.h"
 
@@ -23,6 +24,7 @@ namespace razor {
 struct GltfModel {
     std::shared_ptr<const Mesh> cage;         // at rest: the nodes stand as without animation
     std::shared_ptr<const MovingCage> motion; // null: no animation, or one that does not move the cage
+    std::shared_ptr<const NamedNodes> nodes;  // null: none has a name. They move also where the cage does not
     std::vector<std::string> clips;           // names of the animations, "clip 0" etc. for those without
 };
 

@@ -18,7 +18,7 @@
 namespace razor {
 namespace {
 
-constexpr std::int64_t max_count = std::numeric_limits<int>::max();
+constexpr std::int64_t max_obj_count = std::numeric_limits<int>::max();
 constexpr int no_texcoord = -1, no_material = -1;
 
 /// Statements without effect on one cage's surface.
@@ -179,7 +179,7 @@ private:
             }
             return static_cast<int>(static_cast<std::int64_t>(defined) + index);
         }
-        if (index > max_count) {
+        if (index > max_obj_count) {
             cursor_.fail(fmt::format("{} index {} is too large; mend the index", what, index));
         }
         return static_cast<int>(index - 1);
@@ -201,8 +201,8 @@ private:
     }
 
     void check_count(std::size_t count, std::string_view what) const {
-        if (static_cast<std::int64_t>(count) >= max_count) {
-            cursor_.fail(fmt::format("more than {} {}; split the model", max_count, what));
+        if (static_cast<std::int64_t>(count) >= max_obj_count) {
+            cursor_.fail(fmt::format("more than {} {}; split the model", max_obj_count, what));
         }
     }
 
