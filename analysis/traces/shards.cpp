@@ -112,7 +112,7 @@ void Shards::touch(std::span<const std::uint64_t> lines, std::size_t group) {
             continue;
         }
         const std::uint64_t hash = traces::hash_bits_of_line(at + offset_);
-        if (hash < limit_) {
+        if (hash < limit_) [[unlikely]] {
             i += take_run(lines.subspan(i), group, hash);
         } else {
             out[at % out_lines] = at;

@@ -10,7 +10,7 @@
 namespace analysis {
 namespace {
 
-constexpr std::size_t slots = 8192;
+constexpr std::size_t slots = 4096;
 constexpr std::uint64_t seed_step = 0xD1B54A32D192ED03U; // odd, without a pattern
 
 } // namespace
@@ -20,6 +20,9 @@ ShortReuse::ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint6
     : sizes_(std::move(sizes)), stretch_(stretch),
       period_(std::max(stretch, static_cast<std::uint64_t>(static_cast<double>(stretch) / rate))),
       seed_(seed), stack_(slots) {
+    for (std::size_t i = 0; i < near_.size(); ++i) // in a stretch that has so many lines
+        near_[i] =
+            static_cast<std::size_t>(std::lower_bound(sizes_.begin(), sizes_.end(), i + 1) - sizes_.begin());
     next_stretch();
 }
 
@@ -32,6 +35,12 @@ void ShortReuse::next_stretch() {
     stack_ = RecentStack(slots);
     known_sizes_ = 0;
     ++number_;
+}
+
+/// How many of the sizes that something is known of miss what was touched so long ago.
+std::size_t ShortReuse::missing(std::uint64_t distance) const {
+    const auto known = sizes_.begin() + static_cast<std::ptrdiff_t>(known_sizes_);
+    return static_cast<std::size_t>(std::lower_bound(sizes_.begin(), known, distance) - sizes_.begin());
 }
 
 /// None goes beyond the stretch at hand.
@@ -49,9 +58,8 @@ void ShortReuse::look(std::span<const std::uint64_t> lines, std::size_t group) {
         const std::uint64_t distance = stack_.touch(line);
         while (known_sizes_ < sizes && sizes_[known_sizes_] <= before)
             ++known_sizes_;
-        const auto known = sizes_.begin() + static_cast<std::ptrdiff_t>(known_sizes_);
         ++counted[known_sizes_].known;
-        ++counted[std::lower_bound(sizes_.begin(), known, distance) - sizes_.begin()].missing;
+        ++counted[distance <= near_.size() ? near_[distance - 1] : missing(distance)].missing;
     }
     now_ += lines.size();
     if (now_ == end_)

@@ -7,6 +7,7 @@
 #include "analysis/traces/recent_stack.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -65,6 +66,7 @@ private:
         std::uint64_t stretches = 0; // in which there were references
     };
     void look(std::span<const std::uint64_t> lines, std::size_t group);
+    std::size_t missing(std::uint64_t distance) const;
     void end_stretch();
     void next_stretch();
 
@@ -73,10 +75,11 @@ private:
     std::uint64_t now_ = 0, number_ = 0, begin_ = 0, end_ = 0; // touches; of the stretch at hand or next
     std::uint64_t stretches_ = 0;
     RecentStack stack_;
-    std::size_t known_sizes_ = 0;        // of no more lines than the stretch has by now
-    std::vector<Counted> counted_;       // by group, then by number of sizes
-    std::vector<Known> known_;           // by group, then by size
-    std::vector<std::uint64_t> touches_; // by group, in stretches
+    std::array<std::size_t, RecentStack::most> near_{}; // missing() of distances 1, 2, ...
+    std::size_t known_sizes_ = 0;                       // of no more lines than the stretch has by now
+    std::vector<Counted> counted_;                      // by group, then by number of sizes
+    std::vector<Known> known_;                          // by group, then by size
+    std::vector<std::uint64_t> touches_;                // by group, in stretches
 };
 
 } // namespace analysis
