@@ -1,12 +1,14 @@
 // What writing and reading of blocks have in common: the layout, and what is guessed from what came before.
 #pragma once
 
+#include "traces/evictions.h"
 #include "traces/reference.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -48,6 +50,42 @@ template <class ClassOf> std::vector<std::uint32_t> without_parts(std::size_t cl
     for (std::size_t i = 0; i < classes; ++i)
         first[sorted[i]] = i != 0 && key(sorted[i]) == key(sorted[i - 1]) ? first[sorted[i - 1]] : sorted[i];
     return first;
+}
+
+/// References one class after the other, those of a class in their order; `first_of`: what counts as a class
+/// (without_parts()), `nowhere` for classes that are left out.
+class ByClass {
+public:
+    static constexpr std::uint32_t nowhere = ~std::uint32_t{0};
+
+    void sort(const std::vector<std::uint32_t>& classes, const std::vector<std::uint32_t>& first_of) {
+        begins_.assign(first_of.size() + 1, 0);
+        for (const std::uint32_t c : classes)
+            if (first_of[c] != nowhere)
+                ++begins_[first_of[c] + 1];
+        std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+        next_.assign(begins_.begin(), begins_.end());
+        all_.resize(begins_.back());
+        for (std::size_t i = 0; i < classes.size(); ++i)
+            if (const std::uint32_t first = first_of[classes[i]]; first != nowhere)
+                all_[next_[first]++] = static_cast<std::uint32_t>(i);
+    }
+    std::size_t classes() const { return begins_.size() - 1; }
+    std::span<const std::uint32_t> of(std::size_t c) const {
+        return {all_.data() + begins_[c], all_.data() + begins_[c + 1]};
+    }
+
+private:
+    std::vector<std::uint32_t> begins_, next_, all_; // by class; numbers of references
+};
+
+/// Those that count as no lines that leave a cache; of all others without_parts().
+template <class ClassOf>
+std::vector<std::uint32_t> without_leaving(std::vector<std::uint32_t> first_of, ClassOf class_of) {
+    for (std::uint32_t c = 0; c < first_of.size(); ++c)
+        if (Evictions::leaves(class_of(c)))
+            first_of[c] = ByClass::nowhere;
+    return first_of;
 }
 
 /// Windows mostly follow each other, and are as long.

@@ -1,6 +1,7 @@
 // A block as bytes and back (README.md says which).
 #pragma once
 
+#include "traces/block_layout.h"
 #include "traces/reference.h"
 
 #include <memory>
@@ -32,6 +33,8 @@ private:
         void operator()(ZSTD_CCtx_s* c) const;
     };
     void compress(const std::string& column, int level, std::string& out);
+    char* put_leaving(const Block& block, const std::vector<std::uint32_t>& first_of, unsigned shift,
+                      unsigned set_bits, char* to);
     void put_columns(const Block& block, const std::vector<std::uint32_t>& order,
                      const std::vector<std::uint32_t>& rank, unsigned shift, unsigned set_bits);
 
@@ -39,6 +42,10 @@ private:
     std::unique_ptr<ReferenceModel> model_; // where it is needed
     int level_;
     std::string table_, classes_, addresses_, times_, order_, tiles_; // columns
+    // By reference: numbers in the table that is written; whether it leaves a cache for the next one.
+    std::vector<std::uint32_t> ranks_;
+    std::vector<char> makes_room_;
+    ByClass by_class_;
 };
 
 class Decoder {
@@ -62,14 +69,19 @@ private:
     };
     void get_table(const Limits& limits, std::uint32_t version, std::size_t segments, std::size_t classes,
                    const std::string& place, Block& block);
-    void get_columns(const std::string& place, unsigned shift, unsigned set_bits, std::uint64_t first_time,
-                     Block& block);
+    void get_columns(std::uint32_t version, const std::string& place, unsigned shift, unsigned set_bits,
+                     std::uint64_t first_time, Block& block);
+    void get_classes(std::uint32_t version, const std::string& place, Block& block);
+    void get_addresses(std::uint32_t version, const std::string& place, unsigned shift, unsigned set_bits,
+                       Block& block);
     void get_order(const std::string& place, Block& block);
 
     std::unique_ptr<ZSTD_DCtx_s, Free> context_;
     std::unique_ptr<ReferenceModel> model_;                           // likewise
     std::string table_, classes_, addresses_, times_, order_, tiles_; // columns
     std::vector<std::uint64_t> last_;                                 // address, by class
+    std::vector<char> makes_room_; // by reference: of a line that leaves a cache, for the next one
+    ByClass by_class_;
 };
 
 } // namespace traces

@@ -31,6 +31,18 @@ std::uint32_t largest(const std::uint8_t* bytes, std::size_t n) {
     return most;
 }
 
+/// Numbers of so many bytes, the lowest first: that of each number so far behind that of the one before, the
+/// next ones of a number so far behind it.
+template <std::uint32_t Bytes>
+void number(const std::uint8_t* bytes, std::size_t n, std::size_t step, std::size_t more,
+            std::uint32_t* out) {
+    for (std::size_t i = 0; i < n; ++i) {
+        out[i] = bytes[i * step];
+        for (std::uint32_t b = 1; b < Bytes; ++b)
+            out[i] |= std::uint32_t{bytes[i * step + b * more]} << (8 * b);
+    }
+}
+
 [[noreturn]] void refuse(const std::string& place, const char* what) {
     throw Error(fmt::format("{}: {}; the file is damaged, record or copy it again", place, what));
 }
@@ -96,7 +108,7 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
     if (block.segments.back().end != n)
         refuse(place, "a block's table does not fit its counts");
     if (coding == 0) {
-        get_columns(place, shift, set_bits, first_time, block);
+        get_columns(version, place, shift, set_bits, first_time, block);
         if (const char* wrong = get_tiles(tiles_, limits.tiles, block))
             refuse(place, wrong);
         return;
@@ -147,38 +159,51 @@ void Decoder::get_table(const Limits& limits, std::uint32_t version, std::size_t
         refuse(place, "a block's table does not fit its counts");
 }
 
-void Decoder::get_columns(const std::string& place, unsigned shift, unsigned set_bits,
-                          std::uint64_t first_time, Block& block) {
+void Decoder::get_classes(std::uint32_t version, const std::string& place, Block& block) {
     const std::size_t n = block.segments.back().end, classes = block.table.size();
     const std::uint32_t id_bytes = bytes_for(classes);
     block.classes.resize(n);
-    const auto* planes = reinterpret_cast<const std::uint8_t*>(classes_.data());
-    for (std::size_t i = 0; i < n; ++i)
-        block.classes[i] = planes[i];
-    for (std::uint32_t plane = 1; plane < id_bytes; ++plane)
-        for (std::size_t i = 0; i < n; ++i)
-            block.classes[i] |= std::uint32_t{planes[plane * n + i]} << (8 * plane);
-    const bool one_plane = id_bytes == 1; // of bytes, which processors compare many at once
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(classes_.data());
+    // Those before version 6 have all low bytes first.
+    const std::size_t step = version < 6 ? 1 : id_bytes, more = version < 6 ? n : 1;
+    if (id_bytes == 1)
+        number<1>(bytes, n, 1, 0, block.classes.data());
+    else if (id_bytes == 2)
+        number<2>(bytes, n, step, more, block.classes.data());
+    else
+        number<3>(bytes, n, step, more, block.classes.data());
+    const bool one_byte = id_bytes == 1; // of which processors compare many at once
     const std::uint32_t most_class =
-        one_plane ? largest(planes, n) : *std::max_element(block.classes.begin(), block.classes.end());
+        one_byte ? largest(bytes, n) : *std::max_element(block.classes.begin(), block.classes.end());
     if (most_class >= classes)
         refuse(place, "a reference is of a class that its block does not have");
+}
 
+void Decoder::get_addresses(std::uint32_t version, const std::string& place, unsigned shift,
+                            unsigned set_bits, Block& block) {
+    const std::size_t n = block.segments.back().end, classes = block.table.size();
     block.addresses.resize(n);
-    const std::vector<std::uint32_t> place_of =
-        without_parts(classes, [&](std::uint32_t c) -> const Class& { return block.table[c]; });
+    const auto of = [&](std::uint32_t c) -> const Class& { return block.table[c]; };
+    const std::vector<std::uint32_t> first_of = without_parts(classes, of);
     last_.assign(classes, 0);
     VarintReader addresses(addresses_.data(), addresses_.data() + addresses_.size());
     const auto get = [&](std::size_t i) {
-        return last_[place_of[block.classes[i]]] += unzigzag(addresses.next());
+        return last_[first_of[block.classes[i]]] += unzigzag(addresses.next());
     };
-    if (set_bits == 0) {
+    if (version < 6) {
         for (std::size_t i = 0; i < n; ++i)
-            block.addresses[i] = get(i) << shift;
-    } else {
-        for (std::size_t i = 0; i < n; ++i)
-            if (!Evictions::leaves(block.what(i)))
+            if (set_bits == 0 || !Evictions::leaves(block.what(i)))
                 block.addresses[i] = get(i) << shift;
+    } else {
+        by_class_.sort(block.classes, set_bits == 0 ? first_of : without_leaving(first_of, of));
+        for (std::size_t c = 0; c < classes; ++c) {
+            std::uint64_t line = 0;
+            for (const std::uint32_t i : by_class_.of(c))
+                block.addresses[i] = (line += unzigzag(addresses.next())) << shift;
+        }
+    }
+    makes_room_.assign(n, 0);
+    if (set_bits != 0) {
         Evictions evictions(set_bits);
         for (const Segment& s : block.segments) {
             evictions.clear();
@@ -196,9 +221,21 @@ void Decoder::get_columns(const std::string& place, unsigned shift, unsigned set
                          !evictions.leave_place(at, block.addresses[i + 1] >> shift, line))
                     refuse(place, "a line that leaves a cache is none that came");
                 block.addresses[i] = line << shift;
+                makes_room_[i] = at != 0 ? 1 : 0;
             }
         }
     }
+    if (addresses.bad() || !addresses.ended())
+        refuse(place, "a block's addresses do not fit its count");
+}
+
+void Decoder::get_columns(std::uint32_t version, const std::string& place, unsigned shift, unsigned set_bits,
+                          std::uint64_t first_time, Block& block) {
+    get_classes(version, place, block);
+    get_addresses(version, place, shift, set_bits, block);
+    if (version < 6)
+        std::fill(makes_room_.begin(), makes_room_.end(), 0); // all have times there
+    const std::size_t n = block.segments.back().end;
     block.times.resize(n);
     VarintReader times(times_.data(), times_.data() + times_.size());
     std::vector<char> piece;
@@ -206,11 +243,15 @@ void Decoder::get_columns(const std::string& place, unsigned shift, unsigned set
         piece.push_back(static_cast<char>(c.part == Part::piece));
     for (const Segment& s : block.segments) {
         std::uint64_t t = first_time;
-        for (std::size_t i = s.begin; i < s.end; ++i)
-            block.times[i] = i != s.begin && piece[block.classes[i]] != 0 ? t : t += unzigzag(times.next());
+        char same = 0; // as the time of the one before
+        for (std::size_t i = s.begin; i < s.end; ++i) {
+            same = static_cast<char>(same | (i == s.begin ? 0 : piece[block.classes[i]]));
+            block.times[i] = same != 0 ? t : t += unzigzag(times.next());
+            same = makes_room_[i];
+        }
     }
-    if (addresses.bad() || !addresses.ended() || times.bad() || !times.ended())
-        refuse(place, "a block's addresses or times do not fit its count");
+    if (times.bad() || !times.ended())
+        refuse(place, "a block's times do not fit its count");
     get_order(place, block);
 }
 

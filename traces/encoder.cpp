@@ -110,57 +110,71 @@ void Encoder::compress(const std::string& column, int level, std::string& out) {
     out.resize(begin + n);
 }
 
+/// Lines that leave a cache: places, or addresses. Says which ones make room for what follows.
+char* Encoder::put_leaving(const Block& block, const std::vector<std::uint32_t>& first_of, unsigned shift,
+                           unsigned set_bits, char* to) {
+    std::vector<std::uint64_t> last(first_of.size(), 0); // by class
+    Evictions evictions(set_bits);
+    for (const Segment& s : block.segments) {
+        evictions.clear();
+        for (std::size_t i = s.begin; i < s.end; ++i) {
+            const std::uint64_t a = block.addresses[i] >> shift;
+            if (!Evictions::leaves(block.what(i))) {
+                if (Evictions::comes(block.what(i)))
+                    evictions.come(a);
+                continue;
+            }
+            const bool room =
+                i + 1 != s.end && Evictions::comes(block.what(i + 1)) && block.times[i] == block.times[i + 1];
+            const std::uint64_t at = room ? evictions.leave(a, block.addresses[i + 1] >> shift) : 0;
+            to = put_varint(to, at);
+            makes_room_[i] = at != 0 ? 1 : 0;
+            if (at == 0) {
+                std::uint64_t& before = last[first_of[ranks_[i]]];
+                to = put_varint(to, zigzag(a - before));
+                before = a;
+            }
+        }
+    }
+    return to;
+}
+
 void Encoder::put_columns(const Block& block, const std::vector<std::uint32_t>& order,
                           const std::vector<std::uint32_t>& rank, unsigned shift, unsigned set_bits) {
     const std::size_t n = block.size();
     const std::uint32_t id_bytes = bytes_for(order.size());
     const std::uint64_t first_time = block.times.front();
-    classes_.resize(n * id_bytes);
-    for (std::uint32_t plane = 0; plane < id_bytes; ++plane)
-        for (std::size_t i = 0; i < n; ++i)
-            classes_[plane * n + i] = static_cast<char>(rank[block.classes[i]] >> (8 * plane));
-    const std::vector<std::uint32_t> place =
-        without_parts(order.size(), [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; });
-    std::vector<std::uint64_t> last(order.size(), 0);
-    addresses_.resize(n * longest_varint);
-    char* to = addresses_.data();
-    const auto put = [&](std::size_t i) {
-        const std::uint64_t a = block.addresses[i] >> shift;
-        std::uint64_t& before = last[place[rank[block.classes[i]]]];
-        to = put_varint(to, zigzag(a - before));
-        before = a;
-    };
+    ranks_.resize(n);
     for (std::size_t i = 0; i < n; ++i)
-        if (set_bits == 0 || !Evictions::leaves(block.what(i)))
-            put(i);
-    if (set_bits != 0) { // and of each of these a byte more, in the worst case
-        const auto used = to - addresses_.data();
-        addresses_.resize(addresses_.size() + n);
-        to = addresses_.data() + used;
-        Evictions evictions(set_bits);
-        for (const Segment& s : block.segments) {
-            evictions.clear();
-            for (std::size_t i = s.begin; i < s.end; ++i) {
-                const std::uint64_t a = block.addresses[i] >> shift;
-                if (Evictions::leaves(block.what(i))) {
-                    const bool room = i + 1 != s.end && Evictions::comes(block.what(i + 1));
-                    const std::uint64_t at = room ? evictions.leave(a, block.addresses[i + 1] >> shift) : 0;
-                    to = put_varint(to, at);
-                    if (at == 0)
-                        put(i);
-                } else if (Evictions::comes(block.what(i))) {
-                    evictions.come(a);
-                }
-            }
+        ranks_[i] = rank[block.classes[i]];
+    classes_.resize(n * id_bytes);
+    char* to = classes_.data();
+    for (const std::uint32_t r : ranks_)
+        for (std::uint32_t byte = 0; byte < id_bytes; ++byte)
+            *to++ = static_cast<char>(r >> (8 * byte));
+    const auto of = [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; };
+    const std::vector<std::uint32_t> first_of = without_parts(order.size(), of);
+    by_class_.sort(ranks_, set_bits == 0 ? first_of : without_leaving(first_of, of));
+    addresses_.resize(n * (longest_varint + 1)); // lines that leave take a byte more
+    to = addresses_.data();
+    for (std::size_t c = 0; c < by_class_.classes(); ++c) {
+        std::uint64_t before = 0;
+        for (const std::uint32_t i : by_class_.of(c)) {
+            const std::uint64_t a = block.addresses[i] >> shift;
+            to = put_varint(to, zigzag(a - before));
+            before = a;
         }
     }
+    makes_room_.assign(n, 0);
+    if (set_bits != 0)
+        to = put_leaving(block, first_of, shift, set_bits, to);
     addresses_.resize(static_cast<std::size_t>(to - addresses_.data()));
     times_.resize(n * longest_varint);
     to = times_.data();
     for (const Segment& s : block.segments) {
         std::uint64_t before = first_time;
         for (std::size_t i = s.begin; i < s.end; ++i) {
-            if (i != s.begin && block.what(i).part == Part::piece)
+            if (i != s.begin && (block.what(i).part == Part::piece || makes_room_[i - 1] != 0))
                 continue; // at the same time
             to = put_varint(to, zigzag(block.times[i] - before));
             before = block.times[i];

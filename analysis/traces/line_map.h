@@ -11,8 +11,10 @@ namespace analysis {
 class LineMap {
 public:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
+    static constexpr std::size_t most_at_first = 1024;
 
-    LineMap() : places_(1024), mask_(places_.size() - 1) {}
+    /// With so many places at first, a power of two.
+    explicit LineMap(std::size_t places = most_at_first) : places_(places), mask_(places_.size() - 1) {}
 
     /// The number of a line, to read and to replace; `none` if it is new. Until the next call.
     std::uint32_t& operator[](std::uint64_t line) {

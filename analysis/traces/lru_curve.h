@@ -20,11 +20,16 @@ public:
         : sizes_(std::move(sizes)), row_(sizes_.size() + 2) {}
 
     void add(std::size_t group, std::uint64_t distance, Count weight = 1) {
-        const auto column =
-            distance == StackDistance::first
-                ? row_ - 1
-                : static_cast<std::size_t>(std::lower_bound(sizes_.begin(), sizes_.end(), distance) -
-                                           sizes_.begin());
+        add_at(group, column_of(distance), weight);
+    }
+    /// The smallest size that hits, or what stands for more.
+    std::size_t column_of(std::uint64_t distance) const {
+        return distance == StackDistance::first
+                   ? row_ - 1
+                   : static_cast<std::size_t>(std::lower_bound(sizes_.begin(), sizes_.end(), distance) -
+                                              sizes_.begin());
+    }
+    void add_at(std::size_t group, std::size_t column, Count weight) {
         const std::size_t at = group * row_ + column;
         if (at >= counts_.size())
             counts_.resize((group + 1) * row_, 0);

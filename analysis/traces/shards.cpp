@@ -18,25 +18,37 @@ std::uint64_t limit_of(double rate) {
     return static_cast<std::uint64_t>(std::ceil(rate * 0x1p53));
 }
 
-constexpr std::size_t slots = 4096; // the marks of small samples stay in fast memory
+/// What is known of small samples stays in fast memory, of their parts, which have few lines, above all.
+std::size_t slots_of(std::size_t parts) {
+    return parts == 1 ? 2048 : 512;
+}
 
 } // namespace
 
 LineSample::LineSample(const std::vector<std::uint64_t>& sizes, double rate, std::size_t parts,
                        std::uint64_t most)
-    : parts_(static_cast<double>(parts)), most_(most), stack_(slots), counts_(sizes) {
+    : parts_(static_cast<double>(parts)), most_(most), stack_(slots_of(parts)), counts_(sizes) {
     limit_ = limit_of(rate);
-    rate_ = rate / parts_;
+    set_rate(rate / parts_);
+}
+
+void LineSample::set_rate(double rate) {
+    rate_ = rate;
+    weight_ = 1 / rate;
+    for (std::size_t i = 0; i < near_.size(); ++i)
+        near_[i] = counts_.column_of(scaled(i + 1, rate));
 }
 
 void LineSample::set_limit(std::uint64_t limit) {
     limit_ = limit;
-    rate_ = static_cast<double>(limit) * 0x1p-53 / parts_;
+    set_rate(static_cast<double>(limit) * 0x1p-53 / parts_);
 }
 
 void LineSample::touch(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     const std::uint64_t distance = stack_.touch(line);
-    counts_.add(group, scaled(distance, rate_), 1 / rate_);
+    const std::size_t column =
+        distance <= near_.size() ? near_[distance - 1] : counts_.column_of(scaled(distance, rate_));
+    counts_.add_at(group, column, weight_);
     if (most_ == 0 || distance != StackDistance::first)
         return;
     highest_.emplace(hash, line);
@@ -72,15 +84,15 @@ void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     }
 }
 
-/// Touches of one line that follow each other; whether it is in the sample. All but the first are hits of all
-/// caches, of which nothing but their number is to be known.
-bool Shards::take_run(std::uint64_t line, std::size_t count, std::size_t group) {
-    const std::uint64_t hash = traces::hash_bits_of_line(line + offset_);
-    if (hash >= limit_)
-        return false;
-    take(line, group, hash);
-    sampled_ += hash < sample_.limit() ? count - 1 : 0; // by what the first has left of the limit
-    return true;
+/// The first of these, which is in the sample, and those that follow and are of the same line: hits of all
+/// caches, of which nothing but their number is to be known. How many.
+std::size_t Shards::take_run(std::span<const std::uint64_t> lines, std::size_t group, std::uint64_t hash) {
+    take(lines.front(), group, hash);
+    std::size_t n = 1;
+    while (n < lines.size() && lines[n] == lines.front())
+        ++n;
+    sampled_ += hash < sample_.limit() ? n - 1 : 0; // by what the first has left of the limit
+    return n;
 }
 
 // Most touches are of lines that were met not long ago and are not in the sample, where no line ever comes
@@ -99,11 +111,13 @@ void Shards::touch(std::span<const std::uint64_t> lines, std::size_t group) {
             ++i;
             continue;
         }
-        const std::size_t first = i;
-        while (i < n && line[i] == at)
-            ++i;
-        if (!take_run(at, i - first, group))
+        const std::uint64_t hash = traces::hash_bits_of_line(at + offset_);
+        if (hash < limit_) [[unlikely]] {
+            i += take_run(lines.subspan(i), group, hash);
+        } else {
             out[at % out_lines] = at;
+            ++i;
+        }
     }
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "analysis/traces/lru_curve.h"
+#include "analysis/traces/recent_stack.h"
 #include "traces/sample.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <queue>
@@ -31,11 +33,13 @@ public:
 
 private:
     void set_limit(std::uint64_t limit);
+    void set_rate(double rate);
 
-    double parts_, rate_ = 1;
+    double parts_, rate_ = 1, weight_ = 1;
     std::uint64_t limit_ = 0, most_; // of hashes; of lines
-    StackDistance stack_;
+    RecentStack stack_;
     BasicReuseCounts<double> counts_;
+    std::array<std::size_t, RecentStack::most> near_{}; // columns of counts: of distances 1, 2, ...
     std::priority_queue<std::pair<std::uint64_t, std::uint64_t>>
         highest_; // hashes and lines, if there is a most
 };
@@ -84,7 +88,7 @@ public:
 
 private:
     void take(std::uint64_t line, std::size_t group, std::uint64_t hash);
-    bool take_run(std::uint64_t line, std::size_t count, std::size_t group);
+    std::size_t take_run(std::span<const std::uint64_t> lines, std::size_t group, std::uint64_t hash);
     double ratio(const LineSample& sample, std::size_t group, std::size_t size) const;
 
     double of_;

@@ -4,9 +4,10 @@
 // SIGMETRICS 1991).
 #pragma once
 
-#include "analysis/traces/stack_distance.h"
+#include "analysis/traces/recent_stack.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,21 +26,21 @@ public:
 
     void touch(std::uint64_t line, std::size_t group) {
         if (now_ >= begin_)
-            look(line, group);
-        ++now_;
+            look({&line, 1}, group);
+        else
+            ++now_;
     }
     /// All of these, as touch() of each.
     void touch(std::span<const std::uint64_t> lines, std::size_t group) {
         while (!lines.empty()) {
-            if (now_ >= begin_) {
-                touch(lines.front(), group);
-                lines = lines.subspan(1);
-                continue;
-            }
-            const auto skipped =
-                static_cast<std::size_t>(std::min<std::uint64_t>(lines.size(), begin_ - now_));
-            now_ += skipped;
-            lines = lines.subspan(skipped);
+            const bool looks = now_ >= begin_;
+            const auto n = static_cast<std::size_t>(
+                std::min<std::uint64_t>(lines.size(), (looks ? end_ : begin_) - now_));
+            if (looks)
+                look(lines.first(n), group);
+            else
+                now_ += n;
+            lines = lines.subspan(n);
         }
     }
 
@@ -55,12 +56,17 @@ public:
     std::uint64_t stretches() const { return stretches_; }
 
 private:
-    struct Known { // of a group and size: in the stretch at hand, and sums over stretches
-        std::uint64_t references = 0, misses = 0;
+    /// Touches of the stretch at hand, of a group, by how many of the sizes (the first ones) something is
+    /// known of, and by how many of these miss.
+    struct Counted {
+        std::uint64_t known = 0, missing = 0;
+    };
+    struct Known { // of a group and size: sums over stretches
         double sum_references = 0, sum_misses = 0, references2 = 0, products = 0, misses2 = 0;
         std::uint64_t stretches = 0; // in which there were references
     };
-    void look(std::uint64_t line, std::size_t group);
+    void look(std::span<const std::uint64_t> lines, std::size_t group);
+    std::size_t missing(std::uint64_t distance) const;
     void end_stretch();
     void next_stretch();
 
@@ -68,9 +74,12 @@ private:
     std::uint64_t stretch_, period_, seed_;
     std::uint64_t now_ = 0, number_ = 0, begin_ = 0, end_ = 0; // touches; of the stretch at hand or next
     std::uint64_t stretches_ = 0;
-    StackDistance stack_;
-    std::vector<Known> known_;           // by group, then by size
-    std::vector<std::uint64_t> touches_; // by group, in stretches
+    RecentStack stack_;
+    std::array<std::size_t, RecentStack::most> near_{}; // missing() of distances 1, 2, ...
+    std::size_t known_sizes_ = 0;                       // of no more lines than the stretch has by now
+    std::vector<Counted> counted_;                      // by group, then by number of sizes
+    std::vector<Known> known_;                          // by group, then by size
+    std::vector<std::uint64_t> touches_;                // by group, in stretches
 };
 
 } // namespace analysis

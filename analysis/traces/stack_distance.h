@@ -4,6 +4,7 @@
 
 #include "analysis/traces/line_map.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -22,7 +23,9 @@ public:
 
     /// With room for so many touches at first, a multiple of 512: few where few lines are to stay in fast
     /// memory.
-    explicit StackDistance(std::size_t least_slots = std::size_t{1} << 16) : least_slots_(least_slots) {
+    explicit StackDistance(std::size_t least_slots = std::size_t{1} << 16)
+        : least_slots_(least_slots),
+          slots_(std::min(LineMap::most_at_first, std::bit_ceil(least_slots / 4))) {
         reserve(least_slots_);
     }
 
@@ -49,6 +52,30 @@ public:
     }
     /// Different ones that were touched.
     std::uint64_t lines() const { return slots_.size(); }
+
+protected:
+    // For a stack whose top somebody else keeps: lines in it are known, but not marked.
+
+    /// The place of a line in the whole stack; it is not marked any more, and belongs to the top.
+    std::uint64_t take(std::uint64_t line) {
+        std::uint32_t& slot = slots_[line];
+        std::uint64_t distance = first;
+        if (slot != LineMap::none) {
+            distance = marks_from(slot); // and all lines of the top, which have no marks but are counted
+            unmark(slot);
+        }
+        slot = 0; // known
+        return distance;
+    }
+    /// The last line of the top leaves it.
+    void put(std::uint64_t line) {
+        if (next_ == owners_.size())
+            pack();
+        slots_[line] = next_;
+        owners_[next_] = line;
+        mark();
+    }
+    void forget_unmarked(std::uint64_t line) { slots_.erase(line); }
 
 private:
     static constexpr std::size_t group_words = 8, group_slots = group_words * 64;

@@ -2,6 +2,7 @@
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/object_lru.h"
 #include "analysis/traces/optimum.h"
+#include "analysis/traces/recent_stack.h"
 #include "analysis/traces/set_curve.h"
 #include "analysis/traces/touches.h"
 #include "tests/analysis/plain_caches.h"
@@ -22,12 +23,16 @@ using test::plain_distances;
 using test::plain_misses;
 using test::random_lines;
 
-TEST(StackDistance, IsThePlaceInTheStack) {
+template <class Stack> class Stacks : public testing::Test {};
+using AllStacks = testing::Types<StackDistance, RecentStack>;
+TYPED_TEST_SUITE(Stacks, AllStacks);
+
+TYPED_TEST(Stacks, SayThePlaceOfLines) {
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
         const std::vector<std::uint64_t> touches =
             random_lines(6000, 1 + seed * seed * 60, seed, seed % 2 == 1);
         const std::vector<std::uint64_t> expected = plain_distances(touches);
-        StackDistance stack;
+        TypeParam stack;
         for (std::size_t i = 0; i < touches.size(); ++i) {
             const std::uint64_t got = stack.touch(touches[i] << (seed * 9));
             ASSERT_EQ(got == StackDistance::first ? 0 : got, expected[i]) << seed << ' ' << i;
@@ -37,9 +42,9 @@ TEST(StackDistance, IsThePlaceInTheStack) {
 }
 
 /// Far more touches than slots, and more lines than the first row of slots holds: rows are packed and grow.
-TEST(StackDistance, SurvivesPacking) {
+TYPED_TEST(Stacks, SurvivePacking) {
     constexpr std::uint64_t lines = 50000;
-    StackDistance stack;
+    TypeParam stack;
     for (std::uint64_t i = 0; i < lines; ++i)
         ASSERT_EQ(stack.touch(i), StackDistance::first);
     for (int round = 0; round < 8; ++round)
@@ -50,9 +55,9 @@ TEST(StackDistance, SurvivesPacking) {
     EXPECT_EQ(stack.lines(), lines);
 }
 
-TEST(StackDistance, ForgetsLines) {
+TYPED_TEST(Stacks, ForgetLines) {
     std::vector<std::uint64_t> stack; // the top last
-    StackDistance tested;
+    TypeParam tested(512);
     std::mt19937_64 random(5);
     for (int i = 0; i < 200000; ++i) {
         const std::uint64_t line = random() % 300;

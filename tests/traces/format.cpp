@@ -74,6 +74,51 @@ TEST(TraceFormat, LinesThatLeaveCachesTakeLittle) {
     }
 }
 
+/// What comes where a line made room for it is at that line's time: no time of its own is written.
+TEST(TraceFormat, LinesThatLeaveHaveTheTimeOfWhatComes) {
+    for (const std::uint64_t later : {0U, 1U}) {
+        std::size_t left = 0;
+        BlockBuilder builder;
+        for (Reference& r : evicting(30000, left)) {
+            r.time += r.what.kind <= Kind::write ? later : 0;
+            builder.add(r);
+        }
+        Block block, back;
+        builder.take(block);
+        std::string bytes;
+        Encoder().encode(block, bytes);
+        Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "here", back);
+        EXPECT_EQ(back.addresses, block.addresses);
+        EXPECT_EQ(back.times, block.times);
+        const std::size_t times = fixed_at<std::uint32_t>(bytes.data() + 24 + 3 * 8), n = block.size();
+        if (later == 0)
+            EXPECT_LT(times, n - left * 9 / 10);
+        else
+            EXPECT_GE(times, n);
+    }
+}
+
+/// Each of many classes walks in steps of its own, in turns that nobody knows: the turns take room alone.
+TEST(TraceFormat, AddressesOfAClassAreSideBySide) {
+    constexpr std::uint64_t classes = 64, n = 50000;
+    std::mt19937_64 random(8);
+    std::vector<std::uint64_t> next(classes, 1000);
+    BlockBuilder builder;
+    for (std::uint64_t i = 0; i < n; ++i) {
+        Reference r{i, 0, 0, {}};
+        r.what.site = 1 + random() % classes;
+        r.address = next[r.what.site - 1] += 4 * r.what.site;
+        builder.add(r);
+    }
+    Block block, back;
+    builder.take(block);
+    std::string bytes;
+    Encoder().encode(block, bytes);
+    Decoder().decode(bytes, {1, 1, 1, classes}, format_version, "here", back);
+    EXPECT_EQ(back.addresses, block.addresses);
+    EXPECT_LT(bytes.size(), n * 85 / 100); // six bits each, of the class
+}
+
 TEST(TraceFormat, TheOrderOfAllStreamsIsKept) {
     const std::vector<Reference> all = test::with_tiles(mixed_references(3000, 5));
     BlockBuilder builder;

@@ -127,28 +127,101 @@ TEST(TraceFormat, FilesOfVersionThreeAreRead) {
     EXPECT_EQ(reader.description().sites, (std::vector<std::string>{"a:1", "b:2", "0"}));
 }
 
+/// What a cache of 64 lines passed on: version 5 of it, of which the first is columns, the second predicted.
+constexpr std::string_view of_version_5 =
+    "iVJaVA0KGgoFAAAASEVBRCBDLiTKAAAAAAAAACi1L/1gSgAFBgACih8ccKd1QYPRFF4RMpKnzy+Kj+j/rcbCQOheVv3vsgfmQANQFHhY"
+    "xr3tuEubcCPuTeqqoIPWUW+/eL9OfxR2oMlXpDmRX/PCLhFNgLuGnLd/16Y2eY3wvgKh2Dr/ug7nvgGNfG0FAwLK64p469pGKKUEqhIN"
+    "IRONXMdTO0s0BgEbKCBCgi07EFhppmo3uUFqrihBlGGk/fCDlx/67vINEBSyI15J3n2QlDgcb4a+mMKcNboFDqv6i2khmeKCuzFOQU1F"
+    "mhpgVhYAAAAAAAAAKLUv/SANaQAAWyJhOjEiLCJiOjIiXUJMQ0vmpPl5YwEAAAAAAABQAQAAAQAAABIAAAAGBgAAAAAAAAAAAACBAAAA"
+    "QgAAAFABAABZAAAAUAEAAC8AAABQAQAAFgAAADgAAAAjAAAADwAAABgAAAAotS/9IIHNAQDwANACAEABAAACAQADAAIBBQEABQMCAwEB"
+    "AAAEAQEEDqAQsNPtUJM9xOAIDcrJGnoM1kF8zO9oQDIotS/9YFAAfQIApAMMAAEDBA0CAAEDDgUCAAEPBAUCABADBAUCEQEDBAUGBAcN"
+    "CAIJAAoBCwMGDgcFDwYEEAsDEQoBDAkABwDOrygAeYA8QB4gDy/ZMjjKCSi1L/1gUAAtAQDAAAIEBggKDAwMDBQWDAwMHhgMDAwoMjwB"
+    "BAAEHCUmQAeMhVXuKLUv/WBQAGUAABgABgACAAs5VVACWCi1L/0gONUAAIgPBwACATIk0A+8D7AT1AfnBwMQAqnhwnFEKLUv/SAPeQAA"
+    "BSg4UFBQAQACAAIAAgACSU5EWCUtR95kAAAAAAAAACi1L/0gct0CADIFExqAqW1Y/HkxbHGFYD/KI7K7gZBv26aOhRk4Ag01wuT7YMGp"
+    "QJavGhgA7IJDmeiVqAQi+Wp+dm6OmzuJNihIQlgk/8zQa5Wyyx52MSMEAFkIJKkrAPTY4MhUQUlM5X/"
+    "AFQgAAAAAAAAAfwIAAAAAAAA=";
+constexpr std::string_view predicted_of_version_5 =
+    "iVJaVA0KGgoFAAAASEVBRLT+d9PLAAAAAAAAACi1L/1gSgANBgACyh8dYGfrY9Vti21k/+Tp84uM5RZFNRWPMcIEmQRfgxUH5kADUBSY"
+    "WMa97bhLm3Aj7k3qqqCD1lFvv3i/Tn8UdqDJV6Q5kV/zwi4RTYC7hpy3f9emNnmN8L7CQbF1/nUdzn0DGvnaCgYElNcV8da1DaGUEqhK"
+    "NIRMNHIdT+0s0RgEGyggQoItOxBYaaZqN7lBaq4oQZRhpP3wg5cf+u7yDRAUsiNeSd59kJQ4HG+GvpjCnDW6BQ6r+otpIZnigrsxTkFN"
+    "RZoaYFYWAAAAAAAAACi1L/0gDWkAAFsiYToxIiwiYjoyIl1CTENLt7Jh9BMBAAAAAAAAUAEAAAEAAAASAAAABgYHAAAAAAAAAAAAgQAA"
+    "AEIAAACJAAAAiQAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAKLUv/SCBzQEA8ADQAgBAAQAAAgEAAwACAQUBAAUDAgMB"
+    "AQAABAEBBA6gELDT7VCTPcTgCA3KyRp6DNZBfMzvaEAytWPhJShdTqn0w0iWGu+b7iaW0Ix8BeuNmJhURmJkzTta6rU/4DE9Ks97GPZz"
+    "WmPjQaC2wUTh1uMSQf3R9QxxCvXzEQ4MmpJhOE4IdOS31y2zViNQZxti56ZcAQvu71QWwE/nGL4zPISeso/drUwA+GBBpNd1KH0W+177"
+    "vCJ8PHO2FnrfG+VWC4BJTkRYr7PiQWMAAAAAAAAAKLUv/SBy1QIAMsUSGXBp2+Ctg5vY5xB80P30X5Eagi+dUlb6/4ULNULl++DAiUCW"
+    "rxpIAHs6lIleyXEwKF/Nz86NcXMn0QQFSQQJ5Z8Zeu2h7LKFXawIBABZCCSpKwD02ODIVEFJTKSvfeUIAAAAAAAAADACAAAAAAAA";
+
+std::vector<Reference> passed_on() {
+    std::vector<Reference> all;
+    for (std::uint32_t k = 0; k < 200; ++k) {
+        Reference r{3 * k, 0, 0, {k % 3, 64, 1, 0, 0, Kind::write_back, Part::operation, k % 2}, k / 40};
+        r.address = (std::uint64_t{k} - 64) * 64;
+        if (k >= 64)
+            all.push_back(r);
+        r.what.kind = k % 5 == 0 ? Kind::write : Kind::read;
+        r.address = std::uint64_t{k} * 64;
+        all.push_back(r);
+    }
+    return all;
+}
+
+void expect_passed_on(const Block& block, bool tiles) {
+    const std::vector<Reference> got = references_of(block);
+    std::vector<Reference> want = passed_on();
+    ASSERT_EQ(got.size(), want.size());
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        want[i].tile = tiles ? want[i].tile : 0;
+        EXPECT_TRUE(equal(got[i], want[i])) << i;
+    }
+    ASSERT_EQ(block.order.size(), 15U); // seven windows, and the end
+    EXPECT_EQ(block.order[2], (Turn{Turn::What::window, 0, 0, 2250, 2240}));
+    EXPECT_EQ(block.order[3].count, 50U);
+    EXPECT_EQ(block.order[14], (Turn{Turn::What::end, 0, 0, 9000, 8000}));
+}
+
+TEST(TraceFormat, FilesOfVersionFiveAreRead) {
+    for (const std::string_view text : {of_version_5, predicted_of_version_5}) {
+        Reader reader(memory_source(decoded(text), "old"));
+        Block block;
+        ASSERT_TRUE(reader.next(block));
+        expect_passed_on(block, true);
+        EXPECT_FALSE(reader.next(block));
+        EXPECT_TRUE(reader.complete()) << reader.note();
+    }
+}
+
 /// Blocks of version 4 are those of version 5 without the last column, of tiles.
 TEST(TraceFormat, BlocksOfVersionFourAreRead) {
-    for (const Coding coding : {Coding::columns, Coding::predicted}) {
-        BlockBuilder builder;
-        for (const Reference& r : test::mixed_references(500, 4))
-            builder.add(r);
-        Block block, back;
-        builder.take(block);
-        std::string bytes;
-        Encoder(coding).encode(block, bytes);
-        constexpr std::size_t sizes = 24 + 5 * 8; // of the last column
-        const auto stored = fixed_at<std::uint32_t>(bytes.data() + sizes + 4);
-        ASSERT_EQ(fixed_at<std::uint32_t>(bytes.data() + sizes), 0U);
-        bytes.resize(bytes.size() - stored);
-        bytes.erase(sizes, 8);
-        Decoder().decode(bytes, {3, 2, 3, 9}, 4, "old", back);
-        EXPECT_EQ(back.addresses, block.addresses);
-        EXPECT_EQ(back.times, block.times);
-        EXPECT_EQ(back.order, block.order);
-        EXPECT_TRUE(back.tiles.empty());
-        EXPECT_THROW(Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "new", back), Error);
-    }
+    const std::string file = decoded(of_version_5);
+    const std::size_t chunk = file.find(block_chunk);
+    ASSERT_NE(chunk, std::string::npos);
+    std::string bytes =
+        file.substr(chunk + chunk_header_bytes, fixed_at<std::uint64_t>(file.data() + chunk + 8));
+    constexpr std::size_t sizes = 24 + 5 * 8; // of the last column
+    bytes.resize(bytes.size() - fixed_at<std::uint32_t>(bytes.data() + sizes + 4));
+    bytes.erase(sizes, 8);
+    Block back;
+    Decoder().decode(bytes, {2, 1, 1, 2}, 4, "old", back);
+    expect_passed_on(back, false);
+    EXPECT_THROW(Decoder().decode(bytes, {2, 1, 1, 2}, format_version, "new", back), Error);
+
+    BlockBuilder builder;
+    for (const Reference& r : test::mixed_references(500, 4))
+        builder.add(r);
+    Block block;
+    builder.take(block);
+    bytes.clear();
+    Encoder(Coding::predicted).encode(block, bytes);
+    const auto stored = fixed_at<std::uint32_t>(bytes.data() + sizes + 4);
+    ASSERT_EQ(fixed_at<std::uint32_t>(bytes.data() + sizes), 0U);
+    bytes.resize(bytes.size() - stored);
+    bytes.erase(sizes, 8);
+    Decoder().decode(bytes, {3, 2, 3, 9}, 4, "old", back);
+    EXPECT_EQ(back.addresses, block.addresses);
+    EXPECT_EQ(back.times, block.times);
+    EXPECT_EQ(back.order, block.order);
+    EXPECT_TRUE(back.tiles.empty());
+    EXPECT_THROW(Decoder().decode(bytes, {3, 2, 3, 9}, format_version, "new", back), Error);
 }
 
 } // namespace
