@@ -31,6 +31,12 @@ inline std::size_t most_turns(std::size_t references) {
     return 2 * references + 16;
 }
 
+/// Whether addresses of a class, and the bytes of a class's number, lie side by side: a tenth less of what
+/// caches pass on. What cores ask for is read half as fast again without.
+inline bool side_by_side(std::uint32_t version, unsigned set_bits) {
+    return version >= 6 && set_bits != 0;
+}
+
 /// Bytes that numbers below `n` take.
 inline std::uint32_t bytes_for(std::size_t n) {
     return n <= 1U << 8U ? 1 : n <= 1U << 16U ? 2 : 3;

@@ -71,8 +71,8 @@ private:
                    const std::string& place, Block& block);
     void get_columns(std::uint32_t version, const std::string& place, unsigned shift, unsigned set_bits,
                      std::uint64_t first_time, Block& block);
-    void get_classes(std::uint32_t version, const std::string& place, Block& block);
-    void get_addresses(std::uint32_t version, const std::string& place, unsigned shift, unsigned set_bits,
+    void get_classes(bool beside, const std::string& place, Block& block);
+    void get_addresses(bool beside, const std::string& place, unsigned shift, unsigned set_bits,
                        Block& block);
     void get_order(const std::string& place, Block& block);
 

@@ -159,13 +159,12 @@ void Decoder::get_table(const Limits& limits, std::uint32_t version, std::size_t
         refuse(place, "a block's table does not fit its counts");
 }
 
-void Decoder::get_classes(std::uint32_t version, const std::string& place, Block& block) {
+void Decoder::get_classes(bool beside, const std::string& place, Block& block) {
     const std::size_t n = block.segments.back().end, classes = block.table.size();
     const std::uint32_t id_bytes = bytes_for(classes);
     block.classes.resize(n);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(classes_.data());
-    // Those before version 6 have all low bytes first.
-    const std::size_t step = version < 6 ? 1 : id_bytes, more = version < 6 ? n : 1;
+    const std::size_t step = beside ? id_bytes : 1, more = beside ? 1 : n;
     if (id_bytes == 1)
         number<1>(bytes, n, 1, 0, block.classes.data());
     else if (id_bytes == 2)
@@ -179,8 +178,8 @@ void Decoder::get_classes(std::uint32_t version, const std::string& place, Block
         refuse(place, "a reference is of a class that its block does not have");
 }
 
-void Decoder::get_addresses(std::uint32_t version, const std::string& place, unsigned shift,
-                            unsigned set_bits, Block& block) {
+void Decoder::get_addresses(bool beside, const std::string& place, unsigned shift, unsigned set_bits,
+                            Block& block) {
     const std::size_t n = block.segments.back().end, classes = block.table.size();
     block.addresses.resize(n);
     const auto of = [&](std::uint32_t c) -> const Class& { return block.table[c]; };
@@ -190,12 +189,15 @@ void Decoder::get_addresses(std::uint32_t version, const std::string& place, uns
     const auto get = [&](std::size_t i) {
         return last_[first_of[block.classes[i]]] += unzigzag(addresses.next());
     };
-    if (version < 6) {
+    if (set_bits == 0) {
         for (std::size_t i = 0; i < n; ++i)
-            if (set_bits == 0 || !Evictions::leaves(block.what(i)))
+            block.addresses[i] = get(i) << shift;
+    } else if (!beside) {
+        for (std::size_t i = 0; i < n; ++i)
+            if (!Evictions::leaves(block.what(i)))
                 block.addresses[i] = get(i) << shift;
     } else {
-        by_class_.sort(block.classes, set_bits == 0 ? first_of : without_leaving(first_of, of));
+        by_class_.sort(block.classes, without_leaving(first_of, of));
         for (std::size_t c = 0; c < classes; ++c) {
             std::uint64_t line = 0;
             for (const std::uint32_t i : by_class_.of(c))
@@ -231,8 +233,9 @@ void Decoder::get_addresses(std::uint32_t version, const std::string& place, uns
 
 void Decoder::get_columns(std::uint32_t version, const std::string& place, unsigned shift, unsigned set_bits,
                           std::uint64_t first_time, Block& block) {
-    get_classes(version, place, block);
-    get_addresses(version, place, shift, set_bits, block);
+    const bool beside = side_by_side(version, set_bits);
+    get_classes(beside, place, block);
+    get_addresses(beside, place, shift, set_bits, block);
     if (version < 6)
         std::fill(makes_room_.begin(), makes_room_.end(), 0); // all have times there
     const std::size_t n = block.segments.back().end;

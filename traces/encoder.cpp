@@ -147,27 +147,34 @@ void Encoder::put_columns(const Block& block, const std::vector<std::uint32_t>& 
     ranks_.resize(n);
     for (std::size_t i = 0; i < n; ++i)
         ranks_[i] = rank[block.classes[i]];
+    const bool beside = side_by_side(format_version, set_bits);
     classes_.resize(n * id_bytes);
-    char* to = classes_.data();
-    for (const std::uint32_t r : ranks_)
+    for (std::size_t i = 0; i < n; ++i)
         for (std::uint32_t byte = 0; byte < id_bytes; ++byte)
-            *to++ = static_cast<char>(r >> (8 * byte));
+            classes_[beside ? i * id_bytes + byte : byte * n + i] =
+                static_cast<char>(ranks_[i] >> (8 * byte));
     const auto of = [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; };
     const std::vector<std::uint32_t> first_of = without_parts(order.size(), of);
-    by_class_.sort(ranks_, set_bits == 0 ? first_of : without_leaving(first_of, of));
     addresses_.resize(n * (longest_varint + 1)); // lines that leave take a byte more
-    to = addresses_.data();
-    for (std::size_t c = 0; c < by_class_.classes(); ++c) {
-        std::uint64_t before = 0;
-        for (const std::uint32_t i : by_class_.of(c)) {
-            const std::uint64_t a = block.addresses[i] >> shift;
-            to = put_varint(to, zigzag(a - before));
-            before = a;
-        }
-    }
+    char* to = addresses_.data();
+    std::vector<std::uint64_t> last(order.size(), 0); // by class
+    const auto put = [&](std::size_t i) {
+        const std::uint64_t a = block.addresses[i] >> shift;
+        std::uint64_t& before = last[first_of[ranks_[i]]];
+        to = put_varint(to, zigzag(a - before));
+        before = a;
+    };
     makes_room_.assign(n, 0);
-    if (set_bits != 0)
+    if (beside) {
+        by_class_.sort(ranks_, without_leaving(first_of, of));
+        for (std::size_t c = 0; c < by_class_.classes(); ++c)
+            for (const std::uint32_t i : by_class_.of(c))
+                put(i);
         to = put_leaving(block, first_of, shift, set_bits, to);
+    } else {
+        for (std::size_t i = 0; i < n; ++i)
+            put(i);
+    }
     addresses_.resize(static_cast<std::size_t>(to - addresses_.data()));
     times_.resize(n * longest_varint);
     to = times_.data();

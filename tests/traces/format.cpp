@@ -108,6 +108,11 @@ TEST(TraceFormat, AddressesOfAClassAreSideBySide) {
         Reference r{i, 0, 0, {}};
         r.what.site = 1 + random() % classes;
         r.address = next[r.what.site - 1] += 4 * r.what.site;
+        if (i % 100 == 0) { // makes room: a trace of what a cache passes on
+            Reference leaving{i, r.address ^ (std::uint64_t{1} << 20U), 0, r.what};
+            leaving.what.kind = Kind::write_back;
+            builder.add(leaving);
+        }
         builder.add(r);
     }
     Block block, back;
