@@ -90,7 +90,8 @@ Config shipped(const std::string& name) {
 }
 
 // Everything that one thread does and touches is counted as in detail, in each mode and whatever the caches
-// do.
+// do; but below the L1s of the reference mode, where lines come in order of time, some few fill another
+// place.
 TEST(Sampling, WarmingCountsWhatADetailedRunCounts) {
     struct Case {
         const char* what;
@@ -122,17 +123,22 @@ TEST(Sampling, WarmingCountsWhatADetailedRunCounts) {
             for (const auto& row : core_counters)
                 EXPECT_EQ(s.report.core.*row.count, all.core.*row.count) << row.name;
             EXPECT_EQ(s.report.by_kind, all.by_kind);
+            const auto expect = [&](unsigned level, std::uint64_t warmed, std::uint64_t detailed) {
+                const bool in_time = level > 0 && c.sim.mode == "reference";
+                EXPECT_NEAR(static_cast<double>(warmed), static_cast<double>(detailed),
+                            in_time ? 2e-4 * static_cast<double>(detailed) : 0);
+            };
             for (unsigned level = 0; level < 2; ++level) {
                 SCOPED_TRACE(level);
                 const CacheCounters a = s.report.cache_total(level), b = all.cache_total(level);
                 EXPECT_EQ(a.reads, b.reads);
                 EXPECT_EQ(a.writes, b.writes);
-                EXPECT_EQ(a.hits, b.hits);
-                EXPECT_EQ(a.misses, b.misses);
-                EXPECT_EQ(a.write_backs, b.write_backs);
+                expect(level, a.hits, b.hits);
+                expect(level, a.misses, b.misses);
+                expect(level, a.write_backs, b.write_backs);
             }
-            EXPECT_EQ(s.report.memory.reads, all.memory.reads);
-            EXPECT_EQ(s.report.memory.writes, all.memory.writes);
+            expect(2, s.report.memory.reads, all.memory.reads);
+            expect(2, s.report.memory.writes, all.memory.writes);
         }
 }
 
