@@ -70,7 +70,8 @@ CollectedPlot plot_of(const Collection& all, const PlotRequest& request, const s
             continue;
         const Point& point = all.points[i].point;
         std::string name = point.rival.empty() ? settings_text(point, all.knobs, request.lines) : point.rival;
-        name = name.empty() ? "all points" : name;
+        if (name.empty())
+            name = request.lines.empty() ? "all points" : "other points";
         const auto [found, fresh] = series.try_emplace(name, out.chart.series.size());
         if (fresh)
             out.chart.series.push_back({name, {}, !point.rival.empty()});
