@@ -25,11 +25,11 @@ FromModel read_from_model(TomlTable& table, const std::filesystem::path& folder,
     from.translate = table.vector("translate", from.translate, coordinate_range);
     if (!camera)
         from.lumens_per_watt = table.number("lumens_per_watt", from.lumens_per_watt, lumens_range);
-    from.file = std::filesystem::absolute(folder / file).lexically_normal().string();
     try {
         if (model_file(file) != ModelFile::gltf)
             throw UserError(fmt::format("'{}' brings no {}; give a .gltf or .glb file", printable(file, 1000),
                                         camera ? "camera" : "lights"));
+        from.file = std::filesystem::absolute(folder / file).lexically_normal().string();
         load_stage(from, camera);
     } catch (const UserError& error) {
         table.fail("from", error.what());

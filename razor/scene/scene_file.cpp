@@ -238,7 +238,8 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         read_shape(table, mesh);
     } else {
         table.may_have("shape");
-        mesh.file = std::filesystem::absolute(folder / file).lexically_normal().string();
+        if (!file.empty()) // of which there is no absolute path; refused below
+            mesh.file = std::filesystem::absolute(folder / file).lexically_normal().string();
     }
     mesh.scheme = choose(table, "scheme", mesh.scheme, scheme_words);
     mesh.scale = table.vector_or_number("scale", mesh.scale, scale_range);

@@ -288,6 +288,10 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
         EXPECT_TRUE(message.starts_with("s.toml:")) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
+    // Where the file's own folder is the current one, too.
+    EXPECT_EQ(message_of("[[mesh]]\nfile = \"\"\n"), "s.toml:2:8: the file name is empty; give a model");
+    EXPECT_EQ(message_of("[camera]\nfrom = \"\"\n[[mesh]]\nshape = \"box\"\n"),
+              "s.toml:2:8: '' brings no camera; give a .gltf or .glb file");
 }
 
 } // namespace
