@@ -10,7 +10,8 @@ namespace isa_test {
 inline constexpr int most_lanes = 64;
 inline constexpr int room = most_lanes + 16; // loads may begin after lane 0
 
-/// Lanes beyond the width are not used. Scalar operands are lane 0; bit i of a mask is lane i.
+/// Lanes beyond the width are not used. Scalar operations take each lane in turn; where one meets a vector, its operand
+/// is lane 0.
 struct operands {
     alignas(64) float a[room], b[room], c[room];
     alignas(64) std::int32_t i[room], j[room];

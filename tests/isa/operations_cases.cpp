@@ -15,19 +15,53 @@ pointer<const float> in(const float* p) { return pointer<const float>(p); }
 pointer<const std::int32_t> in(const std::int32_t* p) { return pointer<const std::int32_t>(p); }
 std::int32_t* words(result& r) { return reinterpret_cast<std::int32_t*>(r.word); }
 
-// The operands, loaded; what a case does not use costs nothing natively.
-struct loaded {
-    vfloat a, b, c;
-    vint i, j;
-    vmask m, n;
+// The scalar operands of one lane that each shape has.
+struct scalar_floats {
     sfloat sa, sb, sc;
+    explicit scalar_floats(const operands& x, int lane)
+        : sa(load(in(x.a + lane))), sb(load(in(x.b + lane))), sc(load(in(x.c + lane))) {}
+};
+struct scalar_integers {
     sint si, sj;
+    explicit scalar_integers(const operands& x, int lane) : si(load(in(x.i + lane))), sj(load(in(x.j + lane))) {}
+};
+struct scalar_masks {
     sbool sm, sn;
-    explicit loaded(const operands& x)
-        : a(load_vector(in(x.a))), b(load_vector(in(x.b))), c(load_vector(in(x.c))), i(load_vector(in(x.i))),
-          j(load_vector(in(x.j))), m(load_vector(in(x.m)) != vint(0)), n(load_vector(in(x.n)) != vint(0)),
-          sa(load(in(x.a))), sb(load(in(x.b))), sc(load(in(x.c))), si(load(in(x.i))), sj(load(in(x.j))),
-          sm(load(in(x.m)) != sint(0)), sn(load(in(x.n)) != sint(0)) {}
+    explicit scalar_masks(const operands& x, int lane)
+        : sm(load(in(x.m + lane)) != sint(0)), sn(load(in(x.n + lane)) != sint(0)) {}
+};
+struct scalar_mixed : scalar_floats, scalar_integers, scalar_masks {
+    explicit scalar_mixed(const operands& x, int lane)
+        : scalar_floats(x, lane), scalar_integers(x, lane), scalar_masks(x, lane) {}
+};
+using scalar_floats_1 = scalar_floats;
+using scalar_floats_2 = scalar_floats;
+using scalar_floats_3 = scalar_floats;
+using scalar_integers_2 = scalar_integers;
+
+// The operands that each shape has.
+struct of_floats_1 {
+    vfloat a;
+    explicit of_floats_1(const operands& x) : a(load_vector(in(x.a))) {}
+};
+struct of_floats_2 : of_floats_1 {
+    vfloat b;
+    explicit of_floats_2(const operands& x) : of_floats_1(x), b(load_vector(in(x.b))) {}
+};
+struct of_floats_3 : of_floats_2 {
+    vfloat c;
+    explicit of_floats_3(const operands& x) : of_floats_2(x), c(load_vector(in(x.c))) {}
+};
+struct of_integers_2 {
+    vint i, j;
+    explicit of_integers_2(const operands& x) : i(load_vector(in(x.i))), j(load_vector(in(x.j))) {}
+};
+struct of_masks {
+    vmask m, n;
+    explicit of_masks(const operands& x) : m(load_vector(in(x.m)) != vint(0)), n(load_vector(in(x.n)) != vint(0)) {}
+};
+struct of_mixed : of_floats_3, of_integers_2, of_masks, scalar_mixed {
+    explicit of_mixed(const operands& x) : of_floats_3(x), of_integers_2(x), of_masks(x), scalar_mixed(x, 0) {}
 };
 
 void put(result& r, const vint& x) {
@@ -40,16 +74,16 @@ void put(result& r, const vfloat& x) {
     r.is = kind::floats;
 }
 void put(result& r, const vmask& x) { put(r, select(x, vint(1), vint(0))); }
-void put(result& r, const sint& x) {
-    store(pointer<std::int32_t>(words(r)), x);
-    r.count = 1;
+void put(result& r, const sint& x, int lane = 0) {
+    store(pointer<std::int32_t>(words(r) + lane), x);
+    r.count = lane + 1;
     r.is = kind::integers;
 }
-void put(result& r, const sfloat& x) {
-    put(r, as_int(x));
+void put(result& r, const sfloat& x, int lane = 0) {
+    put(r, as_int(x), lane);
     r.is = kind::floats;
 }
-void put(result& r, const sbool& x) { put(r, select(x, sint(1), sint(0))); }
+void put(result& r, const sbool& x, int lane = 0) { put(r, select(x, sint(1), sint(0)), lane); }
 
 // A copy of lanes that a case may write to: the operands j, and after them the words of a result.
 std::int32_t* copy_of_lanes(const operands& x, result& r) {
@@ -64,21 +98,40 @@ float* copy_of_floats(const operands& x, result& r) { return reinterpret_cast<fl
 #define CASE(takes, name, expression)                                                                                  \
     {                                                                                                                  \
         name, shape::takes, 0, 0, [](const operands& memory, result& r) {                                              \
-            [[maybe_unused]] loaded x(memory);                                                                         \
+            [[maybe_unused]] of_##takes x(memory);                                                                     \
             put(r, expression);                                                                                        \
+        }                                                                                                              \
+    }
+// Of lane 0 alone.
+#define OF_SCALARS(takes, name, expression)                                                                            \
+    {                                                                                                                  \
+        name, shape::takes, 0, 0, [](const operands& memory, result& r) {                                              \
+            scalar_##takes x(memory, 0);                                                                               \
+            put(r, expression);                                                                                        \
+        }                                                                                                              \
+    }
+// A scalar operation, on the operands of each lane in turn.
+#define SCALAR(takes, name, expression) SCALAR_FUSED(takes, name, 0, 0, expression)
+#define SCALAR_FUSED(takes, name, sign, sign_c, expression)                                                            \
+    {                                                                                                                  \
+        name, shape::takes, sign, sign_c, [](const operands& memory, result& r) {                                      \
+            for (int lane = 0; lane < width; ++lane) {                                                                 \
+                scalar_##takes x(memory, lane);                                                                        \
+                put(r, expression, lane);                                                                              \
+            }                                                                                                          \
         }                                                                                                              \
     }
 #define FUSED(name, sign, sign_c, expression)                                                                          \
     {                                                                                                                  \
         name, shape::floats_3, sign, sign_c, [](const operands& memory, result& r) {                                   \
-            loaded x(memory);                                                                                          \
+            of_floats_3 x(memory);                                                                                     \
             put(r, expression);                                                                                        \
         }                                                                                                              \
     }
 #define WRITES(name, statement)                                                                                        \
     {                                                                                                                  \
         name, shape::mixed, 0, 0, [](const operands& memory, result& r) {                                              \
-            loaded x(memory);                                                                                          \
+            of_mixed x(memory);                                                                                        \
             statement;                                                                                                 \
         }                                                                                                              \
     }
@@ -110,7 +163,7 @@ const operation cases[] = {
     CASE(floats_1, "abs", as_int(abs(x.a))),
     CASE(floats_1, "to_int", to_int(x.a)),
     CASE(floats_1, "as_int", as_int(x.a)),
-    CASE(floats_1, "vfloat(scalar)", as_int(vfloat(x.sa))),
+    OF_SCALARS(floats_1, "vfloat(scalar)", as_int(vfloat(x.sa))),
     CASE(floats_1, "vfloat(constant)", vfloat(1.5F)),
     CASE(mixed, "select float", as_int(select(x.m, x.a, x.b))),
 
@@ -143,11 +196,11 @@ const operation cases[] = {
     CASE(integers_2, "i != j", x.i != x.j),
     CASE(integers_2, "to_float", to_float(x.i)),
     CASE(integers_2, "as_float", as_int(as_float(x.i))),
-    CASE(integers_2, "vint(scalar)", vint(x.si)),
+    OF_SCALARS(integers_2, "vint(scalar)", vint(x.si)),
     CASE(integers_2, "vint(constant)", vint(-7)),
     CASE(integers_2, "lane_index", lane_index()),
-    CASE(integers_2, "first_lanes", first_lanes(x.si)),
-    CASE(integers_2, "first_lanes small", first_lanes(x.sj& sint(127))),
+    OF_SCALARS(integers_2, "first_lanes", first_lanes(x.si)),
+    OF_SCALARS(integers_2, "first_lanes small", first_lanes(x.sj& sint(127))),
     CASE(mixed, "select int", select(x.m, x.i, x.j)),
 
     // masks
@@ -166,7 +219,7 @@ const operation cases[] = {
     CASE(masks, "first", first(x.m)),
     CASE(masks, "first !", first(!x.m)),
     CASE(masks, "clear_first", clear_first(x.m)),
-    CASE(masks, "vmask(scalar)", vmask(x.sm)),
+    OF_SCALARS(masks, "vmask(scalar)", vmask(x.sm)),
     CASE(masks, "vmask(true)", vmask(true)),
     CASE(masks, "vmask(false)", vmask(false)),
 
@@ -186,63 +239,63 @@ const operation cases[] = {
     CASE(mixed, "extract constant", extract(x.i, sint(5))),
 
     // scalars
-    CASE(floats_2, "scalar a + b", x.sa + x.sb),
-    CASE(floats_2, "scalar a - b", x.sa - x.sb),
-    CASE(floats_2, "scalar a * b", x.sa* x.sb),
-    CASE(floats_2, "scalar a / b", x.sa / x.sb),
-    CASE(floats_1, "scalar -a", as_int(-x.sa)),
-    FUSED("scalar fma", 1, 1, fma(x.sa, x.sb, x.sc)),
-    FUSED("scalar fms", 1, -1, fms(x.sa, x.sb, x.sc)),
-    FUSED("scalar fnma", -1, 1, fnma(x.sa, x.sb, x.sc)),
-    CASE(floats_2, "scalar product_error", product_error(x.sa, x.sb, x.sa* x.sb)),
-    CASE(floats_1, "scalar round_even", round_even(x.sa)),
-    CASE(floats_1, "scalar reciprocal", reciprocal(x.sa)),
-    CASE(floats_1, "scalar reciprocal_sqrt", reciprocal_sqrt(x.sa)),
-    CASE(floats_2, "scalar min", min(x.sa, x.sb)),
-    CASE(floats_2, "scalar max", max(x.sa, x.sb)),
-    CASE(floats_1, "scalar abs", as_int(abs(x.sa))),
-    CASE(floats_1, "scalar sqrt", sqrt(x.sa)),
-    CASE(floats_1, "scalar floor", floor(x.sa)),
-    CASE(floats_2, "scalar a < b", x.sa < x.sb),
-    CASE(floats_2, "scalar a <= b", x.sa <= x.sb),
-    CASE(floats_2, "scalar a > b", x.sa > x.sb),
-    CASE(floats_2, "scalar a >= b", x.sa >= x.sb),
-    CASE(floats_2, "scalar a == b", x.sa == x.sb),
-    CASE(floats_2, "scalar a != b", x.sa != x.sb),
-    CASE(floats_1, "scalar to_int", to_int(x.sa)),
-    CASE(floats_1, "scalar as_int", as_int(x.sa)),
-    CASE(integers_2, "scalar i + j", x.si + x.sj),
-    CASE(integers_2, "scalar i - j", x.si - x.sj),
-    CASE(integers_2, "scalar i * j", x.si* x.sj),
-    CASE(integers_2, "scalar -i", -x.si),
-    CASE(integers_2, "scalar i & j", x.si& x.sj),
-    CASE(integers_2, "scalar i | j", x.si | x.sj),
-    CASE(integers_2, "scalar i ^ j", x.si ^ x.sj),
-    CASE(integers_2, "scalar i << j", x.si << x.sj),
-    CASE(integers_2, "scalar i >> j", x.si >> x.sj),
-    CASE(integers_2, "scalar shift_right_logical", shift_right_logical(x.si, x.sj)),
-    CASE(integers_2, "scalar min int", min(x.si, x.sj)),
-    CASE(integers_2, "scalar max int", max(x.si, x.sj)),
-    CASE(integers_2, "scalar i += j", x.si += x.sj),
-    CASE(integers_2, "scalar i -= j", x.si -= x.sj),
-    CASE(integers_2, "scalar ++i", ++x.si),
-    CASE(integers_2, "scalar --i", --x.si),
-    CASE(floats_2, "scalar a += b", x.sa += x.sb),
-    CASE(integers_2, "scalar i < j", x.si < x.sj),
-    CASE(integers_2, "scalar i <= j", x.si <= x.sj),
-    CASE(integers_2, "scalar i > j", x.si > x.sj),
-    CASE(integers_2, "scalar i >= j", x.si >= x.sj),
-    CASE(integers_2, "scalar i == j", x.si == x.sj),
-    CASE(integers_2, "scalar i != j", x.si != x.sj),
-    CASE(integers_2, "scalar to_float", to_float(x.si)),
-    CASE(integers_2, "scalar as_float", as_int(as_float(x.si))),
-    CASE(masks, "scalar m & n", x.sm& x.sn),
-    CASE(masks, "scalar m | n", x.sm | x.sn),
-    CASE(masks, "scalar m ^ n", x.sm ^ x.sn),
-    CASE(masks, "scalar !m", !x.sm),
-    CASE(mixed, "scalar select float", as_int(select(x.sm, x.sa, x.sb))),
-    CASE(mixed, "scalar select int", select(x.sm, x.si, x.sj)),
-    CASE(masks, "branch", sint(branch(x.sm) ? 3 : 4)),
+    SCALAR(floats_2, "scalar a + b", x.sa + x.sb),
+    SCALAR(floats_2, "scalar a - b", x.sa - x.sb),
+    SCALAR(floats_2, "scalar a * b", x.sa* x.sb),
+    SCALAR(floats_2, "scalar a / b", x.sa / x.sb),
+    SCALAR(floats_1, "scalar -a", as_int(-x.sa)),
+    SCALAR_FUSED(floats_3, "scalar fma", 1, 1, fma(x.sa, x.sb, x.sc)),
+    SCALAR_FUSED(floats_3, "scalar fms", 1, -1, fms(x.sa, x.sb, x.sc)),
+    SCALAR_FUSED(floats_3, "scalar fnma", -1, 1, fnma(x.sa, x.sb, x.sc)),
+    SCALAR(floats_2, "scalar product_error", product_error(x.sa, x.sb, x.sa* x.sb)),
+    SCALAR(floats_1, "scalar round_even", round_even(x.sa)),
+    SCALAR(floats_1, "scalar reciprocal", reciprocal(x.sa)),
+    SCALAR(floats_1, "scalar reciprocal_sqrt", reciprocal_sqrt(x.sa)),
+    SCALAR(floats_2, "scalar min", min(x.sa, x.sb)),
+    SCALAR(floats_2, "scalar max", max(x.sa, x.sb)),
+    SCALAR(floats_1, "scalar abs", as_int(abs(x.sa))),
+    SCALAR(floats_1, "scalar sqrt", sqrt(x.sa)),
+    SCALAR(floats_1, "scalar floor", floor(x.sa)),
+    SCALAR(floats_2, "scalar a < b", x.sa < x.sb),
+    SCALAR(floats_2, "scalar a <= b", x.sa <= x.sb),
+    SCALAR(floats_2, "scalar a > b", x.sa > x.sb),
+    SCALAR(floats_2, "scalar a >= b", x.sa >= x.sb),
+    SCALAR(floats_2, "scalar a == b", x.sa == x.sb),
+    SCALAR(floats_2, "scalar a != b", x.sa != x.sb),
+    SCALAR(floats_1, "scalar to_int", to_int(x.sa)),
+    SCALAR(floats_1, "scalar as_int", as_int(x.sa)),
+    SCALAR(integers_2, "scalar i + j", x.si + x.sj),
+    SCALAR(integers_2, "scalar i - j", x.si - x.sj),
+    SCALAR(integers_2, "scalar i * j", x.si* x.sj),
+    SCALAR(integers_2, "scalar -i", -x.si),
+    SCALAR(integers_2, "scalar i & j", x.si& x.sj),
+    SCALAR(integers_2, "scalar i | j", x.si | x.sj),
+    SCALAR(integers_2, "scalar i ^ j", x.si ^ x.sj),
+    SCALAR(integers_2, "scalar i << j", x.si << x.sj),
+    SCALAR(integers_2, "scalar i >> j", x.si >> x.sj),
+    SCALAR(integers_2, "scalar shift_right_logical", shift_right_logical(x.si, x.sj)),
+    SCALAR(integers_2, "scalar min int", min(x.si, x.sj)),
+    SCALAR(integers_2, "scalar max int", max(x.si, x.sj)),
+    SCALAR(integers_2, "scalar i += j", x.si += x.sj),
+    SCALAR(integers_2, "scalar i -= j", x.si -= x.sj),
+    SCALAR(integers_2, "scalar ++i", ++x.si),
+    SCALAR(integers_2, "scalar --i", --x.si),
+    SCALAR(floats_2, "scalar a += b", x.sa += x.sb),
+    SCALAR(integers_2, "scalar i < j", x.si < x.sj),
+    SCALAR(integers_2, "scalar i <= j", x.si <= x.sj),
+    SCALAR(integers_2, "scalar i > j", x.si > x.sj),
+    SCALAR(integers_2, "scalar i >= j", x.si >= x.sj),
+    SCALAR(integers_2, "scalar i == j", x.si == x.sj),
+    SCALAR(integers_2, "scalar i != j", x.si != x.sj),
+    SCALAR(integers_2, "scalar to_float", to_float(x.si)),
+    SCALAR(integers_2, "scalar as_float", as_int(as_float(x.si))),
+    SCALAR(masks, "scalar m & n", x.sm& x.sn),
+    SCALAR(masks, "scalar m | n", x.sm | x.sn),
+    SCALAR(masks, "scalar m ^ n", x.sm ^ x.sn),
+    SCALAR(masks, "scalar !m", !x.sm),
+    SCALAR(mixed, "scalar select float", as_int(select(x.sm, x.sa, x.sb))),
+    SCALAR(mixed, "scalar select int", select(x.sm, x.si, x.sj)),
+    SCALAR(masks, "branch", sint(branch(x.sm) ? 3 : 4)),
 
     // memory
     CASE(mixed, "load float", as_int(load(in(memory.a) + 3))),

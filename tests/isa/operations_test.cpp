@@ -148,7 +148,7 @@ template <class F> void tuples(int count, int n, int width, operands& x, compari
     int total = 1;
     for (int k = 0; k < n; ++k)
         total *= count;
-    // Scalars look at lane 0 only: small sets go through it one by one, large ones a stride apart.
+    // What spreads a scalar looks at lane 0 only: small sets go through it one by one, large ones a stride apart.
     int step = total > 5000 ? width : 1;
     for (int start = 0; start < total; start += step) {
         for (int lane = 0; lane < width; ++lane)

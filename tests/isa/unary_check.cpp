@@ -6,13 +6,13 @@
 
 #include "isa/cpu.h"
 
-#include <atomic>
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
+#include <cstring>
 #include <set>
 #include <string>
 #include <string_view>
@@ -64,59 +64,76 @@ bool is_unary(const operation& o) {
 }
 
 /// Whether it looks at lane 0 alone.
-bool is_scalar(std::string_view name) {
-    return name.starts_with("scalar ") || name == "first_lanes" || name.ends_with("(scalar)");
-}
+bool takes_lane_0(std::string_view name) { return name == "first_lanes" || name.ends_with("(scalar)"); }
 
 bool same(kind is, std::uint32_t a, std::uint32_t b) {
     return a == b || (is == kind::floats && std::isnan(std::bit_cast<float>(a)) && std::isnan(std::bit_cast<float>(b)));
 }
 
-struct difference {
-    std::uint32_t operand, got, expected;
+/// One operation, as `plain` and as the targets that this processor runs have it.
+struct subject {
+    const operation* oracle;
+    int width;
+    std::vector<const operation*> tested;
 };
 
-/// The first of the operands begin, begin + stride and so on, below end.
-std::optional<difference> scan(const operation& tested, const operation& oracle, int width, std::uint64_t begin,
-                               std::uint64_t end, std::uint64_t stride, const std::atomic<bool>& stop) {
+struct difference {
+    std::size_t target;
+    std::uint32_t operand, got, expected;
+};
+using differences = std::vector<difference>; // the first of each target
+
+bool has(const differences& found, std::size_t target) {
+    return std::any_of(found.begin(), found.end(), [&](const difference& one) { return one.target == target; });
+}
+
+/// Of the operands begin, begin + stride and so on, below end.
+differences scan(const subject& s, std::uint64_t begin, std::uint64_t end, std::uint64_t stride) {
+    differences found;
     operands x{};
     result got{}, expected{};
-    const int lanes = is_scalar(tested.name) ? 1 : width;
-    for (std::uint64_t next = begin; next < end && !stop;) {
+    const int lanes = takes_lane_0(s.oracle->name) ? 1 : s.width;
+    for (std::uint64_t next = begin; next < end;) {
         const std::uint64_t first = next;
         for (int lane = 0; lane < lanes; ++lane, next += stride) {
             const auto bits = static_cast<std::uint32_t>(next);
             x.a[lane] = std::bit_cast<float>(bits);
             x.i[lane] = static_cast<std::int32_t>(bits);
         }
-        tested.run(x, got);
-        oracle.run(x, expected);
-        for (int lane = 0; lane < got.count; ++lane)
-            if (!same(got.is, got.word[lane], expected.word[lane]))
-                return difference{static_cast<std::uint32_t>(first + stride * static_cast<std::uint64_t>(lane % lanes)),
-                                  got.word[lane], expected.word[lane]};
+        s.oracle->run(x, expected);
+        for (std::size_t t = 0; t < s.tested.size(); ++t) {
+            s.tested[t]->run(x, got);
+            const auto count = static_cast<std::size_t>(expected.count);
+            if (got.count == expected.count && std::memcmp(got.word, expected.word, count * sizeof got.word[0]) == 0)
+                continue;
+            for (int lane = 0; lane < expected.count; ++lane)
+                if (got.count != expected.count || !same(expected.is, got.word[lane], expected.word[lane])) {
+                    if (!has(found, t))
+                        found.push_back(
+                            {t, static_cast<std::uint32_t>(first + stride * static_cast<std::uint64_t>(lane % lanes)),
+                             got.word[lane], expected.word[lane]});
+                    break;
+                }
+        }
     }
-    return std::nullopt;
+    return found;
 }
 
-std::optional<difference> scan_all(const operation& tested, const operation& oracle, int width, std::uint64_t stride) {
+differences scan_all(const subject& s, std::uint64_t stride) {
     const std::uint64_t count = std::max(1U, std::thread::hardware_concurrency()), all = 1ULL << 32;
-    std::vector<std::optional<difference>> found(count);
-    std::atomic<bool> stop = false;
+    std::vector<differences> parts(count);
     std::vector<std::thread> threads;
     const std::uint64_t part = (all / count / stride + 1) * stride;
     for (std::uint64_t t = 0; t < count; ++t)
-        threads.emplace_back([&, t] {
-            found[t] = scan(tested, oracle, width, t * part, std::min(all, (t + 1) * part), stride, stop);
-            if (found[t])
-                stop = true;
-        });
+        threads.emplace_back([&, t] { parts[t] = scan(s, t * part, std::min(all, (t + 1) * part), stride); });
     for (std::thread& thread : threads)
         thread.join();
-    for (const auto& one : found)
-        if (one)
-            return one;
-    return std::nullopt;
+    differences found;
+    for (const differences& one : parts)
+        for (const difference& d : one)
+            if (!has(found, d.target))
+                found.push_back(d);
+    return found;
 }
 
 } // namespace
@@ -125,35 +142,37 @@ int main(int argc, char** argv) {
     const std::uint64_t stride = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
     const std::string_view wanted = argc > 2 ? argv[2] : "";
     const operation_list oracle = plain::operations();
-    int failed = 0, compared = 0;
+    std::vector<const target*> present;
+    for (const target& t : targets)
+        if (std::string_view(t.name) != "plain" && std::string_view(t.name) != "simulated" && isa::cpu_runs(t.name))
+            present.push_back(&t);
+    std::size_t failed = 0, compared = 0;
     for (int i = 0; stride != 0 && i < oracle.count; ++i) {
         const operation& expected = oracle.begin[i];
         if (!is_unary(expected) || (!wanted.empty() && wanted != expected.name))
             continue;
         std::printf("%-24s", expected.name);
-        for (const target& t : targets) {
-            if (std::string_view(t.name) == "plain" || std::string_view(t.name) == "simulated" ||
-                !isa::cpu_runs(t.name))
-                continue;
-            const auto begin = std::chrono::steady_clock::now();
-            const auto wrong = scan_all(t.operations().begin[i], expected, oracle.width, stride);
-            const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-            ++compared;
-            if (wrong) {
-                ++failed;
-                std::printf(" %s: of %08x %08x, not %08x;", t.name, wrong->operand, wrong->got, wrong->expected);
-            } else {
-                std::printf(" %s %.1f s", t.name, seconds.count());
-            }
-            std::fflush(stdout);
-        }
-        std::printf("\n");
+        std::fflush(stdout);
+        subject s{&expected, oracle.width, {}};
+        for (const target* t : present)
+            s.tested.push_back(&t->operations().begin[i]);
+        const auto begin = std::chrono::steady_clock::now();
+        const differences found = scan_all(s, stride);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+        for (std::size_t t = 0; t < present.size(); ++t)
+            if (!has(found, t))
+                std::printf(" %s", present[t]->name);
+        std::printf(": %.1f s\n", seconds.count());
+        for (const difference& d : found)
+            std::printf("  %s: of %08x %08x, not %08x\n", present[d.target]->name, d.operand, d.got, d.expected);
+        compared += present.size();
+        failed += found.size();
     }
     if (compared == 0) {
         std::fprintf(stderr, "usage: unary_check [STRIDE [NAME]], STRIDE from 1 on and NAME one of the operations'\n");
         return 2;
     }
-    std::printf("%d comparisons over %llu operands, %d differ\n", compared,
+    std::printf("%zu comparisons over %llu operands, %zu differ\n", compared,
                 static_cast<unsigned long long>(((1ULL << 32) - 1) / stride + 1), failed);
     return failed == 0 ? 0 : 1;
 }
