@@ -2,13 +2,15 @@
 """How far sampled runs are off, how often their intervals hold the truth, and what they cost the host.
 
     analysis/estimates/coverage.py FOLDER [--machine configs/machines/study.toml] [--scenes configs/scenes/courtyard.toml,...]
-                                   [--fraction 0.06] [--seeds 50] [--program razor-sim] [-- more options of razor-sim run]
+                                   [--fraction 0.06] [--seeds 50] [--jobs 1] [--program razor-sim]
+                                   [-- more options of razor-sim run]
 
 Each scene is run once in detail and once for each seed of `--estimate sample:FRACTION`. A row a scene: the mean and the largest
 error of cycles and of bytes from and to DRAM, in how many runs the interval of each holds what the detailed run says, and the
-processor time of a sampled run beside the detailed one (medians). FOLDER keeps each run's report under its command: the same one
+processor time of a sampled run beside the detailed one (medians), which runs side by side (--jobs) lengthen. FOLDER keeps each run's report under its command: the same one
 goes on where it was stopped. Exit code: 0; 1 where a run fails; 2 on a mistake; 130 after Ctrl-C.
 """
+import concurrent.futures
 import hashlib
 import json
 import os
@@ -28,10 +30,15 @@ def options():
                                                      ("courtyard", "interior", "forest", "showcase")))
     parser.add_argument("--fraction", type=float, default=0.06)
     parser.add_argument("--seeds", type=int, default=50)
+    parser.add_argument("--jobs", type=int, default=1)
     found, more = simulator.parsed(parser)
-    if not 0.001 <= found.fraction < 1 or found.seeds < 1:
-        parser.error("--fraction is from 0.001 to below 1, --seeds at least 1")
+    if not 0.001 <= found.fraction < 1 or found.seeds < 1 or found.jobs < 1:
+        parser.error("--fraction is from 0.001 to below 1, --seeds and --jobs are at least 1")
     return found, more
+
+
+class RunFailed(Exception):
+    """What a run said, and the exit code that follows."""
 
 
 def report(name, given, scene, estimate):
@@ -45,8 +52,7 @@ def report(name, given, scene, estimate):
         run = subprocess.run([*command, "--json", file, "--report", file[:-5] + ".txt"], stderr=subprocess.PIPE, text=True,
                              check=False)
         if run.returncode != 0:
-            print(f"{name}: {run.stderr.strip()}", file=sys.stderr)
-            sys.exit(130 if run.returncode == 130 else 1)
+            raise RunFailed(f"{name}: {run.stderr.strip()}", 130 if run.returncode == 130 else 1)
     with open(file, encoding="utf-8") as opened:
         return json.load(opened)
 
@@ -61,27 +67,42 @@ def main():
     given = found, _ = options()
     os.makedirs(found.folder, exist_ok=True)
     print(f"{'scene':16} {'runs':>4}" + "".join(f" {name + ', %':>16} {'held':>8}" for name in FIGURES) + f" {'time':>6}")
-    for scene in found.scenes.split(","):
-        name = os.path.splitext(os.path.basename(scene))[0]
-        full = report(name, given, scene, [])
-        right, errors, held, times = truth(full), {f: [] for f in FIGURES}, {f: 0 for f in FIGURES}, []
-        for seed in range(1, found.seeds + 1):
-            one = report(f"{name}-{found.fraction:g}-{seed}", given, scene,
-                         ["--estimate", f"sample:{found.fraction:g}", "--estimate-seed", str(seed)])
-            for figure in FIGURES:
-                value = one["estimate"]["figures"][figure]
-                errors[figure].append(100 * (value["value"] / right[figure] - 1))
-                held[figure] += value["low"] <= right[figure] <= value["high"]
-            times.append(one["host"]["processor_seconds"] / full["host"]["processor_seconds"])
-        row = f"{name:16} {found.seeds:4}"
+    scenes = {os.path.splitext(os.path.basename(scene))[0]: scene for scene in found.scenes.split(",")}
+    with concurrent.futures.ThreadPoolExecutor(found.jobs) as pool:
+        runs = {}
+        for name, scene in scenes.items():
+            runs[name] = [pool.submit(report, name, given, scene, [])]
+            runs[name] += [pool.submit(report, f"{name}-{found.fraction:g}-{seed}", given, scene,
+                                       ["--estimate", f"sample:{found.fraction:g}", "--estimate-seed", str(seed)])
+                           for seed in range(1, found.seeds + 1)]
+        try:
+            for name in scenes:
+                print(row(name, *(run.result() for run in runs[name])), flush=True)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def row(name, full, *samples):
+    right, errors, held, times = truth(full), {f: [] for f in FIGURES}, {f: 0 for f in FIGURES}, []
+    for one in samples:
         for figure in FIGURES:
-            worst = max(errors[figure], key=abs)
-            row += f" {statistics.mean(errors[figure]):+7.2f} {worst:+8.2f} {held[figure]:4}/{found.seeds:<3}"
-        print(row + f" {statistics.median(times):6.3f}", flush=True)
+            value = one["estimate"]["figures"][figure]
+            errors[figure].append(100 * (value["value"] / right[figure] - 1))
+            held[figure] += value["low"] <= right[figure] <= value["high"]
+        times.append(one["host"]["processor_seconds"] / full["host"]["processor_seconds"])
+    text = f"{name:16} {len(samples):4}"
+    for figure in FIGURES:
+        worst = max(errors[figure], key=abs)
+        text += f" {statistics.mean(errors[figure]):+7.2f} {worst:+8.2f} {held[figure]:4}/{len(samples):<3}"
+    return text + f" {statistics.median(times):6.3f}"
 
 
 if __name__ == "__main__":
     try:
         main()
+    except RunFailed as failed:
+        print(failed.args[0], file=sys.stderr)
+        sys.exit(failed.args[1])
     except KeyboardInterrupt:
         sys.exit(130)
