@@ -316,6 +316,8 @@ Due Engine::reload(Hart& h, Due ready, std::uint32_t value, bool unstored, std::
     }
     Data data;
     read_spilled(h, place, lanes, translated(h, place, last, from), data);
+    if (warming_) [[unlikely]] // since this began: nothing brought a time
+        return ready;
     if (data.open != 0)
         h.pending[h.pending_count++] = {ticket_of(h, data), span, true};
     else

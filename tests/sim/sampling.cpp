@@ -156,6 +156,23 @@ TEST(Sampling, AllInDetailIsTheDetailedRun) {
     }
 }
 
+// Many short units end and begin in the middle of operations: of spilled values that come back, of pages that
+// are looked up. What a thread was at then is not lost, nor is the thread.
+TEST(Sampling, ModesMayChangeWithinAnOperation) {
+    const Body body = [](std::byte* data, std::byte*, int) { use_old_values(data, 6000); };
+    for (const char* mode : {"fast", "reference"}) {
+        SCOPED_TRACE(mode);
+        const Config c = describe_machine(RAZOR_SOURCE_DIR "/configs/machines/tiny.toml",
+                                          {std::string("sim.mode=") + mode, "core.vector_registers=4"})
+                             .config;
+        const auto truth = static_cast<double>(run_in_detail(c, body, 8).cycles);
+        const Sampled s = run_sampled(c, {.fraction = 0.8, .unit = 300, .before = 300}, body, 8);
+        EXPECT_GT(s.estimate.units, 100U);
+        EXPECT_LT(static_cast<double>(s.report.cycles),
+                  2 * truth); // a thread that waits for ever ends at 2^48
+    }
+}
+
 // Threads that share caches and memory, in both modes: a third of the time says what all of it says, few
 // though units are here.
 TEST(Sampling, EstimatesCyclesOfManyThreads) {
