@@ -54,6 +54,9 @@ struct Core {
     Cache l1;
     // --- what few do
     Predictor predictor;
+    std::int64_t passed_a_cycle =
+        256; // while caches are warmed: what work costs (Hart::ahead) of which is a cycle here
+
     std::vector<Calendar> issue_ports; // of core.pairing
     std::vector<std::uint64_t> port_instructions;
     std::array<std::optional<Calendar>, class_count> units; // of classes that are not pipelined

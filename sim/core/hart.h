@@ -32,7 +32,8 @@ struct alignas(64) Hart {
     Core* core;
     std::uint32_t number;
     std::uint32_t memory_operands = 0; // that the operation at hand may still have
-    std::int64_t ahead = 0;   // while caches are only warmed: up to the window's end, in 1/256 cycles ...
+    std::int64_t ahead =
+        0; // while caches are only warmed: up to the window's end, by costs, in 1/256 cycles ...
     std::uint32_t pace = 256; // ... of which an instruction takes so many
     // Issue order (rule 2).
     Due bound;                // no later operation issues before

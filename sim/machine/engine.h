@@ -242,7 +242,8 @@ private:
     bool warm_window();
     bool run_sampled_window();
     void set_paces();
-    SampledWork work_so_far() const;
+    void add_work(const Hart& h, SampledWork& done) const;
+    WorkByCore work_so_far() const;
     cycle hold_core(Hart& h, cycle t);
     void account_issue(Hart& h, Issued at, std::uint32_t instructions, Due ready) const;
     cycle come_to_issue(Hart& h, Due ready);

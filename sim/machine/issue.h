@@ -29,7 +29,8 @@ inline Issued Engine::pass(Hart& h, std::size_t kind, std::uint32_t instructions
 
 /// It goes on at its cycle `now`, in the window at hand.
 inline void Engine::come_to(Hart& h) const {
-    h.ahead = (static_cast<std::int64_t>(window_end_) - static_cast<std::int64_t>(h.now)) * 256;
+    h.ahead =
+        (static_cast<std::int64_t>(window_end_) - static_cast<std::int64_t>(h.now)) * h.core->passed_a_cycle;
 }
 
 /// Returns when the other threads have come as far as this one's cycle `t`.

@@ -5,26 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace sim {
 namespace {
 
-double said(const SampledWork& work, const SampledCosts& costs) {
-    return std::inner_product(costs.begin(), costs.end(), work.of.begin(), 0.0);
-}
-
-SampledWork since(const SampledWork& now, const SampledWork& before) {
-    SampledWork w;
-    for (std::size_t i = 0; i < w.of.size(); ++i)
-        w.of[i] = now.of[i] - before.of[i];
-    w.spent = now.spent - before.spent;
-    return w;
-}
-
-/// Of a unit beside the costs expected: how much the least squares trust these.
+/// How much least squares trust the costs expected: as so many units.
 constexpr double trust = 0.5;
+
+/// Of what is thought of the next gap: how much a unit counts of the one after it, and as how many units the
+/// costs of the whole run are trusted; and the like of a core's own pace.
+constexpr double fading = 1 - 1 / 16.0, trust_in_all = 4;
+constexpr double core_fading = 1 - 1 / 8.0, trust_in_one = 2;
 
 /// Standard error, relative, of cycles that no sample shows: threads met otherwise than in a detailed run,
 /// and ended otherwise.
@@ -44,17 +36,16 @@ cycle Sampler::draw() {
     return std::exchange(rest_, free - place) + place;
 }
 
-void Sampler::come_to(cycle t, const SampledWork& work) {
+void Sampler::come_to(cycle t, const WorkByCore& work) {
     if (mode_ == Mode::settles) {
         mode_ = Mode::measures;
         next_ = t + wanted_.unit;
     } else if (mode_ == Mode::measures) {
-        units_.push_back(since(work, at_));
-        fit();
+        learn(work.since(at_));
         mode_ = Mode::warms;
         next_ = t + draw();
     } else {
-        gaps_.push_back({units_.size(), t - began_, costs_, since(work, at_)});
+        gaps_.push_back(gap(t - began_, work));
         mode_ = Mode::settles;
         next_ = t + wanted_.before;
     }
@@ -62,50 +53,39 @@ void Sampler::come_to(cycle t, const SampledWork& work) {
     at_ = work;
 }
 
-/// Least squares in which no cost is negative, by descent along each of them, as multiples of what was
-/// expected, scaled to fit on the whole: of these, `trust` units say that they are 1.
-void Sampler::fit() {
-    constexpr std::size_t n = SampledWork::kinds;
-    double spent = 0, expected = 0;
-    for (const SampledWork& u : units_) {
-        spent += u.spent;
-        expected += said(u, expected_);
+/// From a unit.
+void Sampler::learn(const WorkByCore& unit) {
+    units_.push_back(unit.all());
+    all_.add(units_.back());
+    recent_.fade(fading);
+    recent_.add(units_.back());
+    costs_ = recent_.fit(all_.fit(expected_, trust), trust_in_all);
+    const std::vector<SampledWork> cores = unit.shared();
+    cores_.resize(cores.size());
+    paces_.resize(cores.size());
+    const double some = trust_in_one * units_.back().spent / static_cast<double>(cores.size());
+    for (std::size_t c = 0; c < cores.size(); ++c) {
+        cores_[c].spent = cores_[c].spent * core_fading + cores[c].spent;
+        cores_[c].said = cores_[c].said * core_fading + said(cores[c], costs_);
+        paces_[c] = some > 0 ? (cores_[c].spent + some) / (cores_[c].said + some) : 1;
     }
-    if (spent <= 0 || expected <= 0)
-        return;
-    const double scale = spent / expected, mean = spent / static_cast<double>(units_.size());
-    std::array<std::array<double, n>, n> a{};
-    std::array<double, n> b{}, x{};
-    for (std::size_t j = 0; j < n; ++j)
-        a[j][j] = b[j] = trust;
-    for (const SampledWork& u : units_) {
-        for (std::size_t j = 0; j < n; ++j)
-            x[j] = u.of[j] * expected_[j] * scale / mean;
-        for (std::size_t i = 0; i < n; ++i) {
-            b[i] += x[i] * u.spent / mean;
-            for (std::size_t j = 0; j < n; ++j)
-                a[i][j] += x[i] * x[j];
-        }
-    }
-    std::array<double, n> multiple;
-    multiple.fill(1);
-    for (int round = 0; round < 100; ++round)
-        for (std::size_t i = 0; i < n; ++i) {
-            double rest = b[i];
-            for (std::size_t j = 0; j < n; ++j)
-                rest -= j == i ? 0 : a[i][j] * multiple[j];
-            multiple[i] = std::max(0.0, rest / a[i][i]);
-        }
-    for (std::size_t j = 0; j < n; ++j)
-        costs_[j] = expected_[j] * scale * multiple[j];
+}
+
+Sampler::Gap Sampler::gap(cycle length, const WorkByCore& work) const {
+    const WorkByCore passed = work.since(at_);
+    const std::vector<SampledWork> cores = passed.shared();
+    double then = 0;
+    for (std::size_t c = 0; c < cores.size(); ++c)
+        then += pace(c) * said(cores[c], costs_);
+    return {units_.size(), length, then, passed.all()};
 }
 
 /// What units took beside what the costs say, from number `first` on, before `last`.
-double Sampler::ratio(std::size_t first, std::size_t last) const {
+double Sampler::ratio(std::size_t first, std::size_t last, const SampledCosts& costs) const {
     double spent = 0, all = 0;
     for (std::size_t i = first; i < last; ++i) {
         spent += units_[i].spent;
-        all += said(units_[i], costs_);
+        all += said(units_[i], costs);
     }
     return all > 0 ? spent / all : 1;
 }
@@ -115,20 +95,20 @@ double Estimate::count_error() const {
     return unseen * boost::math::quantile(normal, 0.5 + confidence / 2);
 }
 
-Estimate Sampler::estimate(cycle end, const SampledWork& work) const {
+Estimate Sampler::estimate(cycle end, const WorkByCore& work) const {
     Estimate e;
     e.units = units_.size();
-    e.costs = costs_;
+    e.costs = all_.fit(expected_, trust);
     e.confidence = wanted_.confidence;
     std::vector<Gap> gaps = gaps_;
     if (mode_ == Mode::warms)
-        gaps.push_back({units_.size(), end - began_, costs_, since(work, at_)});
+        gaps.push_back(gap(end - began_, work));
     double passed = 0, estimated = 0;
     for (const Gap& g : gaps) {
         const std::size_t first = g.units > 2 ? g.units - 2 : 0, last = std::min(units_.size(), g.units + 2);
-        const double then = said(g.work, g.costs), now = said(g.work, costs_) * ratio(first, last);
+        const double now = said(g.work, e.costs) * ratio(first, last, e.costs);
         passed += static_cast<double>(g.length);
-        estimated += static_cast<double>(g.length) * (then > 0 ? now / then : 1);
+        estimated += static_cast<double>(g.length) * (g.then > 0 ? now / g.then : 1);
     }
     e.detailed = static_cast<double>(end) - passed;
     e.cycles.value = e.cycles.low = e.cycles.high = e.detailed + estimated;
@@ -140,7 +120,7 @@ Estimate Sampler::estimate(cycle end, const SampledWork& work) const {
     } else {
         double squares = 0;
         for (std::size_t i = 0; i + 1 < n; ++i) {
-            const double d = ratio(i + 1, i + 2) - ratio(i, i + 1);
+            const double d = ratio(i + 1, i + 2, e.costs) - ratio(i, i + 1, e.costs);
             squares += d * d;
         }
         e.spread = std::sqrt(squares / (2 * static_cast<double>(n - 1)));

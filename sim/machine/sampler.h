@@ -5,12 +5,13 @@
 // and 7; SMARTS: Wunderlich et al., ISCA 2003, for one thread). What a unit takes is regressed on what is
 // counted everywhere: instructions of builds, other instructions, misses of L1s, lines from below the tile,
 // operations on shared words. The rest takes, period by period, what the regression says, times what the
-// units around it took of what it said of them.
+// units around it took of what it said of them. How fast threads pass it is a guess of its own, by the last
+// units, the last most, and by core: the fewer threads a core or the chip has left, the faster these are.
 #pragma once
 
 #include "sim/core/stalls.h"
+#include "sim/machine/regression.h"
 
-#include <array>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -27,16 +28,6 @@ struct Sampling {
     double confidence = 0.95;   // of the intervals
 };
 
-/// What has been done, of all threads.
-struct SampledWork {
-    enum Kind : std::size_t { builds, others, misses, lines, words };
-    static constexpr std::size_t kinds = 5;
-    std::array<double, kinds> of{};
-    double spent = 0; // threads' cycles simulated in detail, but for sleep until a word changes, and idleness
-};
-/// Threads' cycles that one of each takes.
-using SampledCosts = std::array<double, SampledWork::kinds>;
-
 /// A figure of the run and the interval that holds it with the confidence asked for.
 struct Estimated {
     double value = 0, low = 0, high = 0;
@@ -52,7 +43,7 @@ struct Estimate {
     std::size_t units = 0; // measured
     double detailed = 0;   // cycles simulated in detail
     double spread = 0;     // of what units take beside what the regression says, relative
-    SampledCosts costs{};
+    SampledCosts costs{};  // of the whole run
     double confidence = 0;
 
     /// Half the interval of what is counted everywhere, caches being warm in another order; relative.
@@ -67,33 +58,43 @@ public:
     /// When the mode changes next.
     cycle next() const { return next_; }
     /// The time has come to `t`, at or after next().
-    void come_to(cycle t, const SampledWork& work);
+    void come_to(cycle t, const WorkByCore& work);
     bool warms() const { return mode_ == Mode::warms; }
     const SampledCosts& costs() const { return costs_; }
+    /// Threads' cycles on this core beside what the costs say.
+    double pace(std::size_t core) const { return core < paces_.size() ? paces_[core] : 1; }
     bool builds(std::size_t phase) const { return phase < wanted_.builds.size() && wanted_.builds[phase]; }
     /// Of a run that ended at cycle `end`, by the threads' clocks.
-    Estimate estimate(cycle end, const SampledWork& work) const;
+    Estimate estimate(cycle end, const WorkByCore& work) const;
 
 private:
     enum class Mode { settles, measures, warms };
     /// What was passed over since the unit before.
     struct Gap {
         std::size_t units; // before it
-        cycle length;      // by the costs known then ...
-        SampledCosts costs;
+        cycle length;
+        double then; // threads' cycles, as was thought when it was passed
         SampledWork work;
     };
-    void fit();
+    /// A core's last units: what was spent there, and what the costs of then said.
+    struct Core {
+        double spent = 0, said = 0;
+    };
     cycle draw();
-    double ratio(std::size_t first, std::size_t last) const;
+    void learn(const WorkByCore& unit);
+    Gap gap(cycle length, const WorkByCore& work) const;
+    double ratio(std::size_t first, std::size_t last, const SampledCosts& costs) const;
 
     Sampling wanted_;
     SampledCosts expected_, costs_;
     Mode mode_ = Mode::settles;
     std::mt19937 random_;
     cycle next_, began_ = 0, rest_ = 0; // rest_: of the period at hand, after its unit
-    SampledWork at_;                    // when the mode began
+    WorkByCore at_;                     // when the mode began
     std::vector<SampledWork> units_;    // what was done in each
+    Moments all_, recent_;              // of them
+    std::vector<Core> cores_;
+    std::vector<double> paces_; // of these
     std::vector<Gap> gaps_;
 };
 

@@ -23,8 +23,9 @@ std::uint32_t in_256ths(double cycles) {
 
 /// Where a thread's time has come.
 cycle Engine::passing(const Hart& h) const {
+    const std::int64_t left = h.ahead / h.core->passed_a_cycle;
     return static_cast<cycle>(
-        std::max(static_cast<std::int64_t>(window_end_) - (h.ahead >> 8), static_cast<std::int64_t>(h.now)));
+        std::max(static_cast<std::int64_t>(window_end_) - left, static_cast<std::int64_t>(h.now)));
 }
 
 /// The thread has come to the end of the window: others run.
@@ -130,31 +131,42 @@ void Engine::set_paces() {
     miss_paces_[static_cast<std::size_t>(Cause::memory)] =
         in_256ths(costs[SampledWork::misses] + costs[SampledWork::lines]);
     word_pace_ = in_256ths(costs[SampledWork::words]);
+    std::size_t number = 0;
+    for (Tile& tile : tiles_)
+        for (Core& core : tile.cores)
+            core.passed_a_cycle = std::max<std::int64_t>(1, std::llround(256 / sampler_->pace(number++)));
     for (Hart& h : harts_)
         h.pace = paces_[h.column];
 }
 
-SampledWork Engine::work_so_far() const {
-    SampledWork w;
+/// But for misses and lines, of which nobody counts by thread.
+void Engine::add_work(const Hart& h, SampledWork& done) const {
     const std::size_t phases = labels_.phases.size();
-    for (const Hart& h : harts_) {
-        cycle without = 0;
-        for (std::size_t i = 0; i < h.columns.size(); ++i) {
-            const Hart::Column& column = h.columns[i];
-            w.of[sampler_->builds(i % phases) ? SampledWork::builds : SampledWork::others] +=
-                static_cast<double>(column.instructions);
-            for (std::size_t c = 0; c < cause_count; ++c)
-                if (c != static_cast<std::size_t>(Cause::idle))
-                    without += column.stack[c];
-        }
-        w.spent += static_cast<double>(without - h.slept);
-        w.of[SampledWork::words] += static_cast<double>(h.counters.atomics);
+    cycle without = 0;
+    for (std::size_t i = 0; i < h.columns.size(); ++i) {
+        const Hart::Column& column = h.columns[i];
+        done.of[sampler_->builds(i % phases) ? SampledWork::builds : SampledWork::others] +=
+            static_cast<double>(column.instructions);
+        for (std::size_t c = 0; c < cause_count; ++c)
+            if (c != static_cast<std::size_t>(Cause::idle))
+                without += column.stack[c];
     }
+    done.spent += static_cast<double>(without - h.slept);
+    done.of[SampledWork::words] += static_cast<double>(h.counters.atomics);
+}
+
+WorkByCore Engine::work_so_far() const {
+    WorkByCore w;
     for (const Tile& tile : tiles_) {
-        for (const Core& core : tile.cores)
-            w.of[SampledWork::misses] += static_cast<double>(core.l1.counters().misses);
+        for (const Core& core : tile.cores) {
+            SampledWork& done = w.cores.emplace_back();
+            done.of[SampledWork::misses] = static_cast<double>(core.l1.counters().misses);
+            for (const Hart* h : tile.harts)
+                if (h->core == &core)
+                    add_work(*h, done);
+        }
         for (const Cache& cache : tile.caches[tile_levels_ - 1])
-            w.of[SampledWork::lines] += static_cast<double>(cache.counters().misses);
+            w.lines += static_cast<double>(cache.counters().misses);
     }
     return w;
 }
