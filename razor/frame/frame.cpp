@@ -444,7 +444,8 @@ FrameStatistics Frame::statistics() const {
                           [](int bits) { return (bits >> map_bump & 1) != 0; });
     s.displacement = !materials.displacements.empty();
     s.one_sided = materials.one_sided;
-    s.sheen = materials.sheens;
+    s.sheen = materials.sheens != sheen_none;
+    s.sheen_maps = materials.sheens >= sheen_mapped;
     s.mesh_lights = impl_->header->emitter_count > 0;
     s.chosen_lights = impl_->header->light_choices > 0;
     if (s.look != look_matte)

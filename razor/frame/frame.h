@@ -90,7 +90,8 @@ struct FrameStatistics {
     std::string plan; // which kernels the scene needs
     Grids grids = grids_flat;
     Look look = look_matte;
-    bool patterns = false, bumps = false, displacement = false, one_sided = false, sheen = false;
+    bool patterns = false, bumps = false, displacement = false, one_sided = false, sheen = false,
+         sheen_maps = false;
     bool mesh_lights = false, chosen_lights = false;
     std::int64_t material_records = 0, textured_meshes = 0, meshes_at_rest = 0,
                  texture_bytes = 0; // tables that they need

@@ -145,10 +145,12 @@ void Frame::Impl::place_materials(const Scene& scene) {
     plan.look = materials.look;
     header->cutouts = materials.cutouts ? 1 : 0;
     header->one_sided = materials.one_sided ? 1 : 0;
-    int shaded = 0;
-    for (std::size_t n = 0; n < geometry.instances.size(); ++n)
-        shaded = std::max(shaded, shaded_arrays_in(shading_of(scene, geometry.instances[n])));
-    header->slot_floats = slot_floats(meshes.size() > scene_meshes, shaded, meshes_at_rest() > 0);
+    int arrays = 0;
+    for (const Instance& i : geometry.instances) {
+        const std::int32_t shading = shading_of(scene, i);
+        arrays = std::max(arrays, shaded_arrays_in(shading) + rest_arrays(shading));
+    }
+    header->slot_floats = slot_floats(meshes.size() > scene_meshes, arrays);
     if (plan.look == look_matte && !materials.one_sided && materials.displacements.empty())
         return;
     const auto copy = [&](const auto& table, auto& to, const char* structure) {
@@ -162,9 +164,11 @@ void Frame::Impl::place_materials(const Scene& scene) {
     copy(materials.materials, header->materials, "materials");
     copy(materials.maps, header->maps, "materials");
     copy(materials.textures, header->textures, "materials");
-    header->sheens = materials.sheens ? 1 : 0;
-    if (materials.sheens)
+    header->sheens = materials.sheens;
+    if (materials.sheens != sheen_none) {
+        copy(materials.sheen_records, header->sheen_records, "materials");
         copy(materials.sheen_albedo, header->sheen_albedo, "materials");
+    }
     copy(materials.displacements, header->displacements, "materials");
     if (materials.texels > 0) {
         auto* texel = region<std::int32_t>("textures", -1, materials.texels);

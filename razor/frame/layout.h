@@ -522,7 +522,7 @@ struct FrameHeader {
     std::int32_t cutouts;            // not 0: some material has an alpha_cutoff and opacity in its texture
     std::int32_t slot_floats;        // of a blended block: see razor/frame/scratch.h
     std::int32_t one_sided;          // not 0: some material is seen from the front only
-    std::int32_t sheens;             // not 0: some material has sheen
+    std::int32_t sheens;             // a SheenUse
     isa::ref<LightNode> light_nodes; // over chosen_lights
     isa::ref<LightRecord> chosen_lights; // as of one sample each
     std::int32_t light_node_count;
@@ -533,13 +533,13 @@ struct FrameHeader {
     isa::ref<float> emitter_sums;      // of chances in each group: before each triangle, and at the end
     std::int32_t emitter_count;
     std::int32_t emitter_group_count;
-    std::int32_t emitter_group_step; // the largest power of two below it
-    std::int32_t emitter_step;       // no less than the largest power of two below any group's count
-    std::int32_t emitter_samples;    // rays to all of them together, a hit
-    std::int32_t emitter_maps;       // not 0: some of them have maps of what they emit
-    float emitter_spacing;           // see growth_to_area(), times edge_pixels
-    isa::ref<float>
-        sheen_albedo; // sheen_steps a kind of sheen (razor/frame/sheen_albedo.h); first that of none
+    std::int32_t emitter_group_step;     // the largest power of two below it
+    std::int32_t emitter_step;           // no less than the largest power of two below any group's count
+    std::int32_t emitter_samples;        // rays to all of them together, a hit
+    std::int32_t emitter_maps;           // not 0: some of them have maps of what they emit
+    float emitter_spacing;               // see growth_to_area(), times edge_pixels
+    isa::ref<float> sheen_albedo;        // sheen_steps a row, razor/frame/sheen_albedo.h; first that of none
+    isa::ref<SheenRecord> sheen_records; // where some material has sheen
 };
 
 /// Pixels along a tile's sides. Rays that leave hits of one tile share fields (forget_fields() in

@@ -15,18 +15,36 @@ struct alignas(line_bytes) MaterialRecord {
     float coat, coat_roughness;
     float emission[3];
     float normal_scale;
-    float bump;             // how high a bump map's 1 lies over its 0, in units of the object
-    std::int32_t map[6];    // of each MaterialMap: a MapRecord, or -1
-    float alpha_cutoff;     // 0: nothing is cut out
-    std::int32_t map_bits;  // of the maps that it has: 1 << MaterialMap
-    std::int32_t one_sided; // not 0: seen from the front only
-    float sheen[3], sheen_alpha;
-    std::int32_t sheen_table;  // its albedo: words of FrameHeader::sheen_albedo from there
+    float bump;                // how high a bump map's 1 lies over its 0, in units of the object
+    std::int32_t map[6];       // of each MaterialMap before map_sheen: a MapRecord, or -1
+    float alpha_cutoff;        // 0: nothing is cut out
+    std::int32_t map_bits;     // of the maps that it has: 1 << MaterialMap
+    std::int32_t one_sided;    // not 0: seen from the front only
+    std::int32_t sheen;        // words from FrameHeader::sheen_records to its SheenRecord
     float light_density;       // by area, of rays to all surfaces that are lights; 0: none goes to its own
     std::int32_t displacement; // a DisplacementRecord, or -1
+    std::int32_t padding[4];
 };
 static_assert(sizeof(MaterialRecord) == 2 * line_bytes);
 inline constexpr int material_stride = sizeof(MaterialRecord) / 4;
+
+/// Of what fibres reflect: few materials have any, so it lies apart. The first is that of none.
+struct alignas(line_bytes) SheenRecord {
+    float colour[3];
+    float roughness;
+    float alpha;         // its square, where it has no map
+    std::int32_t table;  // its albedo: words of FrameHeader::sheen_albedo from there
+    std::int32_t map[2]; // of the colour, of the roughness: a MapRecord, or -1
+    /// Of mapped roughness the table has rows, at even steps of its root: see SheenRows.
+    float first_root, per_root, last_row;
+    std::int32_t padding[5];
+};
+static_assert(sizeof(SheenRecord) == line_bytes);
+inline constexpr int sheen_stride = sizeof(SheenRecord) / 4;
+
+/// The most that some material has: sheen; maps of it; of its roughness, so that tables have rows.
+enum SheenUse : std::int32_t { sheen_none, sheen_plain, sheen_mapped, sheen_rows };
+
 enum MaterialMap : std::int32_t {
     map_albedo,
     map_metallic,
@@ -34,6 +52,8 @@ enum MaterialMap : std::int32_t {
     map_emission,
     map_normal,
     map_bump,
+    map_sheen,
+    map_sheen_roughness,
     map_count
 };
 
@@ -41,9 +61,15 @@ enum MaterialMap : std::int32_t {
 /// instance's maps of which some material has one, as bits 1 << MaterialMap, and the arrays that each needs.
 /// Bump maps bend normals, as normal maps do, which then have a bit.
 constexpr int shaded_arrays(int map) {
-    return map == map_bump ? 0 : map == map_metallic || map == map_roughness ? 1 : 3;
+    const bool number = map == map_metallic || map == map_roughness || map == map_sheen_roughness;
+    return map == map_bump ? 0 : number ? 1 : 3;
 }
-inline constexpr int most_shaded_arrays = 11;
+constexpr int most_shaded_arrays() {
+    int sum = 0;
+    for (int map = 0; map < map_count; ++map)
+        sum += shaded_arrays(map);
+    return sum;
+}
 
 /// InstanceRecord::shading: which arrays follow the normals of a block. Two of texture coordinates; three of
 /// where vertices are while the mesh is at rest (FrameHeader::rest_points); those of what is shaded, in the
@@ -51,6 +77,7 @@ inline constexpr int most_shaded_arrays = 11;
 constexpr std::int32_t pack_shading(bool texcoords, bool rest, int arrays, int bits) {
     return (texcoords ? 2 : 0) | (rest ? 4 : 0) | arrays << 4 | bits << 8;
 }
+static_assert(most_shaded_arrays() <= 15);
 template <class Int> constexpr Int texcoord_arrays(Int shading) {
     return shading & 2;
 }
@@ -70,6 +97,7 @@ constexpr std::int32_t map_bit(int map) {
 }
 inline constexpr std::int32_t normal_bits = 3 * map_bit(map_normal); // what bends normals
 static_assert(map_bump == map_normal + 1);
+inline constexpr std::int32_t sheen_bits = map_bit(map_sheen) + map_bit(map_sheen_roughness);
 
 /// A texture where a material uses it: at (row_u . (u, v, 1), row_v . (u, v, 1)).
 struct MapRecord {

@@ -2,6 +2,7 @@
 
 #include "razor/frame/displacement.h"
 #include "razor/frame/sheen_albedo.h"
+#include "razor/frame/sheen_roughness.h"
 #include "razor/scene/error.h"
 
 #include <fmt/core.h>
@@ -20,7 +21,6 @@ MaterialRecord material_record(const Material& m) {
     for (int k = 0; k < 3; ++k) {
         r.albedo[k] = m.albedo[k];
         r.emission[k] = m.emission[k];
-        r.sheen[k] = m.sheen[k];
     }
     r.metallic = m.metallic;
     r.roughness = m.roughness;
@@ -34,15 +34,13 @@ MaterialRecord material_record(const Material& m) {
     r.normal_scale = m.normal_scale;
     r.bump = m.bump;
     r.one_sided = is_one_sided(m) ? 1 : 0;
-    const float rough = std::max(m.sheen_roughness, least_sheen_roughness);
-    r.sheen_alpha = rough * rough;
     std::fill(std::begin(r.map), std::end(r.map), -1);
     r.displacement = -1;
     return r;
 }
 
 /// In the order of MaterialMap.
-std::array<const TextureMap*, map_count> maps_of(const Material& m) {
+std::array<const TextureMap*, map_sheen> maps_of(const Material& m) {
     return {&m.albedo_map, &m.metallic_map, &m.roughness_map, &m.emission_map, &m.normal_map, &m.bump_map};
 }
 
@@ -78,28 +76,43 @@ TextureRecord pattern_record(const Pattern& p) {
     return r;
 }
 
+/// The words of whose levels follow each other from there on.
+TextureRecord picture_record(const Texture& texture, const TexturePyramid& of, std::size_t first) {
+    const std::vector<TextureLevel>& levels = of.levels;
+    TextureRecord r{};
+    r.levels = static_cast<std::int32_t>(levels.size());
+    r.wrap_u = wrap_of(texture.wrap_u);
+    r.wrap_v = wrap_of(texture.wrap_v);
+    r.size = std::sqrt(static_cast<float>(levels[0].width) * static_cast<float>(levels[0].height));
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        r.width[l] = levels[l].width;
+        r.height[l] = levels[l].height;
+        r.first[l] = static_cast<std::int32_t>(first);
+        first += levels[l].texels.size();
+    }
+    return r;
+}
+
 class Tables {
 public:
     explicit Tables(const Scene& scene)
-        : scene_(scene), number_(scene.textures.size(), -1), heights_(number_) {
+        : scene_(scene), number_(scene.textures.size(), -1), heights_(number_), opacities_(number_),
+          opacity_words_(number_) {
+        t.sheen_records.resize(1);
+        t.sheen_records[0].alpha = 1;
         t.sheen_albedo.assign(sheen_steps, 0.0F);
-        t.sheens = scene.settings.everything;
+        t.sheens = scene.settings.everything ? sheen_rows : sheen_none;
     }
 
     void add(const Material& m, bool used) {
         MaterialRecord r = material_record(m);
         const auto maps = maps_of(m);
-        bool texcoords = false, points = false;
+        t.needs_texcoords.push_back(false);
+        t.needs_points.push_back(false);
         for (std::size_t k = 0; used && k < maps.size(); ++k)
             if (maps[k]->texture >= 0) {
-                r.map[k] = static_cast<std::int32_t>(t.maps.size());
-                t.maps.push_back(map_record(*maps[k], texture(maps[k]->texture)));
+                r.map[k] = add_map(*maps[k], texture(maps[k]->texture));
                 r.map_bits |= 1 << k;
-                const std::optional<Pattern>& pattern = pattern_of(*maps[k]);
-                if (pattern && pattern->space == PatternSpace::object)
-                    points = t.solid = true;
-                else
-                    texcoords = true;
             }
         if (r.map[map_albedo] >= 0 && m.alpha_cutoff > 0 && !pattern_of(m.albedo_map)) {
             const std::int32_t number = t.maps[static_cast<std::size_t>(r.map[map_albedo])].texture;
@@ -107,10 +120,8 @@ public:
             r.alpha_cutoff = m.alpha_cutoff;
         }
         if (used && has_sheen(m))
-            add_sheen(r);
+            add_sheen(m, r);
         t.map_bits.push_back(r.map_bits);
-        t.needs_texcoords.push_back(texcoords);
-        t.needs_points.push_back(points);
         const double bound = used ? displacement_bound(scene_, static_cast<int>(t.materials.size())) : 0;
         t.displaced.push_back(bound > 0);
         if (bound > 0) {
@@ -159,6 +170,17 @@ public:
     MaterialTables t;
 
 private:
+    /// Of the material that is added.
+    std::int32_t add_map(const TextureMap& map, std::int32_t texture) {
+        const std::optional<Pattern>& pattern = pattern_of(map);
+        if (pattern && pattern->space == PatternSpace::object)
+            t.needs_points.back() = t.solid = true;
+        else
+            t.needs_texcoords.back() = true;
+        t.maps.push_back(map_record(map, texture));
+        return static_cast<std::int32_t>(t.maps.size() - 1);
+    }
+
     const std::optional<Pattern>& pattern_of(const TextureMap& map) const {
         return scene_.textures[static_cast<std::size_t>(map.texture)].pattern;
     }
@@ -182,32 +204,69 @@ private:
         if (number >= 0)
             return number;
         number = static_cast<std::int32_t>(t.textures.size());
-        const std::vector<TextureLevel>& levels = of.levels;
-        TextureRecord r{};
-        r.levels = static_cast<std::int32_t>(levels.size());
-        r.wrap_u = wrap_of(texture.wrap_u);
-        r.wrap_v = wrap_of(texture.wrap_v);
-        r.size = std::sqrt(static_cast<float>(levels[0].width) * static_cast<float>(levels[0].height));
-        for (std::size_t l = 0; l < levels.size(); ++l) {
-            r.width[l] = levels[l].width;
-            r.height[l] = levels[l].height;
-            r.first[l] = static_cast<std::int32_t>(t.texels);
-            add_words(levels[l].texels);
+        t.textures.push_back(picture_record(texture, of, t.texels));
+        for (const TextureLevel& level : of.levels)
+            add_words(level.texels);
+        return number;
+    }
+    /// Of a picture's opacity, as of others' colours.
+    std::int32_t opacity(int index) {
+        const Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
+        std::int32_t& number = opacities_[static_cast<std::size_t>(index)];
+        if (number < 0) {
+            number = static_cast<std::int32_t>(t.textures.size());
+            t.textures.push_back(
+                picture_record(texture, *texture.pyramid, static_cast<std::size_t>(opacity_words(index))));
         }
-        t.textures.push_back(r);
         return number;
     }
 
-    /// Tables of one width are made once.
-    void add_sheen(MaterialRecord& r) {
-        t.sheens = true;
-        const auto [known, is_new] =
-            sheens_.try_emplace(r.sheen_alpha, static_cast<std::int32_t>(t.sheen_albedo.size()));
-        if (is_new) {
-            const std::vector<float> table = sheen_albedo(r.sheen_alpha);
-            t.sheen_albedo.insert(t.sheen_albedo.end(), table.begin(), table.end());
+    void add_sheen(const Material& m, MaterialRecord& of) {
+        SheenRecord r{};
+        for (int k = 0; k < 3; ++k)
+            r.colour[k] = m.sheen[k];
+        std::fill(std::begin(r.map), std::end(r.map), -1);
+        SheenUse use = sheen_plain;
+        if (m.sheen_map.texture >= 0) {
+            r.map[0] = add_map(m.sheen_map, texture(m.sheen_map.texture));
+            of.map_bits |= map_bit(map_sheen);
+            use = sheen_mapped;
         }
-        r.sheen_table = known->second;
+        const auto rough = [](float roughness) { return std::clamp(roughness, least_sheen_roughness, 1.0F); };
+        float least = rough(m.sheen_roughness), most = least;
+        const int index = m.sheen_roughness_map.texture;
+        if (index >= 0) {
+            const Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
+            const RoughnessRange range = sheen_roughness_range(texture);
+            least = rough(m.sheen_roughness * range.least);
+            most = rough(m.sheen_roughness * range.most);
+            if (least < most) { // else it is as if it had no map
+                r.map[1] = add_map(m.sheen_roughness_map,
+                                   has_roughness_in_opacity(texture) ? opacity(index) : this->texture(index));
+                of.map_bits |= map_bit(map_sheen_roughness);
+                use = sheen_rows;
+            }
+        }
+        r.roughness = least < most ? m.sheen_roughness : least;
+        r.alpha = least * least;
+        set_albedo(least, most, r);
+        t.sheens = std::max(t.sheens, use);
+        of.sheen = static_cast<std::int32_t>(t.sheen_records.size()) * sheen_stride;
+        t.sheen_records.push_back(r);
+    }
+    /// Tables of the same roughnesses are made once.
+    void set_albedo(float least, float most, SheenRecord& r) {
+        const auto [known, is_new] = sheens_.try_emplace({least, most});
+        SheenRows& rows = known->second.rows;
+        if (is_new) {
+            rows = least < most ? sheen_albedo_rows(least, most) : SheenRows{sheen_albedo(r.alpha)};
+            known->second.first = static_cast<std::int32_t>(t.sheen_albedo.size());
+            t.sheen_albedo.insert(t.sheen_albedo.end(), rows.albedo.begin(), rows.albedo.end());
+        }
+        r.table = known->second.first;
+        r.first_root = rows.first_root;
+        r.per_root = rows.per_root;
+        r.last_row = static_cast<float>(rows.last);
     }
 
     void add_words(const std::vector<std::uint32_t>& words) {
@@ -218,21 +277,34 @@ private:
                 fmt::format("{}: the textures have more than 2^31 texels together; make some of them smaller",
                             scene_.name));
     }
-    /// Behind everything: levels follow each other as their texels do, so one distance serves them all.
+    /// Levels follow each other as their texels do, so one distance serves them all.
     void add_opacity(int texture, TextureRecord& r) {
-        const std::vector<TextureLevel>& levels =
-            scene_.textures[static_cast<std::size_t>(texture)].pyramid->levels;
-        if (r.opacity != 0 || levels[0].opacity.empty())
+        if (r.opacity != 0 ||
+            scene_.textures[static_cast<std::size_t>(texture)].pyramid->levels[0].opacity.empty())
             return;
         t.cutouts = true;
-        r.opacity = static_cast<std::int32_t>(t.texels) - r.first[0];
-        for (const TextureLevel& level : levels)
-            add_words(level.opacity);
+        r.opacity = opacity_words(texture) - r.first[0];
+    }
+    /// The first of them, behind everything that was there.
+    std::int32_t opacity_words(int texture) {
+        std::int32_t& first = opacity_words_[static_cast<std::size_t>(texture)];
+        if (first < 0) {
+            first = static_cast<std::int32_t>(t.texels);
+            for (const TextureLevel& level :
+                 scene_.textures[static_cast<std::size_t>(texture)].pyramid->levels)
+                add_words(level.opacity);
+        }
+        return first;
     }
 
     const Scene& scene_;
-    std::vector<std::int32_t> number_, heights_; // of each texture, its records
-    std::map<float, std::int32_t> sheens_;       // by width
+    std::vector<std::int32_t> number_, heights_, opacities_; // of each texture, its records
+    std::vector<std::int32_t> opacity_words_;                // and the first of these words
+    struct Albedo {
+        SheenRows rows;
+        std::int32_t first = 0;
+    };
+    std::map<std::pair<float, float>, Albedo> sheens_; // by the least and the most roughness
 };
 
 } // namespace

@@ -23,8 +23,9 @@ struct MaterialTables {
     std::vector<TextureRecord> textures;
     bool cutouts = false;
     bool one_sided = false;
-    bool sheens = false;
-    std::vector<float> sheen_albedo;                      // first that of none
+    SheenUse sheens = sheen_none;
+    std::vector<SheenRecord> sheen_records; // first that of none; likewise:
+    std::vector<float> sheen_albedo;
     std::int32_t sky_map = -1;                            // of the scene's sky, its record in `maps`
     std::vector<const std::vector<std::uint32_t>*> words; // of all textures' levels, one after the other
     std::size_t texels = 0;                               // of all

@@ -59,15 +59,18 @@ enum BlendSlot : int {
     slot_normals = 3, // a BuildState
     slot_longest = 4, // 4 sides: log2 of their sub-edges on one edge, as packets test them
     slot_block = 16,  // laid out as a block
-    slot_texcoords = slot_block + blend_floats,      // u, v, one row_vertices each, where some mesh has them
-    slot_shaded = slot_texcoords + 2 * row_vertices, // likewise what is shaded, of the camera's field
-    slot_rest = slot_shaded + most_shaded_arrays * row_vertices // likewise x, y, z at rest
+    slot_texcoords = slot_block + blend_floats, // u, v, one row_vertices each, where some mesh has them
+    /// Likewise as many arrays as the instance has of what is shaded, of the camera's field; then, where its
+    /// mesh has them, x, y, z at rest.
+    slot_shaded = slot_texcoords + 2 * row_vertices
 };
-constexpr int slot_floats(bool texcoords, int shaded, bool rest) {
-    return rest         ? slot_rest + 3 * row_vertices
-           : shaded > 0 ? slot_shaded + shaded * row_vertices
-           : texcoords  ? slot_shaded
-                        : slot_texcoords;
+/// Words from a slot to what is at rest.
+template <class Int> constexpr Int slot_rest(Int shading) {
+    return shaded_arrays_in(shading) * row_vertices + slot_shaded;
+}
+/// `arrays`: from slot_shaded on, of any instance.
+constexpr int slot_floats(bool texcoords, int arrays) {
+    return arrays > 0 ? slot_shaded + arrays * row_vertices : texcoords ? slot_shaded : slot_texcoords;
 }
 inline constexpr int line_floats_log2 = 4;
 static_assert(4 << line_floats_log2 == line_bytes);

@@ -16,4 +16,14 @@ inline constexpr float least_sheen_cosine = 1.0e-4F;
 /// the bound that keeps it from giving more than it gets; entries may be above 1.
 std::vector<float> sheen_albedo(double alpha);
 
+/// The same of all roughnesses from the least on to the most, both within the model's range: rows of
+/// sheen_steps, between which albedos are straight over the root of the roughness to 0.003 of what is
+/// reflected (over the roughness itself narrow lobes would need three times as many).
+struct SheenRows {
+    std::vector<float> albedo;
+    float first_root = 0, per_root = 0; // row (root - first_root) * per_root
+    int last = 0;
+};
+SheenRows sheen_albedo_rows(float least, float most);
+
 } // namespace razor

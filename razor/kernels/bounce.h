@@ -23,7 +23,8 @@ struct BaseSample {
 };
 
 /// Of what a surface reflects or lets through, the share that what covers it leaves in that direction.
-inline vfloat left_below(const Cloth& g, const Surface& s, const vvec& direction, const vmask& m) {
+template <class Rows>
+inline vfloat left_below(const Cloth<Rows>& g, const Surface& s, const vvec& direction, const vmask& m) {
     vfloat cosine = abs(dot(s.shading, direction));
     return sheen_part(g, s, direction, cosine, m).kept;
 }
@@ -33,7 +34,8 @@ inline vvec scattered(const Glossy& g, const Surface&, const Colours& colours, c
     vfloat kept = kept_below(g, cosine);
     return colours.diffuse * (kept / rest);
 }
-inline vvec scattered(const Cloth& g, const Surface& s, const Colours& colours, const vvec& direction,
+template <class Rows>
+inline vvec scattered(const Cloth<Rows>& g, const Surface& s, const Colours& colours, const vvec& direction,
                       const vfloat& cosine, const vfloat& rest, const vmask& m) {
     SheenPart top = sheen_part(g, s, direction, cosine, m);
     vfloat kept = kept_below(g, cosine) * top.kept;

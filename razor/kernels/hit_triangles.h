@@ -83,7 +83,7 @@ inline void find_attributes(const Context& c, pointer<BlockHeader> block, pointe
     shaded = shaded & (number == camera_number);
     if (branch(shaded))
         found[1] = {ensure_shaded(c, block, normals, shading), slot + slot_shaded, shaded_arrays_in(shading)};
-    found[2] = {rest_at(normals, stride, shading), slot + slot_rest, rest_arrays(shading)};
+    found[2] = {rest_at(normals, stride, shading), slot + slot_rest(shading), rest_arrays(shading)};
 }
 
 /// Blends the normals of the block whose vertices lie blended in a slot, with the same weights, beside them;
@@ -298,7 +298,7 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
             if (branch(normals_at != 0))
                 normals = blended_normals<Mapped>(c, block, normals, slot);
             texcoords = slot + slot_texcoords;
-            rest = slot + slot_rest;
+            rest = slot + slot_rest(shading);
             shaded = slot + slot_shaded;
         } else if constexpr (Mapped) {
             if (branch(on_grid))

@@ -1,6 +1,7 @@
 // Members of materials, and what their maps make of them.
 #pragma once
 
+#include "razor/frame/sheen_albedo.h"
 #include "razor/kernels/basis.h"
 #include "razor/kernels/texture.h"
 
@@ -13,6 +14,8 @@ struct Shaded {
     vvec albedo, emission;
     vfloat metallic, roughness;
     vvec normal; // unit, on the side of the surface's own
+    vvec sheen;
+    vfloat sheen_roughness;
     /// Of all this, where vertices lie too far apart for what a ray asks for: the rest is found at the hit.
     vfloat share;
 
@@ -37,24 +40,23 @@ struct Shaded {
 inline Shaded nothing_shaded() {
     vfloat zero(0.0F);
     vvec none{zero, zero, zero};
-    return {vint(0), none, none, zero, zero, none, zero};
+    return {vint(0), none, none, zero, zero, none, none, zero, zero};
 }
 
-/// Members of the materials of a packet's hits, or of vertices.
-struct Materials {
-    pointer<MaterialRecord> first;
+/// Members of records of a packet's hits, or of vertices.
+template <class Record> struct Members {
+    pointer<Record> first;
     vint record; // words from there
     vmask present;
 
-    vfloat number(float MaterialRecord::*member) const {
-        return gather(field(first, member), record, present);
-    }
-    vint whole(std::int32_t MaterialRecord::*member) const {
-        return gather(field(first, member), record, present);
-    }
-    vvec colour(float (MaterialRecord::*member)[3]) const {
+    vfloat number(float Record::*member) const { return gather(field(first, member), record, present); }
+    vint whole(std::int32_t Record::*member) const { return gather(field(first, member), record, present); }
+    vvec colour(float (Record::*member)[3]) const {
         return gather_vec(field(first, member), record, vint(1), present);
     }
+};
+/// Of their materials.
+struct Materials : Members<MaterialRecord> {
     vint map(MaterialMap which, const vmask& m) const {
         return gather(field(first, &MaterialRecord::map) + which, record, m);
     }
@@ -66,7 +68,14 @@ struct Materials {
 /// By their numbers.
 inline Materials materials_of(const Context& c, const vint& material, const vmask& present) {
     pointer<MaterialRecord> first = load(field(c.frame, &FrameHeader::materials));
-    return {first, material * vint(material_stride), present};
+    return {{first, material * vint(material_stride), present}};
+}
+
+/// Of the sheen that these have.
+using Sheens = Members<SheenRecord>;
+inline Sheens sheens_of(const Context& c, const Materials& of) {
+    pointer<SheenRecord> first = load(field(c.frame, &FrameHeader::sheen_records));
+    return {first, of.whole(&MaterialRecord::sheen), of.present};
 }
 
 inline vvec times(const vvec& a, const vvec& b) {
@@ -90,6 +99,26 @@ inline vfloat mapped_roughness(const Context& c, const Materials& of, const Mapp
     vvec found = of.mapped(c, map_roughness, at, of.present & known.open(map_roughness));
     vfloat roughness = of.number(&MaterialRecord::roughness) * found.y;
     return known.mixed(map_roughness, known.roughness, roughness);
+}
+
+/// Likewise of sheen, within what its model is for, whatever a texture holds.
+[[gnu::noinline]] inline vvec mapped_sheen(const Context& c, const Sheens& of, const Mapping& at,
+                                           const Shaded& known) {
+    vint map = gather(field(of.first, &SheenRecord::map), of.record, of.present);
+    vvec found = mapped_colour(c, map, at, of.present & known.open(map_sheen));
+    vvec colour = times(of.colour(&SheenRecord::colour), found);
+    colour.x = min(colour.x, 1.0F);
+    colour.y = min(colour.y, 1.0F);
+    colour.z = min(colour.z, 1.0F);
+    return known.mixed(map_sheen, known.sheen, colour);
+}
+[[gnu::noinline]] inline vfloat mapped_sheen_roughness(const Context& c, const Sheens& of, const Mapping& at,
+                                                       const Shaded& known) {
+    vint map = gather(field(of.first, &SheenRecord::map) + 1, of.record, of.present);
+    vvec found = mapped_colour(c, map, at, of.present & known.open(map_sheen_roughness));
+    vfloat roughness = of.number(&SheenRecord::roughness) * found.y;
+    roughness = min(max(roughness, least_sheen_roughness), 1.0F);
+    return known.mixed(map_sheen_roughness, known.sheen_roughness, roughness);
 }
 
 /// Normals bent by normal maps, which hold what they are against tangents along u and v and the normal. `m`:

@@ -128,7 +128,7 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
     sint diffuse_bounces = load(field(c.frame, &FrameHeader::diffuse_bounces));
     sint emitters = load(field(c.frame, &FrameHeader::emitter_count));
     sint choices = load(field(c.frame, &FrameHeader::light_choices));
-    sbool sheens = load(field(c.frame, &FrameHeader::sheens)) != 0;
+    sint sheens = load(field(c.frame, &FrameHeader::sheens));
     vvec carried{one, one, one};
     sbool chosen = choices > 0;
     chosen = chosen | (emitters > 0);
@@ -183,8 +183,11 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
         s.sample = sample;
         if constexpr (Mapped)
             bend_normals(c, materials_of(c, beyond.material, hit), beyond, s);
-        if (branch(sheens))
-            face_sheen(c, beyond, s);
+        Fibres fibres;
+        if (branch(sheens != sheen_none)) {
+            fibres = find_fibres<Mapped>(c, s, beyond, sheens);
+            face_sheen(fibres, beyond, s);
+        }
         Onward onward{n < bounces, n < diffuse_bounces};
         Colours colours;
         Glossy g = find_lobes<Mapped>(c, s, beyond, onward, colours);
@@ -203,10 +206,18 @@ inline void PathSampler<Mapped>::add(const Context& c, const Rays& camera, const
             if (branch(n < bounces))
                 bounce = sample_bounce(c, s, beyond, response, colours, onward);
         };
-        if (branch(sheens))
-            go_on(cover(c, s, beyond, g, colours, onward));
-        else
+        if (branch(sheens == sheen_none)) {
             go_on(g);
+        } else {
+            bool done = false;
+            if constexpr (Mapped) {
+                done = branch(sheens == sheen_rows);
+                if (done)
+                    go_on(cover(c, s, fibres, fibres.rows, g, colours, onward));
+            }
+            if (!done)
+                go_on(cover(c, s, fibres, fibres.row, g, colours, onward));
+        }
         if (branch(n == bounces))
             return;
         carried = select(bounce.rays.active, times(carried, bounce.carried), black);

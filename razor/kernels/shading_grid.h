@@ -123,6 +123,17 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
     return out + stride;
 }
 
+/// What maps make of sheen at some vertices, into the arrays behind all others.
+[[gnu::noinline]] inline void shade_sheen(const Context& c, const Materials& of, const Mapping& at, sint bits,
+                                          sint stride, sint from, const vmask& m, pointer<float> to) {
+    Sheens sheens = sheens_of(c, of);
+    Shaded unknown = nothing_shaded();
+    if (branch((bits & map_bit(map_sheen)) != 0))
+        to = store_shaded(to, stride, from, mapped_sheen(c, sheens, at, unknown), m);
+    if (branch((bits & map_bit(map_sheen_roughness)) != 0))
+        store_vector(to + from, mapped_sheen_roughness(c, sheens, at, unknown), m);
+}
+
 [[gnu::noinline]] inline void shade_vertices(const Context& c, pointer<BlockHeader> block,
                                              pointer<float> normals, sint shading, pointer<float> out) {
     phase_scope phase(phase_shade);
@@ -172,8 +183,10 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
         }
         if (branch((bits & map_bit(map_normal)) != 0)) {
             vvec bent = mapped_normal(c, of, at, k.normal * side, m) * side;
-            store_shaded(to, stride, from, bent, m);
+            to = store_shaded(to, stride, from, bent, m);
         }
+        if (branch((bits & sheen_bits) != 0))
+            shade_sheen(c, of, at, bits, stride, from, m, to);
     }
 }
 
@@ -212,6 +225,15 @@ inline pointer<float> shaded_vec(pointer<float> values, sint stride, const Hits&
     return values + stride;
 }
 
+/// Of sheen, from the arrays behind all others.
+[[gnu::noinline]] inline void find_shaded_sheen(pointer<float> values, sint stride, sint bits, const Hits& h,
+                                                const HitCorners& at, const vmask& m, Shaded& out) {
+    if (branch((bits & map_bit(map_sheen)) != 0))
+        values = shaded_vec(values, stride, h, at, m, out.sheen);
+    if (branch((bits & map_bit(map_sheen_roughness)) != 0))
+        out.sheen_roughness = select(m, between_corners(values, h, at.a, at.b, at.c, m), out.sheen_roughness);
+}
+
 /// What is shaded where triangles of one block are hit, from its arrays, blended or not.
 inline void find_shaded(pointer<float> values, sint stride, sint shading, const Hits& h, const HitCorners& at,
                         const vmask& m, Shaded& out) {
@@ -230,7 +252,9 @@ inline void find_shaded(pointer<float> values, sint stride, sint shading, const 
     if (branch((bits & map_bit(map_emission)) != 0))
         values = shaded_vec(values, stride, h, at, m, out.emission);
     if (branch((bits & map_bit(map_normal)) != 0))
-        shaded_vec(values, stride, h, at, m, out.normal);
+        values = shaded_vec(values, stride, h, at, m, out.normal);
+    if (branch((bits & sheen_bits) != 0))
+        find_shaded_sheen(values, stride, bits, h, at, m, out);
 }
 
 } // namespace shade_kernel

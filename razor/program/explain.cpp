@@ -43,6 +43,7 @@ std::vector<Feature> features_of(const Scene& scene, const FrameStatistics& fram
             {"reflection, transmission and emission", glossy},
             {"diffuse interreflection", s.diffuse_bounces > 0},
             {"sheen", frame.sheen},
+            {"maps of sheen", frame.sheen_maps},
             {"surfaces of one side", frame.one_sided},
             {"textures or materials of faces", mapped},
             {"procedural textures", frame.patterns},

@@ -34,8 +34,10 @@ struct Material {
     float sheen_roughness = 0.5F; // in [0, 1]; below 0.1 as 0.1
     glm::vec3 emission{0, 0, 0};  // radiance from both sides
     bool light = false;           // rays to lights go to what of it emits; else only bounces find that
-    /// Maps multiply what is above: albedo and emission by colour, metallic by blue, roughness by green.
+    /// Maps multiply what is above: albedo, emission and sheen by colour, metallic by blue, roughness by
+    /// green, sheen_roughness by opacity or, of pictures without and of patterns, by green.
     TextureMap albedo_map{}, metallic_map{}, roughness_map{}, emission_map{};
+    TextureMap sheen_map{}, sheen_roughness_map{};
     TextureMap normal_map{}; // tangent-space normals, 2 rgb - 1
     float normal_scale = 1;  // of their x and y
     TextureMap bump_map{};   // heights, by luminance

@@ -61,6 +61,8 @@ template <class Visit, class... Materials> void visit_material_maps(Visit visit,
     visit("metallic_map", m.metallic_map...);
     visit("roughness_map", m.roughness_map...);
     visit("emission_map", m.emission_map...);
+    visit("sheen_map", m.sheen_map...);
+    visit("sheen_roughness_map", m.sheen_roughness_map...);
     visit("normal_map", m.normal_map...);
     visit("bump_map", m.bump_map...);
     visit("displacement_map", m.displacement_map...);

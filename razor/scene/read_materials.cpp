@@ -145,6 +145,12 @@ Material read_material(TomlTable& table, std::span<const std::string> textures) 
     if (material.emission_map.texture >= 0) {
         material.emission = glm::vec3(1);
     }
+    if (material.sheen_map.texture >= 0) {
+        material.sheen = glm::vec3(1);
+    }
+    if (material.sheen_roughness_map.texture >= 0) {
+        material.sheen_roughness = 1;
+    }
     visit_material_fields(
         [&](std::string_view key, Range range, auto& value) {
             if constexpr (std::is_same_v<std::remove_reference_t<decltype(value)>, float>) {

@@ -170,6 +170,53 @@ TEST(Paths, Sheen) {
     }
 }
 
+Texture pattern_texture(PatternKind kind, double size, float amount, const glm::vec3& low,
+                        const glm::vec3& high) {
+    Texture t;
+    t.name = "pattern";
+    t.pattern = Pattern{.kind = kind, .size = size, .low = low, .high = high, .octaves = 3};
+    t.pattern->amount = amount;
+    return t;
+}
+
+// The floor's roughness by opacity of a picture, its colour by the same picture; the box's by patterns.
+TEST(Paths, SheenMaps) {
+    Scene s = room();
+    s.name = "maps of sheen";
+    const auto wave = [](double x) { return 0.5 + 0.5 * std::sin(6.2831853 * x); };
+    s.textures = {rgba_texture(64, 64,
+                               [&](double u, double v) {
+                                   return glm::vec4(wave(u), 0.9, wave(v), 0.25 + 0.7 * wave(u + v));
+                               }),
+                  pattern_texture(PatternKind::checker, 0.7, 0, {0.2F, 0.25F, 0.1F}, {0.9F, 0.9F, 1}),
+                  pattern_texture(PatternKind::noise, 0.9, 0, {0.1F, 0.3F, 0.1F}, {1, 0.8F, 0.9F})};
+    s.meshes[0].texcoords = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+    s.meshes[0].face_texcoords = {0, 1, 2, 3};
+    s.materials[0].albedo = {0.1F, 0.1F, 0.1F};
+    s.materials[0].sheen = {1, 0.9F, 0.8F};
+    s.materials[0].sheen_roughness = 0.9F;
+    s.materials[0].sheen_map.texture = s.materials[0].sheen_roughness_map.texture = 0;
+    s.meshes.push_back(box("box", {-1.2, 0, -0.6}, {1.4, 1.6, 1.2}, 25, 3));
+    s.materials.push_back(named("metal", {0.3F, 0.2F, 0.1F}));
+    s.materials[3].metallic = 1;
+    s.materials[3].roughness = 0.5F;
+    s.materials[3].sheen = {1, 1, 1};
+    s.materials[3].sheen_roughness = 1;
+    s.materials[3].sheen_map.texture = 2;
+    s.materials[3].sheen_roughness_map.texture = 1;
+    s.camera.position = {1.6, 1.1, 5}; // sheen is of grazing angles
+    s.settings.diffuse_bounces = 2;
+    s.settings.edge_pixels = 0.1;
+    expect_same_picture(s, 160);
+    for (const std::size_t m : {0U, 3U})
+        for (TextureMap Material::*const map : {&Material::sheen_map, &Material::sheen_roughness_map}) {
+            Scene without = s;
+            (without.materials[m].*map).texture = -1;
+            fmt::print("    material {}, {}:", m, map == &Material::sheen_map ? "colour" : "roughness");
+            expect_other_picture(s, without, 80);
+        }
+}
+
 TEST(Paths, GlassBox) {
     for (const int bounces : {3, 6}) {
         Scene s = room();
@@ -195,15 +242,6 @@ TEST(Paths, GlassBox) {
             expect_other_picture(s, thin, 160);
         }
     }
-}
-
-Texture pattern_texture(PatternKind kind, double size, float amount, const glm::vec3& low,
-                        const glm::vec3& high) {
-    Texture t;
-    t.name = "pattern";
-    t.pattern = Pattern{.kind = kind, .size = size, .low = low, .high = high, .octaves = 3};
-    t.pattern->amount = amount;
-    return t;
 }
 
 // Filters as narrow as rays allow: what they are of is compared elsewhere.

@@ -99,6 +99,8 @@ private:
         m.albedo *= glm::vec3(plain_colour(scene_, m.albedo_map, at));
         m.metallic *= static_cast<float>(plain_colour(scene_, m.metallic_map, at).z);
         m.roughness *= static_cast<float>(plain_colour(scene_, m.roughness_map, at).y);
+        m.sheen *= glm::vec3(plain_colour(scene_, m.sheen_map, at));
+        m.sheen_roughness *= static_cast<float>(plain_sheen_roughness(scene_, m.sheen_roughness_map, at));
         return m;
     }
     /// How points of the facet move with texture coordinates: their gradients, across it none.

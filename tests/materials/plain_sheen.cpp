@@ -22,13 +22,26 @@ double mix(double at_1, double at_0, double alpha) {
 
 } // namespace
 
-PlainSheen::PlainSheen(double roughness) : alpha_(std::pow(std::max(roughness, 0.1), 2)) {
-    for (int k = 0; k <= places; ++k) {
-        const double cosine = std::max(std::pow(double(k) / places, 2), 1e-4);
-        albedos_.push_back(
-            integral(cosine, [this](const dvec3& v, const dvec3& l) { return defined(v, l); }));
+/// Tables of albedos by roughness.
+class PlainAlbedo {
+public:
+    static const std::vector<double>& of(int multiple) {
+        static std::map<int, std::vector<double>> known;
+        const auto [found, is_new] = known.try_emplace(multiple);
+        if (is_new) {
+            const PlainSheen sheen(multiple * step);
+            for (int k = 0; k <= places; ++k) {
+                const double cosine = std::max(std::pow(double(k) / places, 2), 1e-4);
+                found->second.push_back(sheen.integral(
+                    cosine, [&](const dvec3& v, const dvec3& l) { return sheen.defined(v, l); }));
+            }
+        }
+        return found->second;
     }
-}
+    static constexpr double step = 0.025;
+};
+
+PlainSheen::PlainSheen(double roughness) : alpha_(std::pow(std::max(roughness, 0.1), 2)) {}
 
 template <class Value> double PlainSheen::integral(double cos_view, Value value) const {
     constexpr int heights = 160, turns = 60;
@@ -62,7 +75,11 @@ double PlainSheen::defined(const dvec3& v, const dvec3& l) const {
 double PlainSheen::albedo(double cosine) const {
     const double place = std::sqrt(std::clamp(cosine, 0.0, 1.0)) * places;
     const auto k = std::min(static_cast<std::size_t>(place), std::size_t{places - 1});
-    return albedos_[k] + (place - double(k)) * (albedos_[k + 1] - albedos_[k]);
+    const auto in = [&](const std::vector<double>& table) {
+        return table[k] + (place - double(k)) * (table[k + 1] - table[k]);
+    };
+    const double below = in(*below_);
+    return part_ > 0 ? below + part_ * (in(*above_) - below) : below;
 }
 
 double PlainSheen::reflectance(const dvec3& v, const dvec3& l) const {
@@ -77,11 +94,19 @@ double PlainSheen::taken(double cos_view, double cos_light) const {
     return std::min(std::max(albedo(cos_view), albedo(cos_light)), 1.0);
 }
 
-const PlainSheen& plain_sheen(double roughness) {
-    static std::map<double, PlainSheen> known;
-    const auto found = known.find(roughness);
-    return found != known.end() ? found->second
-                                : known.emplace(roughness, PlainSheen(roughness)).first->second;
+PlainSheen plain_sheen(double roughness) {
+    PlainSheen sheen(roughness);
+    const double within = std::clamp(roughness, 0.1, 1.0), place = within / PlainAlbedo::step;
+    const int nearest = static_cast<int>(std::lround(place)), low = static_cast<int>(place);
+    if (std::abs(place - nearest) < 1e-5) {
+        sheen.below_ = &PlainAlbedo::of(nearest);
+        return sheen;
+    }
+    sheen.below_ = &PlainAlbedo::of(low);
+    sheen.above_ = &PlainAlbedo::of(low + 1);
+    const double root = std::sqrt(low * PlainAlbedo::step), next = std::sqrt((low + 1) * PlainAlbedo::step);
+    sheen.part_ = (std::sqrt(within) - root) / (next - root);
+    return sheen;
 }
 
 } // namespace razor::test

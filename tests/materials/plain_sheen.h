@@ -11,8 +11,6 @@ namespace razor::test {
 /// A lobe of one roughness and the colour 1. z is the normal; directions point away from the surface.
 class PlainSheen {
 public:
-    explicit PlainSheen(double roughness);
-
     /// 1 / steradian. Never gives back more than it gets: where the definition does, it is divided by the
     /// larger of both directions' albedos.
     double reflectance(const glm::dvec3& view, const glm::dvec3& light) const;
@@ -22,17 +20,24 @@ public:
     double taken(double cos_view, double cos_light) const;
 
 private:
+    friend PlainSheen plain_sheen(double roughness);
+    friend class PlainAlbedo;
+    explicit PlainSheen(double roughness);
+
     double defined(const glm::dvec3& view, const glm::dvec3& light) const;
     double lambda(double cosine) const;
-    /// By the definition, between places that are evenly spaced in the root of the cosine.
     double albedo(double cosine) const;
     template <class Value> double integral(double cos_view, Value value) const;
 
     double alpha_;
-    std::vector<double> albedos_;
+    /// Of the roughnesses beside it, between places that are evenly spaced in the root of the cosine; `part_`
+    /// of the second.
+    const std::vector<double>*below_ = nullptr, *above_ = nullptr;
+    double part_ = 0;
 };
 
-/// That of a roughness, made once.
-const PlainSheen& plain_sheen(double roughness);
+/// That of any roughness. Albedos are by the definition for whole multiples of 0.025, made once, and straight
+/// over the root of the roughness between these.
+PlainSheen plain_sheen(double roughness);
 
 } // namespace razor::test

@@ -22,6 +22,15 @@ dvec3 plain_colour(const Scene& scene, const TextureMap& map, const PlainPlace& 
     return dvec3(pattern.low) + plain_value(pattern, q) * dvec3(pattern.high - pattern.low);
 }
 
+double plain_sheen_roughness(const Scene& scene, const TextureMap& map, const PlainPlace& at) {
+    if (map.texture >= 0) {
+        const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
+        if (!texture.pattern && !texture.pyramid->levels[0].opacity.empty())
+            return plain_opacity(texture, map, at.texcoords);
+    }
+    return plain_colour(scene, map, at).y;
+}
+
 double plain_opacity(const Texture& texture, const TextureMap& map, const glm::dvec2& texcoords) {
     return opacity_at(texture, mapped_by(map, texcoords));
 }

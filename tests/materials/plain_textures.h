@@ -17,6 +17,9 @@ struct PlainPlace {
 /// White where there is no map.
 glm::dvec3 plain_colour(const Scene& scene, const TextureMap& map, const PlainPlace& at);
 
+/// 1 where there is no map; of a picture that has opacity that, else green.
+double plain_sheen_roughness(const Scene& scene, const TextureMap& map, const PlainPlace& at);
+
 /// Of a picture.
 double plain_opacity(const Texture& texture, const TextureMap& map, const glm::dvec2& texcoords);
 

@@ -118,6 +118,19 @@ Scene full_room() {
     s.materials.push_back(named("glass", {0.9F, 1, 0.9F}));
     s.materials.back().specular = s.materials.back().transmission = 1;
     s.materials.back().roughness = 0.1F;
+    s.textures.push_back(
+        rgba_texture(16, 16, [](double u, double v) { return glm::vec4(v, 0.5, u, 0.2 + 0.6 * u * v); }));
+    Mesh cushion = box("cushion", {0.2, 0, -1.4}, {0.8, 0.5, 0.8}, 10, 5);
+    cushion.scheme = Scheme::catmull_clark;
+    cushion.edge_length = 0.125;
+    for (const dvec3& p : cushion.points)
+        cushion.texcoords.emplace_back(2 * p.x, p.y - p.z);
+    cushion.face_texcoords = cushion.face_vertices;
+    s.meshes.push_back(cushion);
+    s.materials.push_back(named("velvet", {0.2F, 0.1F, 0.1F}));
+    s.materials.back().sheen = {1, 0.9F, 0.8F};
+    s.materials.back().sheen_roughness = 0.9F;
+    s.materials.back().sheen_map.texture = s.materials.back().sheen_roughness_map.texture = 2;
     s.settings.samples = 4;
     s.settings.diffuse_bounces = 1;
     return s;

@@ -17,11 +17,15 @@ using glm::dvec3;
 using std::numbers::pi;
 
 Texture sky_texture(int width, int height, const std::function<glm::vec3(double, double)>& colour) {
+    return rgba_texture(width, height, [&](double u, double v) { return glm::vec4(colour(u, v), 1); });
+}
+
+Texture rgba_texture(int width, int height, const std::function<glm::vec4(double, double)>& colour) {
     PyramidBuilder builder(width, height);
     for (int y = 0; y < height; ++y) {
         std::vector<glm::vec4> row;
         for (int x = 0; x < width; ++x)
-            row.emplace_back(colour((x + 0.5) / width, (y + 0.5) / height), 1);
+            row.push_back(colour((x + 0.5) / width, (y + 0.5) / height));
         builder.add_row(row);
     }
     Texture t;

@@ -10,6 +10,9 @@ namespace razor::test {
 /// What a map of that many texels shows: colour(u, v), both in [0, 1], v from the top.
 Texture sky_texture(int width, int height, const std::function<glm::vec3(double, double)>& colour);
 
+/// The same with opacity.
+Texture rgba_texture(int width, int height, const std::function<glm::vec4(double, double)>& colour);
+
 /// Adds it to the scene as its sky.
 void set_sky(Scene& scene, Texture texture, double rotation = 0);
 

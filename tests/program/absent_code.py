@@ -25,6 +25,7 @@ FEATURES = {
     "textures at vertices of grids": r"::shade_vertices\(",
     "displacement": r"::place_displaced\(|::make_displaced_normals\(|::displaced_point\(",
     "sheen": r"\bCloth\b",
+    "maps of sheen": r"::weave\(|::mapped_sheen(_roughness)?\(|::shade_sheen\(|::find_shaded_sheen\(|\bTwoRows\b|::sheen_albedos\(|::sheen_roughness_range\(",
     "surfaces that are lights": r"::sample_emitters\(|TowardsEmitters",
     "lights that are chosen": r"TowardsChosen|::sample_chosen\(|::meet_chosen\(",
     "opacity of textures": r"::sample_map<true>\(|::find_holes\(",
@@ -42,6 +43,7 @@ METAL = '[[material]]\nname = "m"\nmetallic = 1\nroughness = 0.4\n'
 MAPPED = TEXTURE + '[[material]]\nname = "m"\nalbedo_map = "t"\n'
 PATTERN = '[[texture]]\nname = "p"\npattern = "noise"\n[[material]]\nname = "m"\nalbedo_map = "p"\n'
 CLOTH = '[[material]]\nname = "m"\nsheen = 0.5\n'
+VELVET = TEXTURE + '[[material]]\nname = "m"\nalbedo_map = "t"\nsheen_map = "t"\nsheen_roughness_map = "t"\n'
 LAMP = '[[material]]\nname = "m"\nemission = 4\nlight = true\n'
 BUMPY = TEXTURE + '[[material]]\nname = "m"\nalbedo = 0.5\ndisplacement_map = "t"\ndisplacement_scale = 0.1\n'
 PLAIN = '[[material]]\nname = "matte"\nalbedo = 0.5\n'
@@ -62,13 +64,18 @@ SCENES = [
      SURFACES | {"rectangle lights", "patterns", "textures", "textures at vertices of grids", "shading by materials' records"}),
     ("cloth", DARK + RECTANGLE + CLOTH + OBJ,
      {"rectangle lights", "sheen", "paths", "shading by materials' records"}),
+    ("cloth beside a texture", DARK + RECTANGLE + CLOTH.replace("sheen", 'albedo_map = "t"\nsheen') + TEXTURE + OBJ,
+     {"rectangle lights", "sheen", "paths", "textures", "shading by materials' records"}),
+    ("velvet", DARK + RECTANGLE + VELVET + SMOOTH.replace('"matte"', '"m"'),
+     SURFACES | {"rectangle lights", "sheen", "maps of sheen", "paths", "textures", "textures at vertices of grids",
+                 "shading by materials' records"}),
     ("a lamp", DARK + LAMP + PLAIN + OBJ + SMOOTH,
      SURFACES | {"surfaces that are lights", "paths", "shading by materials' records"}),
     ("displaced", DARK + RECTANGLE + BUMPY + OBJ,
      {"normals or texture coordinates on vertices", "rectangle lights", "displacement"}),
     ("under a mapped sky", SKY_MAP + TEXTURE + MATTE + OBJ, {"mapped sky", "textures", "shading by materials' records"}),
     ("everything but a map of the sky", CONSTANT + RECTANGLE + POINT + CUT + PLAIN + OBJ + SMOOTH,
-     set(FEATURES) - {"mapped sky", "patterns", "textures at vertices of grids", "displacement", "sheen", "surfaces that are lights",
+     set(FEATURES) - {"mapped sky", "patterns", "textures at vertices of grids", "displacement", "sheen", "maps of sheen", "surfaces that are lights",
                       "lights that are chosen"}),
 ]
 

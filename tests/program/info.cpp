@@ -21,6 +21,7 @@ protected:
                      "name = \"both\"\n[[texture]]\nname = \"t\"\nfile = \"a.png\"\nwrap = \"clamp\"\n"
                      "color_space = \"linear\"\n[[material]]\nname = \"grey\"\nroughness_map = \"t\"\n"
                      "[[material]]\nname = \"glass\"\nkind = \"glass\"\n"
+                     "[[material]]\nname = \"felt\"\nsheen_map = \"t\"\nsheen_roughness_map = \"t\"\n"
                      "[[mesh]]\nname = \"quad\"\nfile = \"o.obj\"\nscheme = \"bilinear\"\n"
                      "[[object]]\nmesh = \"quad\"\narray = [3, 1, 1]\nspacing = [2, 0, 0]\n"
                      "[[object]]\nmesh = \"quad\"\nmaterial = \"glass\"\ntranslate = [0, 4, 0]\n");
@@ -39,6 +40,8 @@ TEST_F(Info, ListsWhatASceneConsistsOf) {
          {std::string("  quad: 3 faces, 4 points, bilinear, 4 instances\n"), std::string("instances: 4\n"),
           std::string("  grey: matte, albedo 0.7, roughness 1, roughness_map t, not used\n"),
           std::string("  glass: glossy, albedo 1, roughness 0, specular 1, transmission 1, 3 faces\n"),
+          std::string("  felt: glossy, albedo 0.7, sheen 1, sheen_roughness 1, sheen_map t, "
+                      "sheen_roughness_map t, not used\n"),
           std::string("  red: matte, albedo 1 0 0, 3 faces\n"),
           std::string("  shown: glossy, albedo 1, roughness 0.652994, specular 1, albedo_map a, 6 faces\n"),
           "  t: 6 x 3, 4 levels, 320 B, clamp, linear, " + (folder_ / "a.png").string() + ", not used\n",
@@ -49,8 +52,9 @@ TEST_F(Info, ListsWhatASceneConsistsOf) {
     EXPECT_EQ(json["scene"], "both");
     EXPECT_EQ(json["meshes"][0]["instances"], 4);
     EXPECT_EQ(json["materials"][1]["transmission"], 1.0);
-    EXPECT_EQ(json["materials"][3]["albedo_map"]["number"], 1);
-    EXPECT_EQ(json["materials"][3]["faces"], 6);
+    EXPECT_EQ(json["materials"][2]["sheen_map"]["texture"], "t");
+    EXPECT_EQ(json["materials"][4]["albedo_map"]["number"], 1);
+    EXPECT_EQ(json["materials"][4]["faces"], 6);
     EXPECT_EQ(json["textures"][0]["color_space"], "linear");
     EXPECT_EQ(json["textures"][0]["used"], false);
     EXPECT_EQ(json["textures"][1]["bytes"], 320);

@@ -155,6 +155,39 @@ TEST(GltfMaterials, MapsAndImagesWhereverTheyAre) {
     EXPECT_EQ(read(other, folder).own_materials->materials[0].metallic_map.texture, -1);
 }
 
+TEST(GltfMaterials, TexturesOfSheenAreRead) {
+    const TemporaryFolder folder;
+    folder.file("cloth.png", png_of(1, 2, {.colour = PNG_COLOR_TYPE_RGBA}, {255, 0, 0, 51, 0, 0, 255, 255}));
+    const Json turned{{"index", 3},
+                      {"texCoord", 1},
+                      {"extensions", {{"KHR_texture_transform", {{"texCoord", 0}, {"scale", {2, 3}}}}}}};
+    Json sheen{{"sheenColorFactor", {1, 0.5, 0.25}}, {"sheenRoughnessFactor", 0.5}};
+    const auto read_with = [&](const Json& colour, const Json& roughness) {
+        sheen["sheenColorTexture"] = colour;
+        sheen["sheenRoughnessTexture"] = roughness;
+        GltfWriter w =
+            with_images({{"name", "cloth"}, {"extensions", {{"KHR_materials_sheen", sheen}}}}, folder);
+        w.add("images", {{"uri", "cloth.png"}});
+        w.add("textures", {{"source", 3}});
+        return read(w, folder);
+    };
+    const Mesh mesh = read_with({{"index", 3}}, turned);
+    const Material& m = mesh.own_materials->materials.at(0);
+    EXPECT_TRUE(mesh.own_materials->notes.empty());
+    ASSERT_EQ(mesh.own_materials->textures.size(), 1U) << "of both";
+    const Texture& texture = mesh.own_materials->textures[0];
+    EXPECT_FALSE(texture.linear);
+    EXPECT_FALSE(texture.pyramid->levels[0].opacity.empty());
+    EXPECT_EQ(m.sheen, glm::vec3(1, 0.5F, 0.25F));
+    EXPECT_EQ(m.sheen_roughness, 0.5F);
+    EXPECT_EQ(m.sheen_map, TextureMap{.texture = 0});
+    EXPECT_EQ(m.sheen_roughness_map.texture, 0);
+    EXPECT_EQ(m.sheen_roughness_map.scale, glm::vec2(2, 3));
+    const Mesh opaque = read_with({{"index", 3}, {"texCoord", 1}}, {{"index", 0}});
+    EXPECT_EQ(opaque.own_materials->materials[0].sheen_map.texture, -1) << "of other coordinates";
+    EXPECT_EQ(opaque.own_materials->materials[0].sheen_roughness_map.texture, -1) << "1 everywhere";
+}
+
 TEST(GltfMaterials, TexturesThatArePassedOverAreTold) {
     const TemporaryFolder folder;
     const Json texture{{"index", 0}};
@@ -162,12 +195,13 @@ TEST(GltfMaterials, TexturesThatArePassedOverAreTold) {
                                         {"extensions",
                                          {{"KHR_materials_sheen",
                                            {{"sheenColorFactor", {1, 1, 1}}, {"sheenColorTexture", texture}}},
+                                          {"KHR_materials_transmission", {{"transmissionTexture", texture}}},
                                           {"KHR_materials_clearcoat", {{"clearcoatTexture", texture}}}}}},
                                        folder),
                            folder);
     ASSERT_EQ(mesh.own_materials->notes.size(), 1U);
     EXPECT_NE(mesh.own_materials->notes[0].find(
-                  "material 'cloth': textures that are passed over: clearcoatTexture, sheenColorTexture"),
+                  "material 'cloth': textures that are passed over: transmissionTexture, clearcoatTexture"),
               std::string::npos)
         << mesh.own_materials->notes[0];
     EXPECT_TRUE(read(with_images({{"name", "plain"}}, folder), folder).own_materials->notes.empty());
@@ -263,6 +297,19 @@ TEST(GltfMaterials, MistakesAreNamed) {
         {[](GltfWriter& w) { w.json["materials"][0]["normalTexture"]["index"] = 7; },
          "material 0 normalTexture names texture 7, but the file has 3"},
         {[](GltfWriter& w) { w.json["materials"][0]["normalTexture"]["index"] = -2; }, "which is no index"},
+        {[](GltfWriter& w) {
+             w.json["materials"][0]["extensions"]["KHR_materials_sheen"]["sheenColorTexture"]["index"] = 8;
+         },
+         "material 0 extensions KHR_materials_sheen sheenColorTexture names texture 8, but the file has 3"},
+        {[](GltfWriter& w) {
+             w.json["materials"][0]["extensions"]["KHR_materials_sheen"]["sheenRoughnessTexture"] = 8;
+         },
+         "material 0 extensions KHR_materials_sheen sheenRoughnessTexture is no object; export it anew"},
+        {[](GltfWriter& w) {
+             w.json["materials"][0]["extensions"]["KHR_materials_sheen"]["sheenRoughnessTexture"]["index"] =
+                 1;
+         },
+         "image 1: not a readable PNG picture"},
         {[](GltfWriter& w) { w.json["textures"][0].erase("source"); },
          "texture 0 has no image in PNG or JPEG; export it anew"},
         {[](GltfWriter& w) { w.json["textures"][0]["source"] = 9; }, "names image 9, but the file has 3"},

@@ -134,6 +134,8 @@ TEST(Materials, MapsNameTextures) {
         roughness_map = { texture = "rough", scale = [2, -3], offset = [0.5, 1], rotation = 90 }
         metallic_map = "rough"
         emission_map = "bricks"
+        sheen_map = "bricks"
+        sheen_roughness_map = { texture = "rough", scale = [3, 1] }
         normal_map = { texture = "rough" }
         emission = [0, 2, 0]
         )" + box;
@@ -154,11 +156,15 @@ TEST(Materials, MapsNameTextures) {
     EXPECT_EQ(m.roughness_map.scale, glm::vec2(2, -3));
     EXPECT_EQ(m.roughness_map.offset, glm::vec2(0.5F, 1));
     EXPECT_FLOAT_EQ(m.roughness_map.rotation, pi / 2);
+    EXPECT_EQ(m.sheen_map, (TextureMap{.texture = 0}));
+    EXPECT_EQ(m.sheen_roughness_map, (TextureMap{.texture = 1, .scale = {3, 1}}));
     EXPECT_EQ(m.normal_map, (TextureMap{.texture = 1}));
     // What a map multiplies is 1 unless stated.
     EXPECT_EQ(m.albedo, glm::vec3(1));
     EXPECT_EQ(m.metallic, 1);
     EXPECT_EQ(m.roughness, 1);
+    EXPECT_EQ(m.sheen, glm::vec3(1));
+    EXPECT_EQ(m.sheen_roughness, 1);
     EXPECT_EQ(m.emission, glm::vec3(0, 2, 0));
 }
 
@@ -188,7 +194,8 @@ TEST(Materials, PrintedSceneIsTheSame) {
             "0.7\nspecular = 0.3\nior = 1.33\ncoat = 0.9\ncoat_roughness = 0.123\nsheen = [0, 0.1, "
             "1]\nsheen_roughness = 0.7\nemission = [1e9, 0, 1]\n"
             "normal_scale = 0.77\ndisplacement_map = \"bricks\"\ndisplacement_scale = 0.3\nalpha_cutoff = "
-            "0.5\nlight = true\ntwo_sided = false\nalbedo_map = \"rough\"\n";
+            "0.5\nlight = true\ntwo_sided = false\nalbedo_map = \"rough\"\nsheen_map = \"rough\"\n"
+            "sheen_roughness_map = { texture = \"bricks\", offset = [0.5, 0] }\n";
     for (int i = 0; i < 40; ++i)
         text += "[[material]]\nname = \"m" + std::to_string(i) +
                 "\"\nnormal_map = { texture = \"bricks\", scale = [0.1, 1], offset = [-0.3, 7], rotation = " +

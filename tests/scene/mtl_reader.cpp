@@ -109,6 +109,21 @@ TEST_F(Mtl, MapsWithOptionsAndBlanksInNames) {
     EXPECT_EQ(m.alpha_cutoff, 0.5F);
 }
 
+TEST_F(Mtl, MapsOfSheenMultiplyIt) {
+    for (const char* const amount : {"", "Ps 0\n", "Ps 0.5\n"}) {
+        const ModelMaterials own =
+            read(std::string("newmtl m\n") + amount + "map_Ps -s 2 3 -clamp on n.png\n");
+        const Material& m = own.materials[0];
+        EXPECT_EQ(m.sheen_map, (TextureMap{.texture = 0, .scale = {2, 3}}));
+        EXPECT_EQ(m.sheen, glm::vec3(std::string(amount) == "Ps 0.5\n" ? 0.5F : 1)) << amount;
+        EXPECT_EQ(m.sheen_roughness_map.texture, -1);
+        EXPECT_EQ(m.specular, 0);
+        EXPECT_TRUE(own.textures[0].linear);
+        EXPECT_EQ(own.textures[0].wrap_u, Wrap::clamp);
+        EXPECT_TRUE(own.notes.empty());
+    }
+}
+
 /// "bump" multiplies heights by -bm, -mm replaces v by base + gain v ("MTL material format").
 TEST_F(Mtl, BumpsAndDisplacementAreHeights) {
     folder_.file("h.png", png_of(2, 1, {.colour = PNG_COLOR_TYPE_GRAY}, {51, 204}));

@@ -24,7 +24,7 @@ struct Statement {
     std::optional<glm::vec3> kd, ks, ke;
     std::optional<double> ns, ni, d, pr, pm, pc, pcr, ps;
     std::optional<std::int64_t> illum;
-    std::optional<MtlMap> map_kd, map_ke, map_pr, map_pm, map_d, norm, bump, disp;
+    std::optional<MtlMap> map_kd, map_ke, map_pr, map_pm, map_ps, map_d, norm, bump, disp;
 };
 
 bool is_black(const glm::vec3& colour) {
@@ -63,11 +63,12 @@ private:
             {"Kd", &s.kd}, {"Ks", &s.ks}, {"Ke", &s.ke}};
         using Use = MtlMapUse;
         const std::tuple<std::string_view, Use, std::optional<MtlMap>*> maps[] = {
-            {"map_Kd", Use::colour, &s.map_kd}, {"map_Ke", Use::colour, &s.map_ke},
-            {"map_Pr", Use::scalar, &s.map_pr}, {"map_Pm", Use::scalar, &s.map_pm},
-            {"map_d", Use::scalar, &s.map_d},   {"norm", Use::colour, &s.norm},
-            {"bump", Use::bump, &s.bump},       {"map_bump", Use::bump, &s.bump},
-            {"map_Bump", Use::bump, &s.bump},   {"disp", Use::displacement, &s.disp},
+            {"map_Kd", Use::colour, &s.map_kd},   {"map_Ke", Use::colour, &s.map_ke},
+            {"map_Pr", Use::scalar, &s.map_pr},   {"map_Pm", Use::scalar, &s.map_pm},
+            {"map_Ps", Use::scalar, &s.map_ps},   {"map_d", Use::scalar, &s.map_d},
+            {"norm", Use::colour, &s.norm},       {"bump", Use::bump, &s.bump},
+            {"map_bump", Use::bump, &s.bump},     {"map_Bump", Use::bump, &s.bump},
+            {"disp", Use::displacement, &s.disp},
         };
         for (const auto& [name, value] : numbers)
             if (name == keyword)
@@ -200,6 +201,10 @@ private:
             m.roughness_map = use(*s.map_pr, true);
             m.roughness = s.pr && *s.pr > 0 ? m.roughness : 1;
             m.specular = 1;
+        }
+        if (s.map_ps) {
+            m.sheen_map = use(*s.map_ps, true);
+            m.sheen = has_sheen(m) ? m.sheen : glm::vec3(1);
         }
         if (s.bump)
             set_bump(*s.bump, m);

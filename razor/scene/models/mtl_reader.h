@@ -11,13 +11,13 @@
 //
 // The physically based extension has the last word: Pm metallic, Pr roughness (either: specular 1, unless Ks
 // is black), Pc coat, Pcr coat roughness, Ps sheen (white). A dielectric's Ni counts where it is above 1:
-// exporters write 1 for what is opaque. Maps: map_Kd, map_Ke, map_Pm, map_Pr, norm (tangent-space normals),
-// with -s, -o and -clamp. Where map_d is the file of map_Kd, opacity below 1/2 cuts out. Colours above 1
-// count as 1. Of bump (map_bump, map_Bump) and disp, a value v of the file, from 0 to 1, is a height, in the
-// units of the scene's mesh: of bump -bm x -mm's gain x v, of disp base + gain v (-mm 0 1 unless stated).
-// Exporters write normal maps as map_Bump, too: a picture whose mean is that of one (red and green within 0.1
-// of 1/2, blue above 3/4) is taken as such, -bm as its strength. All other statements are passed over; which
-// options of maps are is noted.
+// exporters write 1 for what is opaque. Maps: map_Kd, map_Ke, map_Pm, map_Pr, map_Ps, norm (tangent-space
+// normals), with -s, -o and -clamp. Where map_d is the file of map_Kd, opacity below 1/2 cuts out. Colours
+// above 1 count as 1. Of bump (map_bump, map_Bump) and disp, a value v of the file, from 0 to 1, is a height,
+// in the units of the scene's mesh: of bump -bm x -mm's gain x v, of disp base + gain v (-mm 0 1 unless
+// stated). Exporters write normal maps as map_Bump, too: a picture whose mean is that of one (red and green
+// within 0.1 of 1/2, blue above 3/4) is taken as such, -bm as its strength. All other statements are passed
+// over; which options of maps are is noted.
 #pragma once
 
 #include "razor/scene/scene.h"

@@ -82,6 +82,8 @@ private:
         m.albedo_map = map(pbr.object("baseColorTexture"), false);
         m.metallic_map = m.roughness_map = map(pbr.object("metallicRoughnessTexture"), true);
         m.emission_map = map(f.object("emissiveTexture"), false);
+        m.sheen_map = map(sheen.object("sheenColorTexture"), false);
+        m.sheen_roughness_map = map_of_opacity(sheen.object("sheenRoughnessTexture"));
         m.normal_map = map(f.object("normalTexture"), true);
         m.normal_scale = f.object("normalTexture").number("scale", 1, normal_scale_range);
         set_opacity(f, colour.w, m);
@@ -92,16 +94,14 @@ private:
 
     /// Textures of extensions: of these only the factors are read.
     void note_passed_over(const Fields& f, const Material& m) {
-        static constexpr std::array<std::pair<const char*, const char*>, 9> unread{
+        static constexpr std::array<std::pair<const char*, const char*>, 7> unread{
             {{"KHR_materials_specular", "specularTexture"},
              {"KHR_materials_specular", "specularColorTexture"},
              {"KHR_materials_transmission", "transmissionTexture"},
              {"KHR_materials_volume", "thicknessTexture"},
              {"KHR_materials_clearcoat", "clearcoatTexture"},
              {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
-             {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
-             {"KHR_materials_sheen", "sheenColorTexture"},
-             {"KHR_materials_sheen", "sheenRoughnessTexture"}}};
+             {"KHR_materials_clearcoat", "clearcoatNormalTexture"}}};
         std::string found;
         for (const auto& [extension, texture] : unread)
             if (f.extension(extension).has(texture))
@@ -133,6 +133,15 @@ private:
         if (transform.stated())
             set_transform(transform, result);
         return result;
+    }
+
+    /// Opacity is 1 of pictures that have none, and no map says the same.
+    TextureMap map_of_opacity(const Fields& info) {
+        const TextureMap result = map(info, false);
+        const auto index = static_cast<std::size_t>(result.texture);
+        return result.texture == none || result_.textures[index].pyramid->levels[0].opacity.empty()
+                   ? TextureMap{}
+                   : result;
     }
 
     int use_texture(int number, bool linear, const std::string& user) {

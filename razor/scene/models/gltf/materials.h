@@ -1,7 +1,7 @@
 // Materials of a glTF file, with their pictures: in files, data URIs or buffers.
 //
 // Material's members are those of pbrMetallicRoughness, and of KHR_materials_ior, _specular (its factor),
-// _clearcoat, _transmission, _sheen (their factors) and _emissive_strength. Of what is seen through its
+// _clearcoat, _transmission (their factors), _sheen and _emissive_strength. Of what is seen through its
 // opacity: alphaMode MASK is cut out at alphaCutoff, BLEND at 1/2, and what a BLEND's factor lacks of 1 is
 // transmitted. What transmits has two sides. Maps: KHR_texture_transform, turned to v upwards. Maps over
 // texture coordinates other than TEXCOORD_0, occlusion and all else are passed over.
