@@ -22,7 +22,9 @@ SampledCurve::SampledCurve(const std::vector<std::uint64_t>& sizes, double rate,
     if (of < 1)
         return;
     if (most == 0) {
-        stretches_.emplace_back(sizes, rate, stretch_of(rate), seed);
+        const std::uint64_t longest = stretch_of(rate);
+        stretches_.emplace_back(sizes, rate / 2, longest / 8, seed);
+        stretches_.emplace_back(sizes, rate / 2, longest, seed);
     } else {
         stretches_.emplace_back(sizes, hundredth, short_stretch, seed);
         stretches_.emplace_back(sizes, hundredth, long_stretch, seed);

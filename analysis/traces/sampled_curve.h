@@ -12,9 +12,11 @@ namespace analysis {
 
 class SampledCurve {
 public:
-    /// Lines: as of Shards. The same part of the trace is looked at for small caches, or a hundredth of it
-    /// where the sample is of so many lines; nothing of it if the trace is a sample itself (`of` below 1).
-    /// `seed`: of which lines and stretches; of the lines of a trace that is a sample 0.
+    /// Lines: as of Shards. The same part of the trace is looked at for small caches, half of it in short
+    /// stretches, so that there are enough in short traces, half in ones eight times as long, which know of
+    /// larger caches; or a hundredth of it in each where the sample is of so many lines; nothing of it if the
+    /// trace is a sample itself (`of` below 1). `seed`: of which lines and stretches; of the lines of a trace
+    /// that is a sample 0.
     SampledCurve(const std::vector<std::uint64_t>& sizes, double rate, double of = 1, std::uint64_t most = 0,
                  std::uint64_t seed = 0);
 
