@@ -22,9 +22,8 @@ SampledCurve::SampledCurve(const std::vector<std::uint64_t>& sizes, double rate,
     if (of < 1)
         return;
     if (most == 0) {
-        const std::uint64_t longest = stretch_of(rate);
-        stretches_.emplace_back(sizes, rate / 2, longest / 8, seed);
-        stretches_.emplace_back(sizes, rate / 2, longest, seed);
+        stretches_.emplace_back(sizes, rate, stretch_of(rate), seed);
+        stretches_.emplace_back(sizes, rate / 2, stretch_of(rate) / 8, seed); // while those are too few
     } else {
         stretches_.emplace_back(sizes, hundredth, short_stretch, seed);
         stretches_.emplace_back(sizes, hundredth, long_stretch, seed);

@@ -12,9 +12,9 @@ namespace analysis {
 
 class SampledCurve {
 public:
-    /// Lines: as of Shards. The same part of the trace is looked at for small caches, half of it in short
-    /// stretches, so that there are enough in short traces, half in ones eight times as long, which know of
-    /// larger caches; or a hundredth of it in each where the sample is of so many lines; nothing of it if the
+    /// Lines: as of Shards. The same part of the trace is looked at for small caches, and half as much in
+    /// stretches of an eighth of the length, of which there are enough in short traces; or a hundredth of it
+    /// in short ones and in long ones where the sample is of so many lines; nothing of it if the
     /// trace is a sample itself (`of` below 1). `seed`: of which lines and stretches; of the lines of a trace
     /// that is a sample 0.
     SampledCurve(const std::vector<std::uint64_t>& sizes, double rate, double of = 1, std::uint64_t most = 0,
@@ -48,7 +48,7 @@ public:
 private:
     std::vector<std::uint64_t> sizes_;
     Shards shards_;
-    std::vector<ShortReuse> stretches_; // the shorter first
+    std::vector<ShortReuse> stretches_; // the first that knows is asked
 };
 
 } // namespace analysis
