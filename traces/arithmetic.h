@@ -15,10 +15,8 @@ protected:
         return low_ + static_cast<std::uint32_t>(std::uint64_t{high_ - low_} * p >> 16U);
     }
     void narrow(std::uint32_t middle, std::uint32_t bit) {
-        if (bit != 0)
-            high_ = middle;
-        else
-            low_ = middle + 1;
+        high_ = bit != 0 ? middle : high_; // of both a processor takes one, without a guess
+        low_ = bit != 0 ? low_ : middle + 1;
     }
     bool byte_is_known() const { return (low_ ^ high_) >> 24U == 0; }
     void shift() {

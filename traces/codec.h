@@ -15,7 +15,7 @@ namespace traces {
 class ReferenceModel;
 
 /// How references are written: as columns, which zstd makes smaller; or each predicted by what came before
-/// (predicted.h), in two thirds of the room where hardly anything repeats itself, which takes some fifty
+/// (predicted.h), in five eighths of the room where hardly anything repeats itself, which takes some hundred
 /// times as long.
 enum class Coding { columns, predicted };
 /// By Description::level: what L2s and later caches pass on is little, and repeats itself little.

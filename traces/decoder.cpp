@@ -117,7 +117,7 @@ void Decoder::decode(const std::string& bytes, const Limits& limits, std::uint32
         model_ = std::make_unique<ReferenceModel>();
     if (const char* wrong =
             get_predicted(*model_, classes_, shift, set_bits, first_time, (coding & is_ordered) != 0,
-                          (coding & has_tiles) != 0, limits.tiles, block))
+                          (coding & has_tiles) != 0, version >= 7, limits.tiles, block))
         refuse(place, wrong);
 }
 

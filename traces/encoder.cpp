@@ -1,4 +1,5 @@
 #include "traces/block_layout.h"
+#include "traces/chunk.h"
 #include "traces/codec.h"
 #include "traces/evictions.h"
 #include "traces/predicted.h"

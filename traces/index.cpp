@@ -19,10 +19,10 @@ std::string to_bytes(const Index& index) {
     json blocks = json::array();
     for (const IndexEntry& b : index.blocks)
         blocks.push_back({b.offset, b.references, b.first_time, b.last_time});
-    const json out = {{"references", index.references()},
+    const json out = {{"version", format_version},
+                      {"references", index.references()},
                       {"by_kind", index.by_kind},
-                      {"blocks", std::move(blocks)},
-                      {"sites", index.sites}};
+                      {"blocks", std::move(blocks)}};
     const std::string text = out.dump(-1, ' ', false, json::error_handler_t::replace);
     return pack(text);
 }
@@ -37,10 +37,10 @@ Index index_from_bytes(const std::string& bytes, const std::string& place) {
         const json in = json::parse(text);
         for (const json& b : in.at("blocks"))
             index.blocks.push_back({b.at(0), b.at(1), b.at(2), b.at(3)});
+        index.version = in.value("version", std::uint32_t{0});
         const json& kinds = in.at("by_kind"); // earlier versions had less
         for (std::size_t k = 0; k < std::min(kinds.size(), index.by_kind.size()); ++k)
             index.by_kind[k] = kinds.at(k);
-        in.at("sites").get_to(index.sites);
     } catch (const json::exception& e) {
         refuse(e.what());
     }

@@ -20,7 +20,7 @@ struct IndexEntry {
 struct Index {
     std::vector<IndexEntry> blocks;
     std::array<std::uint64_t, kind_names.size()> by_kind{};
-    std::vector<std::string> sites; // all of them
+    std::uint32_t version = 0; // of the format, since version 7: the one at the beginning has no checksum
 
     std::uint64_t references() const {
         std::uint64_t n = 0;

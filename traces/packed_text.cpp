@@ -9,8 +9,8 @@
 namespace traces {
 namespace {
 
-/// Texts are short, and written once.
-constexpr int level = 9;
+/// Texts are short, and written once: a short trace is hardly longer than they are.
+constexpr int level = 19;
 
 } // namespace
 

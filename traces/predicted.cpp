@@ -164,20 +164,20 @@ private:
 void put_predicted(ReferenceModel& model, const Block& block, const std::vector<std::uint32_t>& rank,
                    const std::vector<Class>& table, unsigned shift, unsigned set_bits, std::string& out) {
     model.begin(table, block.size(), block.segments.size(), set_bits, block.times.front(),
-                !block.tiles.empty());
+                !block.tiles.empty(), true);
     Put(model, block, rank, shift, set_bits, out)
         .all(block.order.empty() ? stream_by_stream(block) : block.order);
 }
 
 const char* get_predicted(ReferenceModel& model, const std::string& bytes, unsigned shift, unsigned set_bits,
-                          std::uint64_t first_time, bool ordered, bool tiled, std::uint32_t most_tile,
-                          Block& block) {
+                          std::uint64_t first_time, bool ordered, bool tiled, bool checked,
+                          std::uint32_t most_tile, Block& block) {
     const std::size_t n = block.segments.back().end;
     block.times.resize(n);
     block.addresses.resize(n);
     block.classes.resize(n);
     block.tiles.resize(tiled ? n : 0);
-    model.begin(block.table, n, block.segments.size(), set_bits, first_time, tiled);
+    model.begin(block.table, n, block.segments.size(), set_bits, first_time, tiled, checked);
     const char* const wrong = Get(model, bytes, shift, most_tile, block).all();
     if (!ordered)
         block.order.clear();

@@ -50,9 +50,12 @@ public:
     using Contexts = std::array<std::uint32_t, Inputs>;
     static constexpr std::uint32_t sets = 4; // of weights, for whoever asks
 
-    /// Knows nothing yet; keeps 2^line_bits lines of counters for each input.
-    void begin(unsigned line_bits) {
+    /// Knows nothing yet; keeps 2^line_bits lines of counters for each input. `checked`: a line knows whose
+    /// it is, and goes to another context when it is the least used of four; else contexts share lines
+    /// unseen.
+    void begin(unsigned line_bits, bool checked) {
         line_bits_ = line_bits;
+        checked_ = checked;
         lines_.assign(Inputs << line_bits, Line{});
         weights_.assign(std::size_t{sets} * positions * 16,
                         filled(static_cast<std::int32_t>((2U << 16U) / (Inputs + 1))));
@@ -103,18 +106,24 @@ private:
     struct Counter {
         std::uint16_t set = 32768, seen = 0;
     };
-    using Line = std::array<Counter, 16>;
+    /// Of a context and of what is known of a number so far: counters by node, from 1 on. One line of a
+    /// processor's caches, as most are far.
+    struct alignas(64) Line {
+        std::uint16_t check = 0, spare = 0;
+        std::array<Counter, 15> counters;
+        Counter& operator[](std::uint32_t node) { return counters[node - 1]; }
+    };
     using Lines = std::array<Line*, Inputs>;
     using Weights = std::array<std::int32_t, Inputs>;
     static constexpr std::uint32_t positions = 24, last_position = positions - 1;
     static constexpr std::uint32_t most_seen = 127;
-    static constexpr int rate = 4;
+    static constexpr std::int32_t rate = 4;
 
     /// A counter moves so far, of 65536, towards the bit.
-    static constexpr std::array<std::uint32_t, most_seen + 1> steps = [] {
-        std::array<std::uint32_t, most_seen + 1> out{};
+    static constexpr std::array<std::uint16_t, most_seen + 1> steps = [] {
+        std::array<std::uint16_t, most_seen + 1> out{};
         for (std::uint32_t n = 0; n < out.size(); ++n)
-            out[n] = 655360 / (10 * n + 16);
+            out[n] = static_cast<std::uint16_t>(655360 / (10 * n + 16));
         return out;
     }();
     /// How much of what a counter says counts, of 256.
@@ -132,12 +141,36 @@ private:
 
     Lines lines_of(const Contexts& in, std::uint32_t group) {
         Lines out;
-        for (std::size_t i = 0; i < Inputs; ++i) {
+        std::array<std::uint16_t, Inputs> checks;
+        for (std::size_t i = 0; i < Inputs; ++i) { // all are on their way before the first one is waited for
             std::uint32_t h = (in[i] + group * 0x9E3779B1U) * 0x85EBCA6BU;
             h = (h ^ h >> 15U) * 0xC2B2AE35U;
             out[i] = &lines_[(i << line_bits_) + (h >> (32 - line_bits_))];
+            checks[i] = static_cast<std::uint16_t>(h);
+            __builtin_prefetch(out[i], 1);
         }
+        if (checked_)
+            for (std::size_t i = 0; i < Inputs; ++i)
+                out[i] = line_of(out[i], checks[i]);
         return out;
+    }
+    /// This line, or one of its three neighbours, that has the check; if none has, the least seen begins
+    /// anew.
+    Line* line_of(Line* line, std::uint16_t check) {
+        if (line->check == check)
+            return line;
+        const auto at = static_cast<std::size_t>(line - lines_.data());
+        Line* least = line;
+        for (std::size_t i = 1; i < 4; ++i) {
+            Line* const other = &lines_[at ^ i];
+            if (other->check == check)
+                return other;
+            if ((*other)[1].seen < (*least)[1].seen)
+                least = other;
+        }
+        *least = Line{};
+        least->check = check;
+        return least;
     }
     template <class Coder>
     std::uint32_t nibble(Coder& coder, const Contexts& in, std::uint32_t group, std::uint32_t set,
@@ -161,24 +194,23 @@ private:
         }
         const std::uint32_t p = squash(static_cast<int>(std::clamp<std::int64_t>(sum >> 16U, -2047, 2047)));
         const std::uint32_t got = coder.code(p, value);
-        const std::int32_t error = (got != 0 ? 65535 : 0) - static_cast<std::int32_t>(p);
+        // Without branches, as no processor guesses bits that are worth storing.
+        const std::uint32_t towards = (0 - got) & 65535U; // 65535 or 0
+        const std::int32_t error = static_cast<std::int32_t>(towards) - static_cast<std::int32_t>(p);
         for (std::size_t i = 0; i < Inputs; ++i) {
-            const std::int64_t step = std::int64_t{stretched[i]} * error * rate >> 16U;
-            weights[i] = static_cast<std::int32_t>(
-                std::clamp<std::int64_t>(weights[i] + step, -most_weight, most_weight));
+            const std::int32_t step = stretched[i] * error * rate >> 16U; // at most 2047 x 65535 x 4
+            weights[i] = std::clamp(weights[i] + step, -most_weight, most_weight);
             Counter& c = (*lines[i])[at];
-            const std::uint32_t share = steps[c.seen];
-            const std::uint32_t set_before = c.set;
-            c.set = static_cast<std::uint16_t>(got != 0 ? set_before + ((65535 - set_before) * share >> 16U)
-                                                        : set_before - (set_before * share >> 16U));
-            if (c.seen < most_seen)
-                ++c.seen;
+            const std::uint32_t moved = (c.set ^ towards) * steps[c.seen] >> 16U; // part of what is missing
+            c.set = static_cast<std::uint16_t>(got != 0 ? c.set + moved : c.set - moved);
+            c.seen = static_cast<std::uint16_t>(c.seen + (c.seen < most_seen ? 1 : 0));
         }
         return got;
     }
 
-    static constexpr std::int64_t most_weight = std::int64_t{1} << 24;
+    static constexpr std::int32_t most_weight = std::int32_t{1} << 24;
     unsigned line_bits_ = 0;
+    bool checked_ = false;
     std::vector<Line> lines_;
     std::vector<Weights> weights_;
 };

@@ -13,18 +13,18 @@ unsigned line_bits_for(std::size_t references) {
 } // namespace
 
 void ReferenceModel::begin(const std::vector<Class>& table, std::size_t references, std::size_t streams,
-                           unsigned set_bits, std::uint64_t first_time, bool tiled) {
+                           unsigned set_bits, std::uint64_t first_time, bool tiled, bool checked) {
     const unsigned line_bits = line_bits_for(references);
     for (Predictor<5>* p : {&step_, &what_, &head_, &time_})
-        p->begin(line_bits);
+        p->begin(line_bits, checked);
     for (Predictor<4>* p : {&turn_, &near_, &far_, &leaving_})
-        p->begin(line_bits);
+        p->begin(line_bits, checked);
     for (Predictor<3>* p : {&stream_number_, &left_what_})
-        p->begin(line_bits);
+        p->begin(line_bits, checked);
     tiled_ = tiled;
     if (tiled) {
-        which_tile_.begin(line_bits);
-        far_tile_.begin(line_bits);
+        which_tile_.begin(line_bits, checked);
+        far_tile_.begin(line_bits, checked);
     }
     table_ = &table;
     place_ = without_parts(table.size(), [&](std::uint32_t c) -> const Class& { return table[c]; });

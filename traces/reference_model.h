@@ -28,9 +28,10 @@ public:
         std::uint32_t tile = 0;
     };
 
-    /// A block begins, with this table of classes. `tiled`: it is known for which tile references are.
+    /// A block begins, with this table of classes. `tiled`: it is known for which tile references are;
+    /// `checked`: as of Predictor::begin().
     void begin(const std::vector<Class>& table, std::size_t references, std::size_t streams,
-               unsigned set_bits, std::uint64_t first_time, bool tiled);
+               unsigned set_bits, std::uint64_t first_time, bool tiled, bool checked);
 
     template <class Coder> Step step(Coder& coder, Step next) {
         const Stream& s = streams_[stream_];

@@ -31,7 +31,6 @@ void Writer::add_sites(const std::vector<std::string>& names) {
         return;
     chunk(names_chunk,
           pack(nlohmann::json(names).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
-    index_.sites.insert(index_.sites.end(), names.begin(), names.end());
 }
 
 void Writer::add_names(const Description& description) {

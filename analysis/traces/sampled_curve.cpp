@@ -23,6 +23,7 @@ SampledCurve::SampledCurve(const std::vector<std::uint64_t>& sizes, double rate,
         return;
     if (most == 0) {
         stretches_.emplace_back(sizes, rate, stretch_of(rate), seed);
+        stretches_.emplace_back(sizes, rate / 2, stretch_of(rate) / 8, seed); // while those are too few
     } else {
         stretches_.emplace_back(sizes, hundredth, short_stretch, seed);
         stretches_.emplace_back(sizes, hundredth, long_stretch, seed);

@@ -12,9 +12,11 @@ namespace analysis {
 
 class SampledCurve {
 public:
-    /// Lines: as of Shards. The same part of the trace is looked at for small caches, or a hundredth of it
-    /// where the sample is of so many lines; nothing of it if the trace is a sample itself (`of` below 1).
-    /// `seed`: of which lines and stretches; of the lines of a trace that is a sample 0.
+    /// Lines: as of Shards. The same part of the trace is looked at for small caches, and half as much in
+    /// stretches of an eighth of the length, of which there are enough in short traces; or a hundredth of it
+    /// in short ones and in long ones where the sample is of so many lines; nothing of it if the
+    /// trace is a sample itself (`of` below 1). `seed`: of which lines and stretches; of the lines of a trace
+    /// that is a sample 0.
     SampledCurve(const std::vector<std::uint64_t>& sizes, double rate, double of = 1, std::uint64_t most = 0,
                  std::uint64_t seed = 0);
 
@@ -46,7 +48,7 @@ public:
 private:
     std::vector<std::uint64_t> sizes_;
     Shards shards_;
-    std::vector<ShortReuse> stretches_; // the shorter first
+    std::vector<ShortReuse> stretches_; // the first that knows is asked
 };
 
 } // namespace analysis

@@ -220,7 +220,25 @@ TEST(SampledCurve, IsNearForCachesOfAllSizes) {
     EXPECT_FALSE(std::isnan(part.estimate(0, sizes.size() - 1).error));
 }
 
-/// A trace that holds a tenth of all lines says what the whole one would.
+/// Of a trace that has room for but a few long stretches short ones tell of small caches.
+TEST(SampledCurve, KnowsSmallCachesOfShortTraces) {
+    const std::vector<std::uint64_t> sizes = {4, 8, 16, 32};
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const std::vector<std::uint64_t> touches = popular_lines(250000, 20000, seed);
+        LruCurve exact(sizes);
+        SampledCurve sampled(sizes, 0.05, 1, 0, seed);
+        for (const std::uint64_t line : touches)
+            exact.touch(line, 0);
+        sampled.touch(touches, 0);
+        for (std::size_t s = 0; s < sizes.size(); ++s) {
+            const auto e = sampled.estimate(0, s);
+            EXPECT_FALSE(e.of_lines) << sizes[s];
+            EXPECT_LT(e.error, 0.05) << sizes[s];
+            EXPECT_NEAR(e.ratio, static_cast<double>(exact.counts().misses(0, s)) / 250000, 0.03) << sizes[s];
+        }
+    }
+}
+
 /// Runs of touches of one line among others, together and one by one, in pieces of all lengths.
 TEST(SampledCurve, TouchesTogetherAreThoseOneByOne) {
     const std::vector<std::uint64_t> sizes = {16, 64, 256, 1024, 8192};
@@ -252,6 +270,7 @@ TEST(SampledCurve, TouchesTogetherAreThoseOneByOne) {
     }
 }
 
+/// A trace that holds a tenth of all lines says what the whole one would.
 TEST(Shards, OfASampledTrace) {
     const std::vector<std::uint64_t> sizes = {16, 64, 256, 1024};
     const std::vector<std::uint64_t> touches = random_lines(200000, 2000, 9, false);

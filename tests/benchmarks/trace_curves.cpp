@@ -1,6 +1,6 @@
 // How fast curves of misses are made of a trace, from memory, and how near those of a sample come to the
 // exact one; and how fast with the trace read meanwhile, bytes, checksums, decoding and merging by time.
-//   trace_curves FILE [--rate R] [--sample-lines N] [--millions N] [--runs N]
+//   trace_curves FILE [--rate R] [--sample-lines N] [--millions N] [--runs N] [--seeds N]
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/optimum.h"
 #include "analysis/traces/sampled_curve.h"
@@ -59,10 +59,54 @@ template <class Work> double speed(std::size_t touches, int runs, Work work) {
 struct Sampled {
     double speed = 0, mean = 0, largest = 0; // million touches a second; errors of ratios
     std::size_t sizes = 0;
-    std::uint64_t lines = 0; // in the sample
+    std::uint64_t lines = 0;          // in the sample
+    std::size_t told = 0, within = 0; // sizes whose error is told, and is not larger
 };
 
-int run(const std::string& file, double rate, std::uint64_t sample_lines, std::size_t most, int runs) {
+/// Against the ratios of all sizes up to the first that holds all `different` lines.
+Sampled errors_of(const analysis::SampledCurve& curve, const std::vector<std::uint64_t>& sizes,
+                  const std::vector<double>& truth, std::uint64_t different) {
+    Sampled out;
+    out.lines = curve.lines().lines();
+    while (out.sizes < sizes.size()) {
+        const analysis::SampledCurve::Estimate e = curve.estimate(0, out.sizes);
+        const double error = std::abs(e.ratio - truth[out.sizes]);
+        out.mean += error;
+        out.largest = std::max(out.largest, error);
+        out.told += std::isnan(e.error) ? 0 : 1;
+        out.within += error <= e.error ? 1 : 0;
+        if (sizes[out.sizes++] > different)
+            break;
+    }
+    out.mean /= static_cast<double>(out.sizes);
+    return out;
+}
+
+/// Other samples of as many lines: chance says which popular ones are in.
+void print_seeds(const std::vector<std::uint64_t>& lines, const std::vector<std::uint64_t>& sizes,
+                 const std::vector<double>& truth, std::uint64_t different, double rate, int seeds) {
+    std::vector<double> means;
+    double largest = 0;
+    std::size_t all = 0, told = 0, within = 0;
+    for (int seed = 0; seed < seeds; ++seed) {
+        analysis::SampledCurve curve(sizes, rate, 1, 0, static_cast<std::uint64_t>(seed));
+        curve.touch(lines, 0);
+        const Sampled s = errors_of(curve, sizes, truth, different);
+        means.push_back(s.mean);
+        largest = std::max(largest, s.largest);
+        all += s.sizes;
+        told += s.told;
+        within += s.within;
+    }
+    std::sort(means.begin(), means.end());
+    fmt::print(
+        "{} samples of {:g} of all lines: mean error {:.4f} in the median, {:.4f} at most; of any size "
+        "{:.4f} at most; told of {} sizes of {}, and no larger than told of {}\n",
+        seeds, rate, means[means.size() / 2], means.back(), largest, told, all, within);
+}
+
+int run(const std::string& file, double rate, std::uint64_t sample_lines, std::size_t most, int runs,
+        int seeds) {
     const std::vector<std::uint64_t> lines = lines_of(file, most);
     if (lines.empty())
         throw traces::Error(file + ": holds no reads, writes or fetches");
@@ -86,15 +130,7 @@ int run(const std::string& file, double rate, std::uint64_t sample_lines, std::s
         out.speed = speed(lines.size(), runs, [&] {
             analysis::SampledCurve curve(sizes, part, 1, most_lines);
             curve.touch(lines, 0);
-            out = {0, 0, 0, 0, curve.lines().lines()};
-            for (out.sizes = 0; out.sizes < sizes.size();) {
-                const double error = std::abs(curve.estimate(0, out.sizes).ratio - truth[out.sizes]);
-                out.mean += error;
-                out.largest = std::max(out.largest, error);
-                if (sizes[out.sizes++] > different)
-                    break;
-            }
-            out.mean /= static_cast<double>(out.sizes);
+            out = errors_of(curve, sizes, truth, different);
         });
     };
     sampled(fixed_rate, rate, 0);
@@ -131,6 +167,8 @@ int run(const std::string& file, double rate, std::uint64_t sample_lines, std::s
             "LRU of all sizes, {:<21}{:10.1f}, {:.1f} times as fast; {} lines, {} sizes, error {:.4f} in the "
             "mean, {:.4f} at most\n",
             text, s->speed, s->speed / exact, s->lines, s->sizes, s->mean, s->largest);
+    if (seeds != 0)
+        print_seeds(lines, sizes, truth, different, rate, seeds);
     fmt::print("with reading, exact                    {:10.1f}\n", exact_read);
     fmt::print("with reading, {:<25}{:10.1f}, {:.1f} times as fast\n", fmt::format("{:g} of all lines", rate),
                rate_read, rate_read / exact_read);
@@ -147,16 +185,18 @@ int main(int argc, char** argv) {
     double rate = 0.01;
     std::uint64_t sample_lines = 8192;
     std::size_t millions = 100;
-    int runs = 3;
+    int runs = 3, seeds = 0;
     app.add_option("file", file, "a trace of any format")->required();
     app.add_option("--rate", rate, "of a sample of lines")->check(CLI::Range(1e-6, 1.0));
     app.add_option("--sample-lines", sample_lines, "at most, of a sample of a fixed size")
         ->check(CLI::Range(256, 1 << 24));
     app.add_option("--millions", millions, "the first references, at most")->check(CLI::Range(1, 4000));
     app.add_option("--runs", runs, "so often; medians are printed")->check(CLI::PositiveNumber);
+    app.add_option("--seeds", seeds, "so many samples of a fraction of lines, and how far off they are")
+        ->check(CLI::NonNegativeNumber);
     CLI11_PARSE(app, argc, argv);
     try {
-        return run(file, rate, sample_lines, millions * 1000000, runs);
+        return run(file, rate, sample_lines, millions * 1000000, runs, seeds);
     } catch (const traces::Error& e) {
         fmt::print(stderr, "trace_curves: {}\n", e.what());
         return 2;

@@ -51,6 +51,75 @@ TEST(TraceFormat, AFlippedBitIsSeenWhereverItIs) {
     }
 }
 
+/// Blocks that are decoded ahead, and chunks read for that, change nothing, wherever a file is damaged or
+/// ends.
+TEST(TraceFormat, WhatIsReadAheadIsSaidInItsTurn) {
+    const Written sample = write_sample(5, 30);
+    const auto expect_alike = [](const std::string& bytes, std::size_t at) {
+        const Got one = read_all(bytes, 1);
+        for (const std::size_t ahead : {2U, 4U}) {
+            const Got more = read_all(bytes, ahead);
+            EXPECT_EQ(more.error, one.error) << at;
+            EXPECT_EQ(more.note, one.note) << at;
+            EXPECT_EQ(more.complete, one.complete) << at;
+            ASSERT_EQ(more.blocks.size(), one.blocks.size()) << at;
+            for (std::size_t b = 0; b < one.blocks.size(); ++b)
+                EXPECT_TRUE(equal_blocks(more.blocks[b], one.blocks[b])) << at;
+        }
+    };
+    expect_alike(sample.bytes, 0);
+    for (std::size_t at = 0; at < sample.bytes.size(); at += 7) {
+        std::string bad = sample.bytes;
+        bad[at] = static_cast<char>(bad[at] ^ (1 << at % 8));
+        expect_alike(bad, at);
+        expect_alike(sample.bytes.substr(0, at), at);
+        // With a sum that fits: what is wrong is seen where the block is decoded.
+        const auto end = std::find_if(sample.ends.begin(), sample.ends.end(), [&](auto e) { return e > at; });
+        if (end == sample.ends.end())
+            continue;
+        const std::size_t begin = sample.bytes.rfind(block_chunk, *end - 1);
+        if (at < begin + chunk_header_bytes)
+            continue;
+        const std::string content = bad.substr(begin + chunk_header_bytes, *end - begin - chunk_header_bytes);
+        expect_alike(bad.replace(begin, chunk_header_bytes, chunk_header(block_chunk, content)), at);
+    }
+}
+
+/// Bytes of a source, of which it counts those that were taken.
+class Counting final : public Source {
+public:
+    Counting(std::string bytes, std::size_t& taken) : bytes_(std::move(bytes)), taken_(taken) {}
+    std::size_t read(void* to, std::size_t most) override {
+        const std::size_t n = bytes_.copy(static_cast<char*>(to), most, taken_);
+        taken_ += n;
+        return n;
+    }
+
+private:
+    std::string bytes_;
+    std::size_t& taken_;
+};
+
+/// Two blocks, and no more, whatever the file has; none beyond names, which say what may follow.
+TEST(TraceFormat, SoManyBlocksAreReadAhead) {
+    const Written sample = write_sample(5, 30); // names come before the first two blocks
+    const std::size_t names = sample.bytes.find(names_chunk, sample.ends[0]);
+    const std::size_t end_of_names = sample.bytes.find(block_chunk, names);
+    for (const std::size_t ahead : {1U, 2U, 3U}) {
+        std::size_t taken = 0;
+        Reader reader(std::make_unique<Counting>(sample.bytes, taken), ahead);
+        Block block;
+        ASSERT_TRUE(reader.next(block));
+        EXPECT_EQ(taken, ahead == 1 ? sample.ends[0] : end_of_names) << ahead;
+        EXPECT_EQ(reader.bytes(), sample.ends[0]);
+        EXPECT_EQ(reader.description().sites.size(), 5U);
+        ASSERT_TRUE(reader.next(block));
+        EXPECT_EQ(taken, sample.ends[ahead]) << ahead;
+        EXPECT_EQ(reader.bytes(), sample.ends[1]);
+        EXPECT_EQ(reader.description().sites.size(), 9U);
+    }
+}
+
 /// With sums that fit, as an enemy would write it.
 TEST(TraceFormat, HostileBlocksAreRefused) {
     BlockBuilder builder;

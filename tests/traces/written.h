@@ -47,10 +47,10 @@ struct Got {
     bool complete = false;
     std::string note, error;
 };
-inline Got read_all(const std::string& bytes) {
+inline Got read_all(const std::string& bytes, std::size_t ahead = Reader::most_ahead) {
     Got got;
     try {
-        Reader reader(memory_source(bytes, "sample"));
+        Reader reader(memory_source(bytes, "sample"), ahead);
         Block block;
         while (reader.next(block))
             got.blocks.push_back(references_of(block));
