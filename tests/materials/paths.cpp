@@ -205,15 +205,15 @@ TEST(Paths, SheenMaps) {
     s.materials[3].sheen_map.texture = 2;
     s.materials[3].sheen_roughness_map.texture = 1;
     s.camera.position = {1.6, 1.1, 5}; // sheen is of grazing angles
-    s.settings.diffuse_bounces = 2;
-    s.settings.edge_pixels = 0.1;
-    expect_same_picture(s, 160);
+    s.settings.diffuse_bounces = 1;
+    s.settings.edge_pixels = 0.25;
+    expect_same_picture(s, 80);
     for (const std::size_t m : {0U, 3U})
         for (TextureMap Material::*const map : {&Material::sheen_map, &Material::sheen_roughness_map}) {
             Scene without = s;
             (without.materials[m].*map).texture = -1;
             fmt::print("    material {}, {}:", m, map == &Material::sheen_map ? "colour" : "roughness");
-            expect_other_picture(s, without, 80);
+            expect_other_picture(s, without, 40);
         }
 }
 
