@@ -100,6 +100,7 @@ public:
           opacity_words_(number_) {
         t.sheen_records.resize(1);
         t.sheen_records[0].alpha = 1;
+        std::fill(std::begin(t.sheen_records[0].map), std::end(t.sheen_records[0].map), -1);
         t.sheen_albedo.assign(sheen_steps, 0.0F);
         t.sheens = scene.settings.everything ? sheen_rows : sheen_none;
     }
