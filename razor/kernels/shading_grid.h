@@ -130,8 +130,10 @@ inline pointer<float> store_shaded(pointer<float> out, sint stride, sint from, c
     Shaded unknown = nothing_shaded();
     if (branch((bits & map_bit(map_sheen)) != 0))
         to = store_shaded(to, stride, from, mapped_sheen(c, sheens, at, unknown), m);
-    if (branch((bits & map_bit(map_sheen_roughness)) != 0))
-        store_vector(to + from, mapped_sheen_roughness(c, sheens, at, unknown), m);
+    if (branch((bits & map_bit(map_sheen_roughness)) != 0)) {
+        vfloat roughness = mapped_sheen_roughness(c, sheens, at, unknown);
+        store_vector(to + from, roughness, m);
+    }
 }
 
 [[gnu::noinline]] inline void shade_vertices(const Context& c, pointer<BlockHeader> block,
