@@ -39,7 +39,8 @@ cycle Engine::read_tables(Hart& h, std::uint64_t page, cycle t) {
         ++m.counters.walk_reads;
         Data data;
         touch_line(h, tables_->address(level, page), 8, false, 1, 1, t, data);
-        t = std::max({t, data.last, data.open != 0 ? await(h, data.tickets[0]).last : 0}); // t: since then warming
+        t = std::max(
+            {t, data.last, data.open != 0 ? await(h, data.tickets[0]).last : 0}); // t: if warming began
         if (level != 0)
             m.tables.fill(name(level, page), t);
     }
