@@ -191,7 +191,6 @@ TEST(Sampling, EstimatesCyclesOfManyThreads) {
             EXPECT_GT(e.units, 5U);
             EXPECT_NEAR(e.cycles.value, truth, 0.13 * truth) << mode << ", seed " << seed;
             held += e.cycles.low <= truth && truth <= e.cycles.high ? 1 : 0;
-            std::printf("DBG %s %u %g %g %g units %zu\n", mode, seed, 100*(e.cycles.low/truth-1), 100*(e.cycles.value/truth-1), 100*(e.cycles.high/truth-1), e.units);
         }
         EXPECT_GE(held, 3) << mode;
     }
