@@ -34,7 +34,7 @@ sizes = "1KiB..256KiB"
 method = "exact"
 [[points]]
 method = "lines"
-share = [0.1, 0.5]
+share = [0.1, 0.9]
 [[points]]
 method = "sets"
 ways = 4
