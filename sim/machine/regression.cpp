@@ -50,17 +50,6 @@ void Moments::add(const SampledWork& unit) {
     units_ += 1;
 }
 
-void Moments::add(const Moments& others) {
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t j = 0; j < n; ++j)
-            squares_[i][j] += others.squares_[i][j];
-        products_[i] += others.products_[i];
-        work_[i] += others.work_[i];
-    }
-    spent_ += others.spent_;
-    units_ += others.units_;
-}
-
 void Moments::fade(double by) {
     for (std::size_t i = 0; i < n; ++i) {
         for (double& square : squares_[i])

@@ -35,7 +35,6 @@ double said(const SampledWork& work, const SampledCosts& costs);
 class Moments {
 public:
     void add(const SampledWork& unit);
-    void add(const Moments& others);
     /// All units so far count so much less.
     void fade(double by);
     /// Least squares in which no cost is negative, by descent along each of them, as multiples of `expected`,

@@ -248,6 +248,25 @@ Made make_run(const Sampling& sampling, double drift, double noise, std::uint32_
     return out;
 }
 
+// Of two cores that do the same work one takes three times as long: 3 and 1 where both together say 2, the
+// last eight units beside two that say nothing.
+TEST(Sampling, EachCoreHasAPaceOfItsOwn) {
+    Sampler sampler({.fraction = 0.1, .unit = 2000, .before = 500}, {1, 1, 10, 100, 10});
+    EXPECT_EQ(sampler.pace(0), 1);
+    WorkByCore done;
+    done.cores.resize(2);
+    for (int i = 0; i < 300; ++i) {
+        for (std::size_t c = 0; c < 2; ++c) {
+            done.cores[c].of[SampledWork::others] += 1000;
+            done.cores[c].spent += sampler.warms() ? 0 : c == 0 ? 3000 : 1000;
+        }
+        sampler.come_to(sampler.next(), done);
+    }
+    EXPECT_NEAR(sampler.costs()[SampledWork::others], 2, 0.01);
+    EXPECT_NEAR(sampler.pace(0), 1.4, 0.01);
+    EXPECT_NEAR(sampler.pace(1), 0.6, 0.01);
+}
+
 TEST(Sampling, FindsCostsOfWorkThatFollowsThem) {
     const Made run = make_run({.fraction = 0.1, .unit = 4000, .before = 1000}, 0, 0, 1);
     EXPECT_NEAR(run.estimate.cycles.value, run.truth, 0.002 * run.truth);
