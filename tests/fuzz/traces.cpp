@@ -2,6 +2,7 @@
 // keep their promises, or an Error in a line. Checksums of our own format are set right first, else hardly
 // any bytes would pass.
 #include "tests/fuzz/target.h"
+#include "tests/traces/old_files.h"
 #include "tests/traces/samples.h"
 #include "traces/chunk.h"
 #include "traces/error.h"
@@ -33,10 +34,8 @@ std::string own_seed(const char* level) {
     return out;
 }
 
-/// With the number of another version, of which blocks are other ones.
-std::string as_version(std::string bytes, char version) {
-    bytes[magic.size()] = version;
-    return bytes;
+std::string old_seed(std::string_view base64) {
+    return std::string(1, '\0') + test::decoded(base64);
 }
 
 /// Sets right the checksums of all chunks that lie whole in the bytes.
@@ -85,8 +84,13 @@ const std::vector<std::string>& fuzz::seeds() {
     static const std::vector<std::string> all{
         std::string(1, '\0') + own_seed("core"),
         std::string(1, '\0') + own_seed("l2"),
-        std::string(1, '\0') + as_version(own_seed("core"), 5),
-        std::string(1, '\0') + as_version(own_seed("l2"), 6),
+        old_seed(test::of_version_1),
+        old_seed(test::of_version_2),
+        old_seed(test::of_version_3),
+        old_seed(test::of_version_5),
+        old_seed(test::predicted_of_version_5),
+        old_seed(test::of_version_6),
+        old_seed(test::predicted_of_version_6),
         std::string("\1") + "0 10 4\n1 7fff 8\n2 401000 3\n",
         std::string("\2") + "cycles,address,kind,size,site,stream\n1,10,read,4,1,0\n2,ff,write,8,0,1\n",
         std::string("\3") + "I  04000000,3\n L 1ffe80,8\n S 1ffe78,8\n M 1ffe70,4\n",
