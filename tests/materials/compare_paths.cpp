@@ -2,7 +2,6 @@
 
 #include "tests/kernels/targets.h"
 #include "tests/materials/floor.h"
-#include "tests/materials/plain_paths.h"
 #include "tests/materials/room.h"
 
 #include <fmt/format.h>
@@ -64,10 +63,10 @@ Comparison compare(Scene scene, const std::string& target, const std::vector<Blo
 
 } // namespace
 
-void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* alike) {
-    const std::vector<BlockMean> plain = plain_picture(scene, side, samples_a_pixel);
+PlainPicture expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* alike) {
+    PlainPicture plain{scene.name, plain_picture(scene, side, samples_a_pixel)};
     for (const KernelTable* target : best_target()) {
-        const Comparison c = compare(alike != nullptr ? *alike : scene, target->name, plain);
+        const Comparison c = compare(alike != nullptr ? *alike : scene, target->name, plain.blocks);
         fmt::print("  {}, {}: blocks differ by {:.1f} standard errors at most (mean square {:.2f}), means by "
                    "{:+.2f} {:+.2f} {:+.2f} "
                    "% (noise {:.2f} %)\n",
@@ -79,16 +78,16 @@ void expect_same_picture(const Scene& scene, int samples_a_pixel, const Scene* a
             EXPECT_LT(std::abs(c.relative[k]), 4 * c.noise[k]) << scene.name;
         EXPECT_LT(c.noise.y, 0.007) << "noise hides mistakes: " << scene.name;
     }
+    return plain;
 }
 
-void expect_other_picture(const Scene& scene, const Scene& other, int samples_a_pixel) {
-    const std::vector<BlockMean> plain = plain_picture(scene, side, samples_a_pixel);
+void expect_other_picture(const PlainPicture& plain, const Scene& other) {
     for (const KernelTable* target : best_target()) {
-        const Comparison c = compare(other, target->name, plain);
+        const Comparison c = compare(other, target->name, plain.blocks);
         fmt::print("    not as others: blocks differ by {:.1f} standard errors at most, their mean square is "
                    "{:.1f}\n",
                    c.worst, c.square);
-        EXPECT_TRUE(c.square > 3 || c.worst > 6.5) << scene.name;
+        EXPECT_TRUE(c.square > 3 || c.worst > 6.5) << plain.name;
     }
 }
 

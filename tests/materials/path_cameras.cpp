@@ -55,13 +55,13 @@ TEST(PathsOfCameras, WideFilters) {
         // Of a windowed sinc blocks see little but its ripples.
         const int more = kind == FilterKind::lanczos ? 32 : 8;
         s.settings.samples *= more;
-        expect_same_picture(s, 200 * more);
+        const PlainPicture want = expect_same_picture(s, 200 * more);
         Scene pixels = s, narrower = s;
         pixels.settings.filter = {};
         narrower.settings.filter.radius = {3, 4};
-        expect_other_picture(s, pixels, 200 * more);
+        expect_other_picture(want, pixels);
         if (kind != FilterKind::lanczos) // of which the ends are near 0
-            expect_other_picture(s, narrower, 200 * more);
+            expect_other_picture(want, narrower);
     }
 }
 
@@ -71,12 +71,12 @@ TEST(PathsOfCameras, ThinLens) {
         s.name = focus > 0 ? "thin lens, near in focus" : "thin lens";
         s.camera.aperture_radius = 0.6;
         s.camera.focus_distance = focus;
-        expect_same_picture(s, 320);
+        const PlainPicture want = expect_same_picture(s, 320);
         Scene pinhole = s, further = s;
         pinhole.camera.aperture_radius = 0;
         further.camera.focus_distance = 9;
-        expect_other_picture(s, pinhole, 160);
-        expect_other_picture(s, further, 160);
+        expect_other_picture(want, pinhole);
+        expect_other_picture(want, further);
     }
 }
 
@@ -85,12 +85,12 @@ TEST(PathsOfCameras, Orthographic) {
     s.name = "orthographic";
     s.camera.projection = Projection::orthographic;
     s.camera.height = 3.4;
-    expect_same_picture(s, 160);
+    const PlainPicture want = expect_same_picture(s, 160);
     Scene larger = s, perspective = s;
     larger.camera.height = 3.6;
     perspective.camera.projection = Projection::perspective;
-    expect_other_picture(s, larger, 80);
-    expect_other_picture(s, perspective, 80);
+    expect_other_picture(want, larger);
+    expect_other_picture(want, perspective);
 }
 
 } // namespace

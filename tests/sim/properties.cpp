@@ -243,10 +243,10 @@ Config random_machine(std::mt19937& random) {
     return c;
 }
 
-/// RAZOR_RANDOM_MACHINES: how many (60).
+/// RAZOR_RANDOM_MACHINES: how many (30).
 int machines_wanted() {
     const char* text = std::getenv("RAZOR_RANDOM_MACHINES");
-    return text != nullptr ? std::atoi(text) : 60;
+    return text != nullptr ? std::atoi(text) : 30;
 }
 
 TEST(Properties, RandomMachinesKeepTheLaws) {
