@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <set>
 
 namespace razor {
 namespace {
@@ -37,11 +38,29 @@ template <int N, class Real, glm::qualifier q> Json to_json(const glm::vec<N, Re
 }
 
 /// Of all levels.
-std::size_t bytes_of(const Texture& texture) {
+std::size_t bytes_of(const TexturePyramid& pyramid) {
     std::size_t words = 0;
-    for (const TextureLevel& level : texture.pyramid->levels)
+    for (const TextureLevel& level : pyramid.levels)
         words += level.texels.size() + level.opacity.size();
     return words * sizeof(std::uint32_t);
+}
+
+/// Of what displacement reads of it as well; of a pattern none.
+std::size_t bytes_of(const Texture& texture) {
+    std::size_t bytes = 0;
+    for (const auto& pyramid : {texture.pyramid, texture.heights})
+        bytes += pyramid != nullptr ? bytes_of(*pyramid) : 0;
+    return bytes;
+}
+
+/// Textures may share them.
+std::size_t bytes_of(const std::vector<Texture>& textures) {
+    std::set<std::shared_ptr<const TexturePyramid>> pyramids;
+    for (const Texture& texture : textures)
+        pyramids.insert({texture.pyramid, texture.heights});
+    pyramids.erase(nullptr);
+    return std::accumulate(pyramids.begin(), pyramids.end(), std::size_t{0},
+                           [](std::size_t bytes, const auto& pyramid) { return bytes + bytes_of(*pyramid); });
 }
 
 std::string text_of_bytes(std::size_t bytes) {
@@ -230,13 +249,6 @@ std::string text_of(const Scene& scene, const SceneUse& use) {
     const auto out = std::back_inserter(text);
     const std::int64_t instances =
         std::accumulate(use.instances.begin(), use.instances.end(), std::int64_t{0});
-    std::size_t bytes = 0;
-    std::vector<const TexturePyramid*> pyramids;
-    for (const Texture& texture : scene.textures) {
-        if (std::find(pyramids.begin(), pyramids.end(), texture.pyramid.get()) == pyramids.end())
-            bytes += bytes_of(texture);
-        pyramids.push_back(texture.pyramid.get());
-    }
     const auto head = [&](std::string_view title, std::size_t count) {
         fmt::format_to(out, "{}: {}\n", title, count);
     };
@@ -249,7 +261,7 @@ std::string text_of(const Scene& scene, const SceneUse& use) {
     head("materials", scene.materials.size());
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         print_material(text, scene, scene.materials[m], use.material_faces[m]);
-    fmt::format_to(out, "textures: {}, {}\n", scene.textures.size(), text_of_bytes(bytes));
+    fmt::format_to(out, "textures: {}, {}\n", scene.textures.size(), text_of_bytes(bytes_of(scene.textures)));
     for (std::size_t t = 0; t < scene.textures.size(); ++t)
         print_texture(text, scene.textures[t], use.textures[t]);
     head("lights", scene.lights.size());

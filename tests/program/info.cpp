@@ -121,6 +121,29 @@ TEST_F(Info, ListsTags) {
     EXPECT_EQ(info("o.obj").out.find("tags of"), std::string::npos);
 }
 
+TEST_F(Info, ListsEveryShippedScene) {
+    int patterns = 0, heights = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(RAZOR_SOURCE_DIR "/configs/scenes")) {
+        if (entry.path().extension() != ".toml")
+            continue;
+        const Outcome result = info(quoted_argument(entry.path().string()) + " --json i.json");
+        ASSERT_EQ(result.code, 0) << entry.path() << result.err;
+        std::ifstream file(folder_ / "i.json");
+        const auto json = nlohmann::json::parse(file);
+        for (const nlohmann::json& texture : json.at("textures")) {
+            patterns += texture.contains("pattern") ? 1 : 0;
+            // What displacement reads it reads beside what colours do: more than a word a texel.
+            if (!texture.contains("pattern") && texture.at("used") == true)
+                heights +=
+                    texture.at("bytes") > 6 * texture.at("width").get<int>() * texture.at("height").get<int>()
+                        ? 1
+                        : 0;
+        }
+    }
+    EXPECT_GT(patterns, 20);
+    EXPECT_EQ(heights, 5); // of showcase-displaced
+}
+
 TEST_F(Info, TakesModelsAndNamesMistakes) {
     EXPECT_NE(info("o.obj").out.find("materials: 4\n"), std::string::npos);
     EXPECT_NE(info("").out.find("scene default"), std::string::npos);
