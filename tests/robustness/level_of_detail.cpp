@@ -7,6 +7,7 @@
 #include "tests/kernels/cages.h"
 #include "tests/kernels/oracle.h"
 #include "tests/kernels/targets.h"
+#include "tests/robustness/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -25,12 +26,14 @@ Scene recursive(const char* name) {
 }
 
 /// Rays from inside hit the surface by its definition: also where the origin lies so near to it that
-/// footprints of all sizes are asked for, and with a footprint of 0.
+/// footprints of all sizes are asked for, and with a footprint of 0; they cost what rays to the finest level
+/// do.
 TEST(LevelOfDetail, AsksOfAnySizeHitWhatTheyDefine) {
     for (const char* name : {"urchin_stretched", "torus_bilinear"}) {
         const Scene scene = recursive(name);
         for (const KernelTable* target : targets_with(true)) {
             const bool best = target == native_targets().back();
+            double usual = 0; // steps of a ray, where all see the finest level: the first of these
             for (const double growth : {0.0, 1e-6, 0.125, 10.0})
                 for (const double base : {0.0, 1.0, 40.0}) {
                     Frame frame(scene, {});
@@ -46,6 +49,10 @@ TEST(LevelOfDetail, AsksOfAnySizeHitWhatTheyDefine) {
                     EXPECT_GT(r.origins, 0) << target->name;
                     EXPECT_EQ(r.escapes, 0) << target->name << ' ' << name << ' ' << growth << ' ' << base;
                     EXPECT_EQ(r.different, 0) << target->name << ' ' << name << ' ' << growth << ' ' << base;
+                    const double a_ray = Effort{r.rays, steps(frame.statistics().counters)}.steps_a_ray();
+                    usual = usual == 0 ? a_ray : usual;
+                    EXPECT_LT(a_ray, 2.5 * usual)
+                        << target->name << ' ' << name << ' ' << growth << ' ' << base;
                 }
         }
     }

@@ -1,7 +1,8 @@
-// Bad rays have a defined answer and cost little: at most 2.5 times the steps of good ones.
+// Bad rays have a defined answer and cost little: at most 2.5 times the steps and operations of good ones.
 #include "tests/kernels/cages.h"
 #include "tests/kernels/oracle.h"
 #include "tests/kernels/targets.h"
+#include "tests/robustness/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +14,6 @@ namespace {
 
 constexpr int count = 1024;
 constexpr float infinity = std::numeric_limits<float>::infinity();
-
-std::int64_t steps(const Counters& c) {
-    return c.node_visits + c.box_tests + c.quad_tests;
-}
 
 class BadRays : public testing::TestWithParam<std::string> {
 protected:
@@ -66,9 +63,7 @@ TEST_P(BadRays, AreAnsweredAndCheap) {
         Oracle oracle(frame, true);
         RayMaker make(oracle.triangles(), oracle.origins(), 21);
         auto cost = [&](const std::vector<Ray>& rays) {
-            std::int64_t before = steps(frame.statistics().counters);
-            tracer.closest(*target, rays);
-            return steps(frame.statistics().counters) - before;
+            return effort_of(frame, *target, rays.size(), [&] { tracer.closest(*target, rays); });
         };
         std::vector<Ray> good;
         for (int i = 0; i < count; ++i) {
@@ -76,13 +71,12 @@ TEST_P(BadRays, AreAnsweredAndCheap) {
             r.direction = make.direction_at_feature(r.origin);
             good.push_back(r);
         }
-        std::int64_t usual = cost(good);
+        const Effort usual = cost(good);
         for (const Family& family : families()) {
             std::vector<Ray> rays;
             for (int i = 0; i < count; ++i)
                 rays.push_back(family.make(make));
-            EXPECT_LE(static_cast<double>(cost(rays)), 2.5 * static_cast<double>(usual))
-                << target->name << ": " << family.name;
+            expect_at_most(2.5, usual, cost(rays), std::string(target->name) + ": " + family.name);
             std::vector<Hit> hits = tracer.closest(*target, rays);
             const std::vector<int> axes = shear_axes(rays, target->width);
             for (std::size_t i = 0; i < rays.size(); i += family.answered ? 16 : 1)
