@@ -179,7 +179,7 @@ Statistics Renderer::statistics() const {
     return s;
 }
 std::string Renderer::statistics_json() const {
-    return nlohmann::ordered_json(figures()).dump(2);
+    return nlohmann::ordered_json(figures()).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 const RenderOptions& Renderer::options() const {
     return state_->options;

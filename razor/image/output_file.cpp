@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <set>
 #include <system_error>
 #include <unistd.h>
 
@@ -26,6 +27,9 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
     if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error))
         throw UserError(
             fmt::format("{}: is not a regular file; choose another name", printable(path_.string(), 1000)));
+    if (is_input(path_))
+        throw UserError(fmt::format("{}: is one of the files that this is made of; name another output",
+                                    printable(path_.string(), 1000)));
     temporary_ = path_;
     temporary_.replace_filename(fmt::format(".{}.{}.tmp", path_.filename().string(), ::getpid()));
     file_ = std::fopen(temporary_.c_str(), "wbx");
@@ -99,6 +103,17 @@ void check_writable(const std::filesystem::path& path) {
             fmt::format("{}: no folder {}; make it first", name, printable(folder.string(), 1000)));
     }
     const OutputFile attempt(path); // removed again
+}
+
+void check_apart(const std::vector<std::filesystem::path>& outputs) {
+    std::set<std::filesystem::path> seen;
+    for (const std::filesystem::path& output : outputs) {
+        std::error_code error;
+        const std::filesystem::path name = std::filesystem::weakly_canonical(output, error);
+        if (!output.empty() && !seen.insert(error ? output : name).second)
+            throw UserError(fmt::format("{}: is the name of two outputs; name two files",
+                                        printable(output.string(), 1000)));
+    }
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace razor {
 
@@ -38,7 +39,15 @@ private:
 /// permission.
 void check_writable(const std::filesystem::path& path);
 
+/// Throws UserError where two of them are one file; empty names are none.
+void check_apart(const std::vector<std::filesystem::path>& outputs);
+
 /// Writes a text file, whole or not at all.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+/// Likewise of nlohmann::json. What is no UTF-8 in names of files is replaced: readers of JSON refuse it.
+template <class Json> void write_json_file(const std::filesystem::path& path, const Json& json) {
+    write_text_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
 
 } // namespace razor

@@ -176,7 +176,7 @@ int CheckCommand::run() const {
             report["convergence"] = check::json_of(*convergence);
         }
         // Names need not be UTF-8.
-        write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_json_file(json_, report);
     }
     fmt::print("{}{}{}{}{}", check::text_of(meshes), check::text_of(findings),
                check::text_of(scene, precision), features_text(scene, memory.frame), check::text_of(memory));

@@ -35,7 +35,7 @@ ImageFile read(const std::string& path) {
     }
 }
 
-bool same_file(const std::string& a, const std::string& b) {
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
     return std::filesystem::equivalent(a, b, error);
 }
@@ -174,10 +174,13 @@ int CompareCommand::run() const {
     if (!json_.empty()) {
         check_writable(json_);
     }
-    for (const std::string& output : outputs_) {
+    std::vector<std::filesystem::path> written(outputs_.begin(), outputs_.end());
+    written.emplace_back(json_);
+    check_apart(written);
+    for (const std::filesystem::path& output : written) {
         if (same_file(output, picture_) || same_file(output, reference_)) {
             throw UserError(fmt::format("{}: is one of the pictures compared; name another output",
-                                        printable(output, 1000)));
+                                        printable(output.string(), 1000)));
         }
     }
 
@@ -204,7 +207,7 @@ int CompareCommand::run() const {
             {"program", "razor"}, {"version", version()}, {"picture", picture_}, {"reference", reference_}};
         report.update(comparison_json(comparison, options));
         // File names need not be UTF-8.
-        write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_json_file(json_, report);
     }
     fmt::print("{}", comparison_text(comparison, options));
     return 0;

@@ -38,7 +38,7 @@ int InfoCommand::run() const {
         report["tags"] = json_of_tags(moving);
         report["notes"] = notes;
         // Names need not be UTF-8.
-        write_text_file(json_, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_json_file(json_, report);
     }
     fmt::print("{}{}{}", text_of(scene, use), text_of(files), text_of_tags(moving));
     for (const std::string& note : notes) {

@@ -10,6 +10,7 @@
 #include "razor/program/sequence.h"
 #include "razor/scene/error.h"
 #include "razor/scene/numbered_name.h"
+#include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -49,6 +51,20 @@ std::string memory_text(const BudgetStatistics& s) {
 constexpr Range threads_range{1, 1024};
 constexpr Range repeat_range{1, 1000000};
 constexpr std::array<std::string_view, 5> isa_words{"auto", "plain", "sse4", "avx2", "avx512"};
+
+/// A file's name may be any bytes, a scene file's text not. Throws UserError.
+void check_readable(const std::string& scene) {
+    std::istringstream lines(scene);
+    for (std::string line; std::getline(lines, line);) {
+        try {
+            static_cast<void>(nlohmann::json(line).dump());
+        } catch (const nlohmann::json::type_error&) {
+            throw UserError(
+                fmt::format("{}: is not in UTF-8, as scene files are; rename the file or the thing",
+                            printable(line, 1000)));
+        }
+    }
+}
 
 } // namespace
 
@@ -165,6 +181,9 @@ RenderOptions RenderCommand::options() const {
     }
     layers_.ask(options, outputs_);
     tone(); // a wrong one is found before any file is read
+    if ((!exposure_.empty() || tone_ != "srgb") && std::none_of(outputs_.begin(), outputs_.end(), is_png)) {
+        throw UserError("--exposure and --tone are of PNG files; name one by -o, or leave them out");
+    }
     options.passes = passes();
     if (options.passes.samples > 0 && (options.frames > 1 || !trace_.empty())) {
         throw UserError(
@@ -189,7 +208,9 @@ int RenderCommand::run() const {
     const FrameRange frames = sequence ? parse_frames(frames_) : FrameRange{scene_.frame(), scene_.frame()};
     options.cancel = &watch_interrupts();
     if (print_config_) {
-        fmt::print("{}", to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving()));
+        const std::string text = to_toml(scene_.frame_given() ? scene_.describe() : scene_.describe_moving());
+        check_readable(text);
+        fmt::print("{}", text);
         return 0;
     }
     SceneDescription description = sequence ? scene_.describe_moving() : scene_.describe();
@@ -207,6 +228,9 @@ int RenderCommand::run() const {
         throw UserError("a noise threshold and --target-error both say how many samples there are; leave out "
                         "one (--noise-threshold 0)");
     }
+    std::vector<std::filesystem::path> written(outputs_.begin(), outputs_.end());
+    written.insert(written.end(), {statistics_, trace_});
+    check_apart(written);
     for (const std::string& output : outputs_) {
         check_numbered("-o", output, frames);
         check_output(numbered(output, frames.first));
@@ -370,7 +394,7 @@ void RenderCommand::write_statistics(const api::Renderer& renderer, int frame, d
     if (levels) {
         report["levels"] = json_of(*levels);
     }
-    write_text_file(numbered(statistics_, frame), report.dump(2) + "\n");
+    write_json_file(numbered(statistics_, frame), report);
 }
 
 void RenderCommand::tell(const api::Renderer& renderer, int frame, double seconds, const Film& film,

@@ -171,11 +171,20 @@ SceneDescription SceneOptions::describe_moving() const {
     constexpr std::array<std::string_view, 2> axes{"y", "z"};
     framing.up = parse_choice("--up", up_, axes) == 0 ? Up::y : Up::z;
     framing.floor = !no_floor_;
+    const bool bare = !scene_.empty() && !scene_.ends_with(".toml");
+    if (!bare && framing.up != Up::y) {
+        throw UserError(
+            "--up z: turns bare models; leave it out, or rotate = [-90, 0, 0] in the scene file's [[mesh]]");
+    }
+    if (!bare && no_floor_) {
+        throw UserError("--no-floor: only bare models are given a floor; leave it out");
+    }
     if (!crease_angle_.empty()) {
         framing.crease_angle = parse_number("--crease-angle", crease_angle_, {0, no_crease_angle});
         if (!has_split_points(scene_)) {
-            throw UserError("--crease-angle: only MD3 and glTF models have normals instead of creases; leave "
-                            "it out, or state crease_angle in the scene file's [[mesh]]");
+            throw UserError(
+                fmt::format("--crease-angle: only MD3 and glTF models have normals instead of creases; {}",
+                            bare ? "leave it out" : "state crease_angle in the [[mesh]] of one"));
         }
     }
     if (!scheme_.empty()) {

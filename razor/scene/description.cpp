@@ -286,14 +286,22 @@ Mesh build_mesh(const SceneDescription& description, std::size_t number) {
 
 std::vector<std::string> notes_of(const SceneDescription& description) {
     std::vector<std::string> notes;
-    for (const MeshDescription& mesh : description.meshes) {
-        if (!OwnMaterials::uses_own(mesh)) {
-            continue;
+    const auto add = [&](const std::string& note) {
+        if (std::find(notes.begin(), notes.end(), note) == notes.end()) {
+            notes.push_back(note);
         }
-        for (const std::string& note : mesh.source->own_materials->notes) {
-            if (std::find(notes.begin(), notes.end(), note) == notes.end()) {
-                notes.push_back(note);
-            }
+    };
+    for (const MeshDescription& mesh : description.meshes) {
+        if (OwnMaterials::uses_own(mesh)) {
+            std::for_each(mesh.source->own_materials->notes.begin(), mesh.source->own_materials->notes.end(),
+                          add);
+        }
+    }
+    for (const Texture& texture : description.textures) {
+        if (texture.pyramid != nullptr && texture.pyramid->below_zero > 0) {
+            add(fmt::format("{}: {} of its numbers are below 0, down to {:.3g}, and taken as 0",
+                            printable(texture.file, 1000), texture.pyramid->below_zero,
+                            texture.pyramid->lowest));
         }
     }
     return notes;

@@ -7,10 +7,40 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <set>
 #include <system_error>
 
 namespace razor {
+namespace {
+
+/// Of this process, by canonical names.
+struct Inputs {
+    std::mutex mutex;
+    std::set<std::filesystem::path> paths;
+};
+Inputs& inputs() {
+    static Inputs all;
+    return all;
+}
+
+} // namespace
+
+void note_input(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::path name = std::filesystem::canonical(path, error);
+    const std::lock_guard lock(inputs().mutex);
+    if (!error)
+        inputs().paths.insert(name);
+}
+
+bool is_input(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::path name = std::filesystem::canonical(path, error);
+    const std::lock_guard lock(inputs().mutex);
+    return !error && inputs().paths.contains(name);
+}
 
 std::string read_text_file(const std::filesystem::path& path, std::string_view kind) {
     const std::string name = printable(path.string(), 1000);
@@ -54,6 +84,7 @@ std::string read_text_file(const std::filesystem::path& path, std::string_view k
     if (text.empty()) {
         throw UserError(fmt::format("{}: is empty; give {}", name, kind));
     }
+    note_input(path);
     return text;
 }
 

@@ -15,6 +15,12 @@ inline constexpr std::size_t max_text_file_bytes = std::size_t{16} << 30;
 /// large. `kind` names the expected content in messages, for example "an OBJ file".
 std::string read_text_file(const std::filesystem::path& path, std::string_view kind);
 
+/// Remembers a file that something is made of; read_text_file() does so itself. Nobody means to write over it
+/// (OutputFile refuses to).
+void note_input(const std::filesystem::path& path);
+/// Whether it is one of these.
+bool is_input(const std::filesystem::path& path);
+
 /// `text` made fit for a one-line message: at most `max_length` characters, control and non-ASCII bytes as
 /// \xNN.
 std::string printable(std::string_view text, std::size_t max_length = 40);

@@ -38,6 +38,10 @@ struct TexturePyramid {
     std::vector<TextureLevel> levels; // of most_texture_levels at most, each half as large, rounded up
     Texels kind = Texels::colours;
     float least = 0, most = 0; // of the picture's heights
+    /// Numbers of the picture that were below 0 and are taken as 0 (filters leave some beside what is
+    /// bright), and the lowest.
+    std::int64_t below_zero = 0;
+    float lowest = 0;
 };
 
 /// What a texture may be instead of a picture: see razor/kernels/pattern_value.h.

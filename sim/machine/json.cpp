@@ -222,7 +222,7 @@ std::string print_json(const Report& r, bool with_host) {
             {"threads", r.host_threads},
             {"vops_per_second", static_cast<double>(r.all_vops) / r.processor_seconds},
             {"instructions_per_second", static_cast<double>(r.all_instructions) / r.processor_seconds}};
-    return out.dump(2) + "\n";
+    return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 } // namespace sim

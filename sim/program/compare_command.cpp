@@ -3,6 +3,7 @@
 #include "razor/image/output_file.h"
 #include "razor/program/arguments.h"
 #include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
 #include "sim/reports/compare.h"
 
 #include <fmt/format.h>
@@ -36,8 +37,10 @@ int CompareCommand::run() const {
     const double noise = razor::parse_number("--noise", noise_, {0, 100});
     const auto read = [](const std::vector<std::string>& files) {
         std::vector<ReportFile> reports;
-        for (const std::string& file : files)
+        for (const std::string& file : files) {
             reports.push_back(read_report(file));
+            razor::note_input(file);
+        }
         return reports;
     };
     const ReportComparison comparison = compare_reports(read(first), read(second));

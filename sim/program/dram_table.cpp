@@ -205,7 +205,7 @@ int DramTable::run() const {
         host += r.host_seconds;
     }
     out["host"] = {{"processor_seconds", host}};
-    razor::write_text_file(json_, out.dump(2) + "\n");
+    razor::write_json_file(json_, out);
     return 0;
 }
 

@@ -43,6 +43,7 @@ void RunCommand::check_closed_form(const Config& config) const {
 
 int RunCommand::run_closed_form(const MachineDescription& machine, int workers,
                                 const razor::SceneDescription& scene) const {
+    razor::check_apart({json_, report_, seed_report_});
     for (const std::string& file : {json_, report_, seed_report_})
         if (!file.empty())
             razor::check_writable(file);
@@ -67,7 +68,7 @@ int RunCommand::run_closed_form(const MachineDescription& machine, int workers,
                  {"scene", razor::to_toml(scene)}};
         out.update(closed_form_json(*result, machine.config, workers));
         out["machine_provenance"] = provenance_json(machine);
-        razor::write_text_file(json_, out.dump(2) + "\n");
+        razor::write_json_file(json_, out);
     }
     const std::string text = provenance_text(machine) + closed_form_text(*result, machine.config, workers);
     give(text);

@@ -9,6 +9,7 @@
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
 #include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
 #include "sim/config/parameters.h"
@@ -181,6 +182,7 @@ int RunCommand::run() const {
         settings.push_back(
             fmt::format("sim.jitter={}", razor::parse_whole("--jitter", jitter_, {0, 2147483647})));
     const MachineDescription machine_description = describe_machine(machine_.file, settings);
+    razor::note_input(machine_.file);
     const std::optional<Calibration> calibration =
         no_calibration_ ? std::nullopt : read_calibration(machine_description);
     const Config& config = machine_description.config;
@@ -228,6 +230,9 @@ int RunCommand::run() const {
         throw razor::UserError(
             "--sharing and --trace both look at what cores access; give them to runs of their "
             "own, which are alike to the cycle");
+    std::vector<std::filesystem::path> written(outputs_.begin(), outputs_.end());
+    written.insert(written.end(), {json_, report_, intervals_, trace_.file()});
+    razor::check_apart(written);
     for (const std::string& output : outputs_)
         razor::check_output(output);
     costs_.check(outputs_, config.cache_levels());
@@ -360,7 +365,7 @@ int RunCommand::run() const {
             host["native"] = native_json(*native, report.host_seconds);
         host["code_bytes"] = code_json(frame.plan());
         out["host"] = host;
-        razor::write_text_file(json_, out.dump(2) + "\n");
+        razor::write_json_file(json_, out);
     }
     const std::string text =
         provenance_text(machine_description) + (calibration ? calibration_text(*calibration) : "") +

@@ -69,6 +69,7 @@ double RunCommand::wanted_error() const {
 
 int RunCommand::run_fidelity(double wanted, const std::vector<std::string>& settings, int workers,
                              const razor::SceneDescription& scene) const {
+    razor::check_apart({json_, report_});
     for (const std::string& file : {json_, report_})
         if (!file.empty())
             razor::check_writable(file);
@@ -124,7 +125,7 @@ int RunCommand::run_fidelity(double wanted, const std::vector<std::string>& sett
                             {"by_way", found->seconds},
                             {"reference_pilots", found->reference_pilot_seconds}};
         out["host"] = host;
-        razor::write_text_file(json_, out.dump(2) + "\n");
+        razor::write_json_file(json_, out);
     }
     std::string text = provenance_text(found->machine) + (calibration ? calibration_text(*calibration) : "") +
                        fidelity_text(*found);

@@ -49,7 +49,7 @@ void write_seed(const std::string& file, const KeptSeed& seed) {
                       {"drivers", seed.drivers},
                       {"seed", json_of_seed(seed.seed)},
                       {"host", {{"processor_seconds", seed.processor_seconds}}}};
-    razor::write_text_file(file, out.dump(2) + "\n");
+    razor::write_json_file(file, out);
 }
 
 KeptSeed read_seed(const std::string& option, const std::string& file) {

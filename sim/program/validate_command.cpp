@@ -245,7 +245,7 @@ int ValidateCommand::run() const {
         for (const ValidationRow& r : rows)
             out["rows"].push_back(to_json(r));
         out["missed"] = count(State::missed);
-        razor::write_text_file(json_, out.dump(2) + "\n");
+        razor::write_json_file(json_, out);
     }
     return exit_code(rows);
 }

@@ -116,7 +116,7 @@ std::string comparison_json(const ReportComparison& c) {
                    {"figures", json_of(c.figures)},
                    {"memory_bytes", json_of(c.memory_bytes)},
                    {"others", json_of(c.all)}};
-    return out.dump(2) + "\n";
+    return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 } // namespace sim

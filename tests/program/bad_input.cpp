@@ -161,6 +161,15 @@ TEST_F(Razor, RefusesBadInput) {
     expect_refused("render good.obj", "no output; add -o");
     expect_refused("render good.obj -o picture.exr --spp", "--spp: 1 required");
     expect_refused("--sise", "--sise");
+    for (const char* light : {"--exposure 1", "--tone agx"})
+        expect_refused(std::string("render good.obj -o picture.exr ") + light, "are of PNG files");
+    for (const char* scene : {"good.toml", ""}) {
+        expect_refused(std::string("render ") + scene + " -o picture.exr --up z",
+                       "--up z: turns bare models");
+        expect_refused(std::string("render ") + scene + " -o picture.exr --no-floor",
+                       "--no-floor: only bare models");
+    }
+    expect_refused("render good.toml -o picture.exr --crease-angle 30", "state crease_angle in the [[mesh]]");
     expect_refused("render good.obj -o picture.exr --crease-angle 30",
                    "--crease-angle: only MD3 and glTF models have normals instead of creases; leave it out");
     expect_refused("render none.glb -o picture.exr --crease-angle 200",
@@ -321,6 +330,52 @@ TEST_F(Razor, WritesPicturesAndStatistics) {
     for (const Plane& plane : film.planes) {
         EXPECT_EQ(again.find(plane.name)->values, plane.values) << plane.name;
     }
+}
+
+/// Nothing is written over what it is made of, nor two things to one file.
+TEST_F(Razor, OutputsAreNoInputs) {
+    const std::string model = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const std::string scene = "name = \"s\"\n[[mesh]]\nname = \"m\"\nfile = \"m.obj\"\n";
+    folder_.file("m.obj", model);
+    folder_.file("s.toml", scene);
+    ASSERT_EQ(razor("render s.toml --size 8x8 --spp 1 -o a.exr").code, 0);
+    std::filesystem::create_symlink("s.toml", folder_ / "link.toml");
+    const auto text = [&](const char* name) {
+        std::ifstream file(folder_ / name);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    const auto refused = [&](const std::string& arguments, const char* why) {
+        expect_refused(arguments, why);
+        EXPECT_EQ(text("m.obj"), model) << arguments;
+        EXPECT_EQ(text("s.toml"), scene) << arguments;
+    };
+    const std::string render = "render s.toml --size 8x8 --spp 1 ";
+    for (const char* file : {"s.toml", "./s.toml", "link.toml", "m.obj"}) {
+        refused(render + "-o b.exr --stats " + file, "made of");
+        refused(render + "-o b.exr --trace " + file, "made of");
+        refused(std::string("info s.toml --json ") + file, "made of");
+        refused(std::string("check s.toml --size 8x8 --json ") + file, "made of");
+    }
+    refused("export-mesh m.obj -o m.obj --size 8x8", "made of");
+    refused(render + "-o b.exr --stats b.exr", "two outputs");
+    refused(render + "-o b.exr -o ./b.exr", "two outputs");
+    refused(render + "-o b.exr --trace b.exr", "two outputs");
+    refused("compare a.exr a.exr --json a.exr", "one of the pictures compared");
+}
+
+/// Names of files are any bytes, those in reports and scene files are not.
+TEST_F(Razor, NamesMayBeNoUtf8) {
+    folder_.file("m\xe9.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string render = "render 'm\xe9.obj' --size 8x8 --spp 1 ";
+    EXPECT_EQ(razor(render + "--stats s.json -o i.exr").code, 0);
+    EXPECT_EQ(statistics("s").at("scene").get<std::string>().find('\xe9'), std::string::npos);
+    EXPECT_EQ(razor("info 'm\xe9.obj' --json s.json").code, 0);
+    EXPECT_EQ(razor("check 'm\xe9.obj' --json s.json").code, 0);
+    const Outcome config = razor(render + "--print-config");
+    EXPECT_EQ(config.code, 2);
+    EXPECT_EQ(config.out, "");
+    EXPECT_EQ(config.error_lines(), 1);
+    EXPECT_NE(config.err.find("m\\xe9"), std::string::npos) << config.err;
 }
 
 TEST_F(Razor, FailedWritingLeavesNothing) {

@@ -125,6 +125,30 @@ TEST_F(Simulator, StaysWithinItsMemory) {
 }
 
 // Threads are in the middle of their screen tiles, which take a minute.
+TEST_F(Simulator, OutputsAreNoInputs) {
+    const std::string scene = "[[mesh]]\nshape = \"box\"\n", machine = "name = \"m\"\n[chip]\ntiles = 1\n";
+    folder_.file("s.toml", scene);
+    folder_.file("m.toml", machine);
+    const std::string run =
+        "run --quiet --machine m.toml --scene s.toml --size 8x8 --spp 1 --light-samples 1 "
+        "--sky-samples 1 ";
+    ASSERT_EQ(simulator(run + "--json a.json").code, 0);
+    const std::string report = text("a.json");
+    const std::size_t before = folder_.count();
+    for (const std::string& arguments :
+         {run + "--json s.toml", run + "--report m.toml", run + "-o b.exr --json b.exr",
+          run + "--json b --report ./b", run + "--trace s.toml", run + "--estimate closed-form --json m.toml",
+          std::string("compare a.json a.json --json a.json")}) {
+        const Outcome result = simulator(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << arguments << result.err;
+        EXPECT_EQ(text("s.toml"), scene) << arguments;
+        EXPECT_EQ(text("m.toml"), machine) << arguments;
+        EXPECT_EQ(text("a.json"), report) << arguments;
+        EXPECT_EQ(folder_.count(), before) << arguments;
+    }
+}
+
 TEST_F(Simulator, InterruptEndsTheRun) {
     const std::size_t before = folder_.count();
     for (const char* more : {"", " --host-threads 2 -g chip.tiles=2 -g sim.mode=reference"}) {

@@ -93,6 +93,16 @@ TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
         EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
         EXPECT_EQ(folder_.count(), before) << arguments;
     }
+    // What is read is not written over.
+    ASSERT_EQ(tool("convert unknown a.rzt --from din").code, 0);
+    const std::string trace = text("a.rzt");
+    for (const char* arguments :
+         {"curve a.rzt --json a.rzt", "curve a.rzt --csv ./a.rzt", "picture a.rzt -o a.rzt"}) {
+        const Outcome result = tool(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << arguments << result.err;
+        EXPECT_EQ(text("a.rzt"), trace) << arguments;
+    }
     // Not even where one is asked to stop.
     const Outcome stopped = run("((while echo 0 10 4; do :; done) 2>/dev/null | timeout -s INT 0.5 " +
                                     program + " convert - b.rzt --from din)",

@@ -123,6 +123,15 @@ std::unique_ptr<Sink> open_sink(const std::string& path) {
     return compressing(std::make_unique<FileSink>(path), path);
 }
 
+std::unique_ptr<Sink> open_sink(const std::string& path, const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs) {
+        std::error_code none;
+        if (std::filesystem::is_regular_file(path, none) && std::filesystem::equivalent(path, input, none))
+            throw Error(fmt::format("{}: is read; name another output", path));
+    }
+    return open_sink(path);
+}
+
 std::unique_ptr<Sink> memory_sink(std::string& bytes) {
     return std::make_unique<MemorySink>(bytes);
 }

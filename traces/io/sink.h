@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace traces {
 
@@ -25,6 +26,8 @@ public:
 /// A file by its path, compressed by gzip, xz or zstd where it ends in .gz, .xz or .zst, or "-" for standard
 /// output. Throws Error where it cannot be written.
 std::unique_ptr<Sink> open_sink(const std::string& path);
+/// Likewise; also throws Error where it is one of these, which are read.
+std::unique_ptr<Sink> open_sink(const std::string& path, const std::vector<std::string>& inputs);
 /// Into a string of the caller's, which outlives the sink.
 std::unique_ptr<Sink> memory_sink(std::string& bytes);
 

@@ -254,8 +254,8 @@ void AnalysisOptions::each_block(const std::function<void(const Block&)>& visit)
 
 void AnalysisOptions::give(std::string_view command, const analysis::Table& table, const std::string& heading,
                            const std::function<std::string()>& draw) const {
-    const auto write = [](const std::string& file, const std::string& text) {
-        const std::unique_ptr<Sink> sink = open_sink(file);
+    const auto write = [this](const std::string& file, const std::string& text) {
+        const std::unique_ptr<Sink> sink = open_sink(file, {file_});
         sink->write(text);
         sink->commit();
     };

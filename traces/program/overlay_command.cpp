@@ -67,7 +67,7 @@ void OverlayCommand::run() const {
     const analysis::OverlayScale scale =
         range_.empty() ? analysis::scale_of(values, !linear_) : parse_overlay_range(range_, !linear_);
     const analysis::Pixels pixels = analysis::overlaid(picture, values, scale);
-    const auto sink = open_sink(output_);
+    const auto sink = open_sink(output_, {picture_});
     sink->write(png ? analysis::png_bytes(pixels)
                     : analysis::svg_file(analysis::overlay_svg(pixels, scale, layer_)));
     sink->commit();

@@ -33,7 +33,7 @@ public:
         std::vector<std::string> names;
         for (std::size_t g = 0; g < touches.groups(); ++g)
             names.push_back(touches.name(g, options_.description()));
-        const std::unique_ptr<Sink> sink = open_sink(file_);
+        const std::unique_ptr<Sink> sink = open_sink(file_, {options_.file()});
         sink->write(suffix == ".png" ? analysis::png_bytes(picture.pixels)
                                      : analysis::svg_file(analysis::with_legend(
                                            picture, counts, names, options_.description().time)));

@@ -247,8 +247,8 @@ void ReplayCommand::compare(const std::vector<sim::Comparison>& all) const {
 
 void ReplayCommand::give(const Input& input, const std::vector<Machine>& machines,
                          const std::vector<sim::ReplayResult>& results) const {
-    const auto write = [](const std::string& file, const std::string& text) {
-        const std::unique_ptr<Sink> sink = open_sink(file);
+    const auto write = [this](const std::string& file, const std::string& text) {
+        const std::unique_ptr<Sink> sink = open_sink(file, {file_, against_});
         sink->write(text);
         sink->commit();
     };

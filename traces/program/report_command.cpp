@@ -71,7 +71,7 @@ public:
         if (!over_.empty())
             report.write_tiles(page, over_, names, picture);
         report.write(page, names, description);
-        const std::unique_ptr<Sink> sink = open_sink(output_);
+        const std::unique_ptr<Sink> sink = open_sink(output_, {options_.file(), over_});
         sink->write(page.html());
         sink->commit();
 

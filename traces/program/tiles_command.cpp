@@ -60,7 +60,7 @@ public:
         std::string text;
         if (over) {
             over->draw(tiles, figure, range_, !linear_);
-            const std::unique_ptr<Sink> sink = open_sink(output_);
+            const std::unique_ptr<Sink> sink = open_sink(output_, {options_.file(), over_});
             sink->write(png ? over->png() : analysis::svg_file(over->svg()));
             sink->commit();
             // Counts are whole.

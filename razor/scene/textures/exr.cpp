@@ -92,6 +92,8 @@ TexturePyramid read(std::string_view bytes, const std::string& name, Texels kind
     std::vector<glm::vec4> texels(columns, glm::vec4(1));
     PyramidBuilder builder(width, height, kind);
     const bool heights = kind == Texels::heights;
+    std::int64_t below_zero = 0;
+    float lowest = 0;
     for (int y = window.min.y; y <= window.max.y; ++y) {
         Imf::FrameBuffer row;
         for (std::size_t c = 0; c < names.size(); ++c) {
@@ -106,18 +108,25 @@ TexturePyramid read(std::string_view bytes, const std::string& name, Texels kind
         for (std::size_t x = 0; x < columns; ++x) {
             for (std::size_t c = 0; c < names.size(); ++c) {
                 const float value = planes[c].empty() ? planes[0][x] : planes[c][x];
-                if (!std::isfinite(value) || (value < 0 && !heights))
-                    throw UserError(fmt::format("{}: {} of the texel in column {}, row {} is {}; give {}",
-                                                printable(name, 1000), names[c], x, y - window.min.y, value,
-                                                heights ? "heights that are finite"
-                                                        : "colours that are finite and not negative"));
+                if (!std::isfinite(value))
+                    throw UserError(
+                        fmt::format("{}: {} of the texel in column {}, row {} is {}; give {} that are finite",
+                                    printable(name, 1000), names[c], x, y - window.min.y, value,
+                                    heights ? "heights" : "colours"));
+                if (!heights && value < 0) {
+                    ++below_zero;
+                    lowest = std::min(lowest, value);
+                }
                 texels[x][static_cast<int>(c)] =
-                    heights ? value : std::min(value, c == 3 ? 1.0F : most_shared);
+                    heights ? value : std::clamp(value, 0.0F, c == 3 ? 1.0F : most_shared);
             }
         }
         builder.add_row(texels);
     }
-    return builder.finish();
+    TexturePyramid pyramid = builder.finish();
+    pyramid.below_zero = below_zero;
+    pyramid.lowest = lowest;
+    return pyramid;
 }
 
 } // namespace
