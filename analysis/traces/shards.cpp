@@ -1,6 +1,9 @@
 #include "analysis/traces/shards.h"
 
+#include "analysis/traces/line_filter.h"
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace analysis {
@@ -64,10 +67,7 @@ void LineSample::touch(std::uint64_t line, std::size_t group, std::uint64_t hash
 Shards::Shards(const std::vector<std::uint64_t>& sizes, double rate, double of, std::uint64_t most,
                std::uint64_t seed)
     : of_(of), offset_(seed * 0xD1B54A32D192ED03U), limit_(limit_of(rate)), sample_(sizes, rate, 1, most),
-      part_samples_(parts, LineSample(sizes, rate, parts, most / parts)), known_out_(out_lines) {
-    for (std::size_t i = 0; i < out_lines; ++i)
-        known_out_[i] = ~std::uint64_t{i}; // no line of this place
-}
+      part_samples_(parts, LineSample(sizes, rate, parts, most / parts)) {}
 
 void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     if (hash < sample_.limit()) {
@@ -84,41 +84,29 @@ void Shards::take(std::uint64_t line, std::size_t group, std::uint64_t hash) {
     }
 }
 
-/// The first of these, which is in the sample, and those that follow and are of the same line: hits of all
-/// caches, of which nothing but their number is to be known. How many.
-std::size_t Shards::take_run(std::span<const std::uint64_t> lines, std::size_t group, std::uint64_t hash) {
-    take(lines.front(), group, hash);
-    std::size_t n = 1;
-    while (n < lines.size() && lines[n] == lines.front())
-        ++n;
-    sampled_ += hash < sample_.limit() ? n - 1 : 0; // by what the first has left of the limit
-    return n;
-}
-
-// Most touches are of lines that were met not long ago and are not in the sample, where no line ever comes
-// into it: what there is to do for these is one comparison that a processor guesses right. (To hash them all
-// takes more than twice as long.)
 void Shards::touch(std::span<const std::uint64_t> lines, std::size_t group) {
     if (group >= seen_.size())
         seen_.resize(group + 1, 0);
     seen_[group] += lines.size();
-    const std::uint64_t* const line = lines.data();
-    std::uint64_t* const out = known_out_.data();
-    const std::size_t n = lines.size();
-    for (std::size_t i = 0; i < n;) {
-        const std::uint64_t at = line[i];
-        if (out[at % out_lines] == at) [[likely]] {
-            ++i;
-            continue;
+    std::size_t next = 0;
+    bool last_is_in = false;                // the line looked at last is in the sample
+    const auto look = [&](std::size_t at) { // at all that are below the limit, in order
+        // A line touched again at once: hits of all caches, of which nothing but their number is to be known.
+        if (at != 0 && lines[at] == lines[at - 1]) {
+            sampled_ += last_is_in ? 1 : 0;
+            return;
         }
-        const std::uint64_t hash = traces::hash_bits_of_line(at + offset_);
-        if (hash < limit_) [[unlikely]] {
-            i += take_run(lines.subspan(i), group, hash);
-        } else {
-            out[at % out_lines] = at;
-            ++i;
-        }
-    }
+        const std::uint64_t hash = traces::hash_bits_of_line(lines[at] + offset_);
+        if (hash < limit_)
+            take(lines[at], group, hash);
+        last_is_in = hash < sample_.limit(); // by what this one has left of the limit
+    };
+    for (; next + filtered_lines <= lines.size(); next += filtered_lines)
+        for (std::uint64_t in = lines_below(&lines[next], offset_, limit_); in != 0; in &= in - 1)
+            look(next + static_cast<std::size_t>(std::countr_zero(in)));
+    for (; next < lines.size(); ++next)
+        if (traces::hash_bits_of_line(lines[next] + offset_) < limit_)
+            look(next);
 }
 
 /// Misses of a sample for each reference that there is.

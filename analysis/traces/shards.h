@@ -70,7 +70,7 @@ public:
             take(line, group, hash);
     }
 
-    /// All of these, one after the other, as touch() of each: several times as fast.
+    /// All of these, one after the other, as touch() of each: several times as fast if they are many.
     void touch(std::span<const std::uint64_t> lines, std::size_t group);
 
     std::uint64_t references(std::size_t group) const { return group < seen_.size() ? seen_[group] : 0; }
@@ -88,7 +88,6 @@ public:
 
 private:
     void take(std::uint64_t line, std::size_t group, std::uint64_t hash);
-    std::size_t take_run(std::span<const std::uint64_t> lines, std::size_t group, std::uint64_t hash);
     double ratio(const LineSample& sample, std::size_t group, std::size_t size) const;
 
     double of_;
@@ -98,8 +97,6 @@ private:
     std::uint64_t sampled_ = 0;
     LineSample sample_;
     std::vector<LineSample> part_samples_;
-    static constexpr std::size_t out_lines = 16384;
-    std::vector<std::uint64_t> known_out_; // lines met last that are not in the sample, by their low bits
 };
 
 } // namespace analysis

@@ -1,4 +1,5 @@
 // Curves from samples of lines and from stretches of a trace, against exact ones.
+#include "analysis/traces/line_filter.h"
 #include "analysis/traces/lru_curve.h"
 #include "analysis/traces/sampled_curve.h"
 #include "tests/analysis/plain_caches.h"
@@ -15,6 +16,22 @@ namespace {
 
 using test::plain_distances;
 using test::random_lines;
+
+/// Of lines near each other and far apart, of rates from none to all.
+TEST(LinesBelow, AreThoseThatHashBelowTheLimit) {
+    std::mt19937_64 random(4);
+    for (const double rate : {0.0, 0.01, 0.3, 1.0})
+        for (int trial = 0; trial < 50; ++trial) {
+            const std::uint64_t offset = trial == 0 ? 0 : random();
+            const auto limit = static_cast<std::uint64_t>(rate * 0x1p53);
+            std::vector<std::uint64_t> lines(filtered_lines);
+            for (std::uint64_t& line : lines)
+                line = random() >> (trial % 64);
+            const std::uint64_t below = lines_below(lines.data(), offset, limit);
+            for (std::size_t i = 0; i < lines.size(); ++i)
+                EXPECT_EQ((below >> i & 1U) != 0, traces::hash_bits_of_line(lines[i] + offset) < limit);
+        }
+}
 
 TEST(Shards, AtRateOneIsExact) {
     const std::vector<std::uint64_t> sizes = {1, 4, 16, 64, 256, 1024};
