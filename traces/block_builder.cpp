@@ -27,7 +27,8 @@ std::vector<std::uint32_t> by_stream(const std::vector<std::uint32_t>& streams) 
 
 } // namespace
 
-BlockBuilder::BlockBuilder() : recent_(1024) {}
+/// More than a block has classes, mostly: to find() one takes as long as all else.
+BlockBuilder::BlockBuilder() : recent_(4096) {}
 
 std::uint32_t BlockBuilder::find(const Class& c) {
     const auto [found, made] = numbers_.try_emplace(c, static_cast<std::uint32_t>(table_.size()));
