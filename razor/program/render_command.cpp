@@ -228,9 +228,9 @@ int RenderCommand::run() const {
         throw UserError("a noise threshold and --target-error both say how many samples there are; leave out "
                         "one (--noise-threshold 0)");
     }
-    std::vector<std::filesystem::path> written(outputs_.begin(), outputs_.end());
-    written.insert(written.end(), {statistics_, trace_});
-    check_apart(written);
+    std::vector<std::filesystem::path> files(outputs_.begin(), outputs_.end());
+    files.insert(files.end(), {statistics_, trace_});
+    check_apart(files);
     for (const std::string& output : outputs_) {
         check_numbered("-o", output, frames);
         check_output(numbered(output, frames.first));
