@@ -108,9 +108,11 @@ void check_writable(const std::filesystem::path& path) {
 void check_apart(const std::vector<std::filesystem::path>& outputs) {
     std::set<std::filesystem::path> seen;
     for (const std::filesystem::path& output : outputs) {
+        if (output.empty())
+            continue;
         std::error_code error;
-        const std::filesystem::path name = std::filesystem::weakly_canonical(output, error);
-        if (!output.empty() && !seen.insert(error ? output : name).second)
+        const auto name = std::filesystem::weakly_canonical(std::filesystem::absolute(output), error);
+        if (!seen.insert(error ? output : name).second)
             throw UserError(fmt::format("{}: is the name of two outputs; name two files",
                                         printable(output.string(), 1000)));
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -126,7 +127,9 @@ TEST_F(Simulator, StaysWithinItsMemory) {
 
 // Threads are in the middle of their screen tiles, which take a minute.
 TEST_F(Simulator, OutputsAreNoInputs) {
-    const std::string scene = "[[mesh]]\nshape = \"box\"\n", machine = "name = \"m\"\n[chip]\ntiles = 1\n";
+    std::ifstream file(std::filesystem::path(RAZOR_SOURCE_DIR) / "configs/machines/tiny.toml");
+    const std::string scene = "[[mesh]]\nshape = \"box\"\n",
+                      machine(std::istreambuf_iterator<char>(file), {});
     folder_.file("s.toml", scene);
     folder_.file("m.toml", machine);
     const std::string run =

@@ -93,22 +93,27 @@ TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
         EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
         EXPECT_EQ(folder_.count(), before) << arguments;
     }
-    // What is read is not written over.
-    ASSERT_EQ(tool("convert unknown a.rzt --from din").code, 0);
-    const std::string trace = text("a.rzt");
-    for (const char* arguments :
-         {"curve a.rzt --json a.rzt", "curve a.rzt --csv ./a.rzt", "picture a.rzt -o a.rzt"}) {
-        const Outcome result = tool(arguments);
-        EXPECT_EQ(result.code, 2) << arguments;
-        EXPECT_EQ(result.error_lines(), 1) << arguments << result.err;
-        EXPECT_EQ(text("a.rzt"), trace) << arguments;
-    }
     // Not even where one is asked to stop.
     const Outcome stopped = run("((while echo 0 10 4; do :; done) 2>/dev/null | timeout -s INT 0.5 " +
                                     program + " convert - b.rzt --from din)",
                                 folder_.path());
     EXPECT_NE(stopped.err.find("interrupted; nothing written"), std::string::npos) << stopped.err;
     EXPECT_EQ(folder_.count(), before);
+}
+
+TEST_F(TraceTool, OutputsAreNoInputs) {
+    folder_.file("a.din", "0 10 4\n1 20 4\n");
+    ASSERT_EQ(tool("convert a.din a.rzt").code, 0);
+    const std::string trace = text("a.rzt");
+    const std::size_t before = folder_.count();
+    for (const char* arguments :
+         {"curve a.rzt --json a.rzt", "curve a.rzt --csv ./a.rzt", "replay a.rzt --json a.rzt"}) {
+        const Outcome result = tool(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << arguments << result.err;
+        EXPECT_EQ(text("a.rzt"), trace) << arguments;
+        EXPECT_EQ(folder_.count(), before) << arguments;
+    }
 }
 
 TEST_F(TraceTool, KeepsWhatWasThereBefore) {
