@@ -73,7 +73,7 @@ TEST_F(Simulator, RefusesWhatASeedCannotKnow) {
         {spp + how + seed + "--frames 2", "leave out --frames"},
         {spp + how + seed + "--estimate-seed 2", "leave out --estimate-seed"},
         {spp + how + "--seed-report bad.json", "bad.json is no seed"},
-        {spp + how + "--seed-report s.toml", "s.toml is no seed"},
+        {spp + how + "--seed-report s.toml", "made of"},
         {spp + how + "--seed-report minus.json", "minus.json: alone_cycles is below 0"},
         {spp + "--estimate closed", "or closed-form"},
     };
