@@ -63,7 +63,7 @@ struct Convert {
         const traces::Format& source_format = traces::format_of_input(from, in, *source);
         const traces::Format& target = traces::format_of_output(to, out);
         const auto input = source_format.read(std::move(source));
-        const auto output = target.write(traces::open_sink(out)); // which may be `in`: it is read first
+        const auto output = target.write(traces::open_sink(out)); // maybe `in`, whose name it gets at the end
         traces::Conversion conversion(*input, *output, target.holds);
         while (!interrupted() && conversion.step()) {
         }
