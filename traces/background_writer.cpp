@@ -28,13 +28,16 @@ void BackgroundWriter::hand_over() {
 }
 
 void BackgroundWriter::build() {
-    auto mark = leaving_.marks.begin();
-    for (std::size_t i = 0; i <= leaving_.references.size(); ++i) {
-        for (; mark != leaving_.marks.end() && mark->before == i; ++mark)
-            builder_.mark(mark->turn);
-        if (i != leaving_.references.size())
-            builder_.add(leaving_.references[i]);
+    std::size_t next = 0;
+    const auto add_up_to = [&](std::size_t end) {
+        for (; next < end; ++next)
+            builder_.add(leaving_.references[next]);
+    };
+    for (const Batch::Mark& m : leaving_.marks) {
+        add_up_to(m.before);
+        builder_.mark(m.turn);
     }
+    add_up_to(leaving_.references.size());
 }
 
 void BackgroundWriter::write_all() {

@@ -150,10 +150,12 @@ void Encoder::put_columns(const Block& block, const std::vector<std::uint32_t>& 
         ranks_[i] = rank[block.classes[i]];
     const bool beside = side_by_side(format_version, set_bits);
     classes_.resize(n * id_bytes);
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::uint32_t byte = 0; byte < id_bytes; ++byte)
-            classes_[beside ? i * id_bytes + byte : byte * n + i] =
-                static_cast<char>(ranks_[i] >> (8 * byte));
+    for (std::uint32_t byte = 0; byte < id_bytes; ++byte) {
+        char* const out = classes_.data() + (beside ? byte : byte * n);
+        const std::size_t step = beside ? id_bytes : 1;
+        for (std::size_t i = 0; i < n; ++i)
+            out[i * step] = static_cast<char>(ranks_[i] >> (8 * byte));
+    }
     const auto of = [&](std::uint32_t c) -> const Class& { return block.table[order[c]]; };
     const std::vector<std::uint32_t> first_of = without_parts(order.size(), of);
     addresses_.resize(n * (longest_varint + 1)); // lines that leave take a byte more
