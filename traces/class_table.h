@@ -3,8 +3,8 @@
 
 #include "traces/reference.h"
 
-#include <array>
-#include <bit>
+#include <cstring>
+#include <type_traits>
 
 namespace traces {
 
@@ -27,14 +27,25 @@ public:
     void take(std::vector<Class>& all);
 
 private:
-    using Words = std::array<std::uint64_t, 3>;
+    struct Words {
+        std::uint64_t a, b, c;
+        bool operator==(const Words& other) const {
+            return ((a ^ other.a) | (b ^ other.b) | (c ^ other.c)) == 0;
+        }
+    };
+    /// (One by one: g++ 12 copies them all to memory and reads them there again, which waits.)
     static Words words_of(const Class& c) {
-        static_assert(sizeof(Class) == sizeof(Words), "a class has no bits that mean nothing");
-        return std::bit_cast<Words>(c);
+        static_assert(sizeof(Class) == sizeof(Words) && std::has_unique_object_representations_v<Class>);
+        const auto word = [&](std::size_t i) {
+            std::uint64_t w = 0;
+            std::memcpy(&w, reinterpret_cast<const char*>(&c) + i * sizeof w, sizeof w);
+            return w;
+        };
+        return {word(0), word(1), word(2)};
     }
     static std::size_t hash(const Words& w) {
         constexpr std::uint64_t odd = 0x9E3779B97F4A7C15U, other = 0xD6E8FEB86659FD93U;
-        const std::uint64_t h = (w[0] * odd ^ w[1]) * other ^ w[2] * odd;
+        const std::uint64_t h = (w.a * odd ^ w.b) * other ^ w.c * odd;
         return static_cast<std::size_t>(h ^ h >> 32U);
     }
     std::uint32_t add(const Class& c, std::uint32_t& slot);

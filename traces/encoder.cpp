@@ -179,12 +179,15 @@ void Encoder::put_columns(const Block& block, const std::vector<std::uint32_t>& 
             put(i);
     }
     addresses_.resize(static_cast<std::size_t>(to - addresses_.data()));
+    std::vector<char> is_piece; // by class
+    for (std::uint32_t c = 0; c < order.size(); ++c)
+        is_piece.push_back(of(c).part == Part::piece ? 1 : 0);
     times_.resize(n * longest_varint);
     to = times_.data();
     for (const Segment& s : block.segments) {
         std::uint64_t before = first_time;
         for (std::size_t i = s.begin; i < s.end; ++i) {
-            if (i != s.begin && (block.what(i).part == Part::piece || makes_room_[i - 1] != 0))
+            if (i != s.begin && (is_piece[ranks_[i]] | makes_room_[i - 1]) != 0)
                 continue; // at the same time
             to = put_varint(to, zigzag(block.times[i] - before));
             before = block.times[i];

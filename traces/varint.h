@@ -1,8 +1,10 @@
 // Numbers as bytes: LEB128, seven bits a byte, lowest first; signed ones zigzag; fixed ones little-endian.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 namespace traces {
@@ -17,14 +19,28 @@ inline std::uint64_t unzigzag(std::uint64_t z) {
 
 inline constexpr std::size_t longest_varint = 10;
 
-/// Writes to where there is room for longest_varint bytes; returns the end.
+/// Writes to where there is room for longest_varint bytes; returns the end. (Numbers are of all lengths: a
+/// loop to the end of each would be guessed wrong at most of them.)
 inline char* put_varint(char* to, std::uint64_t x) {
-    while (x >= 0x80) {
-        *to++ = static_cast<char>(x | 0x80U);
-        x >>= 7U;
+    if (x >> 56U != 0) [[unlikely]] {
+        while (x >= 0x80) {
+            *to++ = static_cast<char>(x | 0x80U);
+            x >>= 7U;
+        }
+        *to++ = static_cast<char>(x);
+        return to;
     }
-    *to++ = static_cast<char>(x);
-    return to;
+    const auto bytes = static_cast<std::size_t>((std::bit_width(x | 1U) + 6) / 7);
+    x = (x & 0xFFFFFFFU) | (x & 0xFFFFFFF0000000U) << 4U; // 7 bits a byte: first of halves, ...
+    x = (x & 0x3FFF00003FFFU) | (x & 0xFFFC0000FFFC000U) << 2U;
+    x = (x & 0x7F007F007F007FU) | (x & 0x3F803F803F803F80U) << 1U;
+    x |= 0x8080808080808080U & ((std::uint64_t{1} << (8 * (bytes - 1))) - 1);
+    if constexpr (std::endian::native == std::endian::little)
+        std::memcpy(to, &x, sizeof x);
+    else
+        for (std::size_t i = 0; i < sizeof x; ++i)
+            to[i] = static_cast<char>(x >> (8 * i));
+    return to + bytes;
 }
 inline void append_varint(std::string& out, std::uint64_t x) {
     char bytes[longest_varint]; // NOLINT: filled as far as used
