@@ -19,9 +19,13 @@ inline std::uint64_t unzigzag(std::uint64_t z) {
 
 inline constexpr std::size_t longest_varint = 10;
 
-/// Writes to where there is room for longest_varint bytes; returns the end. (Numbers are of all lengths: a
-/// loop to the end of each would be guessed wrong at most of them.)
+/// Writes to where there is room for longest_varint bytes; returns the end. (Most numbers are short; the
+/// lengths of others nobody guesses, so there is no loop to their ends.)
 inline char* put_varint(char* to, std::uint64_t x) {
+    if (x < 0x80) {
+        *to = static_cast<char>(x);
+        return to + 1;
+    }
     if (x >> 56U != 0) [[unlikely]] {
         while (x >= 0x80) {
             *to++ = static_cast<char>(x | 0x80U);
