@@ -283,6 +283,35 @@ TEST(TraceFormat, CompressionIsSeenByContent) {
     }
 }
 
+TEST(TraceFormat, StreamsLieSideBySide) {
+    const std::array<std::uint32_t, 6> streams{70000, 3, 4000000000, 65535, 65536, 4};
+    std::vector<Reference> all = mixed_references(5000, 1, 9);
+    std::minstd_rand random(7);
+    BlockBuilder builder;
+    for (Reference& r : all) {
+        r.stream = streams[random() % streams.size()];
+        r.what.part = Part::operation;
+        builder.add(r);
+    }
+    Block block;
+    builder.take(block);
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Reference& a, const Reference& b) { return a.stream < b.stream; });
+    ASSERT_EQ(block.segments.size(), streams.size());
+    ASSERT_EQ(block.segments.back().end, all.size());
+    for (const Segment& s : block.segments)
+        for (std::size_t i = s.begin; i < s.end; ++i) {
+            EXPECT_EQ(s.stream, all[i].stream);
+            EXPECT_EQ(block.times[i], all[i].time);
+            EXPECT_EQ(block.addresses[i], all[i].address);
+            EXPECT_EQ(block.what(i), all[i].what);
+        }
+    std::size_t turns = 0;
+    for (const Turn& turn : block.order)
+        turns += turn.count;
+    EXPECT_EQ(turns, all.size());
+}
+
 TEST(TraceFormat, WhatIsNotCommittedIsNotThere) {
     const std::string folder = testing::TempDir() + "/traces_uncommitted";
     std::filesystem::create_directory(folder);
@@ -295,11 +324,26 @@ TEST(TraceFormat, WhatIsNotCommittedIsNotThere) {
     std::filesystem::remove_all(folder);
 }
 
+/// Seven bits a byte, as README.md says it.
+std::string leb128(std::uint64_t x) {
+    std::string out;
+    for (; x >= 0x80; x >>= 7U)
+        out.push_back(static_cast<char>(x | 0x80U));
+    out.push_back(static_cast<char>(x));
+    return out;
+}
+
 TEST(TraceFormat, NumbersAreWhole) {
-    for (const std::uint64_t x : {std::uint64_t{0}, std::uint64_t{127}, std::uint64_t{128}, ~std::uint64_t{0},
-                                  std::uint64_t{1} << 63}) {
+    std::vector<std::uint64_t> numbers{~std::uint64_t{0}, 0x0123456789ABCDEFU};
+    for (unsigned bit = 0; bit < 64; ++bit)
+        for (const std::uint64_t less : {0U, 1U})
+            for (const std::uint64_t pattern : {0U, 0x5555555U})
+                numbers.push_back((std::uint64_t{1} << bit | (pattern & ((std::uint64_t{1} << bit) - 1))) -
+                                  less);
+    for (const std::uint64_t x : numbers) {
         std::string bytes;
         append_varint(bytes, x);
+        EXPECT_EQ(bytes, leb128(x)) << x;
         VarintReader reader(bytes.data(), bytes.data() + bytes.size());
         EXPECT_EQ(reader.next(), x);
         EXPECT_TRUE(reader.ended() && !reader.bad());
