@@ -6,8 +6,8 @@
 namespace traces {
 
 BackgroundWriter::BackgroundWriter(std::unique_ptr<Sink> sink, const Description& description,
-                                   std::size_t block, bool order)
-    : writer_(std::move(sink), description), block_(block), order_(order), thread_([this] { write_all(); }) {}
+                                   std::size_t block)
+    : writer_(std::move(sink), description), block_(block), thread_([this] { write_all(); }) {}
 
 BackgroundWriter::~BackgroundWriter() {
     end();
@@ -53,8 +53,6 @@ void BackgroundWriter::write_all() {
                 writer_.add_sites(leaving_.sites);
                 build();
                 builder_.take(block);
-                if (!order_)
-                    block.order.clear();
                 writer_.write(block);
             }
         } catch (...) {

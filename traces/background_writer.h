@@ -16,10 +16,8 @@ namespace traces {
 
 class BackgroundWriter {
 public:
-    /// `block`: references of a block, of 1 to `most_references`. Without `order` that of streams among each
-    /// other is not kept.
-    BackgroundWriter(std::unique_ptr<Sink> sink, const Description& description, std::size_t block,
-                     bool order = true);
+    /// `block`: references of a block, of 1 to `most_references`.
+    BackgroundWriter(std::unique_ptr<Sink> sink, const Description& description, std::size_t block);
     /// Without finish(): the sink goes, uncommitted.
     ~BackgroundWriter();
     BackgroundWriter(const BackgroundWriter&) = delete;
@@ -65,7 +63,6 @@ private:
     Writer writer_;
     BlockBuilder builder_;
     std::size_t block_;
-    bool order_;
     Batch coming_, leaving_;
     std::mutex mutex_;
     std::condition_variable changed_;

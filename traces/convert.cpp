@@ -73,6 +73,9 @@ std::string Conversion::lost() const {
     field(tiles_, holds_.tiles, "screen tiles");
     if (!fields.empty())
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
+    const std::string& time = input_.description().time;
+    if (holds_.clocks && time != "clocks" && time != "order")
+        parts.push_back(fmt::format("times are {}, which pass for clocks of memory", time));
     for (std::size_t k = 0; k < kind_names.size(); ++k) {
         if (replaced_[k] != 0)
             parts.push_back(fmt::format("{} {} references are {}", replaced_[k], kind_names[k],

@@ -24,30 +24,35 @@ namespace sim {
 struct Tile;
 
 /// The way from a cache beyond the tiles to memory, where its traffic is counted.
-class MemoryPort final : public Below {
+class MemoryPort : public Below {
 public:
-    explicit MemoryPort(Below& memory) : memory_(memory) {}
+    explicit MemoryPort(std::uint32_t cache) : who_{Ways::Asker::cache, cache} {}
     /// Whose traffic follows.
     void charge(Attribution& attribution) { attribution_ = &attribution; }
 
-    Answer read(const Access& a) override {
-        attribution_->count_memory_read(a.address, a.bytes, a.at, a.column);
-        return memory_.read(a);
+    Answer read(const Access& a) final {
+        attribution_->count_memory_read(a.address, a.column);
+        return read(a, *attribution_);
     }
-    Answer write(const Access& a) override {
-        attribution_->count_memory_write(a.address, a.bytes, a.at, a.column);
-        return memory_.write(a);
+    Answer write(const Access& a) final {
+        attribution_->count_memory_write(a.address, a.column);
+        return write(a, *attribution_);
     }
 
+protected:
+    virtual Answer read(const Access& a, Attribution& attribution) = 0;
+    virtual Answer write(const Access& a, Attribution& attribution) = 0;
+
+    Ways::Asker who_;
+
 private:
-    Below& memory_;
     Attribution* attribution_ = nullptr;
 };
 
 /// A cache of several tiles.
 struct SharedCache {
     SharedCache(const Config& config, unsigned level, const cycle& earliest, const SiteAtHand& site,
-                Below& memory, Tickets& tickets, Attribution& attribution)
+                MemoryPort& memory, Tickets& tickets, Attribution& attribution)
         : port(memory), cache(config, level, false, earliest, site, port, tickets, attribution) {
         port.charge(attribution);
     }
@@ -55,7 +60,7 @@ struct SharedCache {
         port.charge(attribution);
         cache.charge(attribution);
     }
-    MemoryPort port;
+    MemoryPort& port;
     Cache cache;
 };
 
@@ -85,6 +90,9 @@ public:
         for (SharedCache& shared : caches_)
             shared.cache.judge_prefetches();
     }
+    /// A line that is at memory at cycle `t`, no earlier than those before it: it is read or written, and
+    /// nobody waits for the answer.
+    virtual void ask_memory(bool write, std::uint64_t address, cycle t) = 0;
     /// The frame is over: dirty lines that `keep` says so of are written back.
     template <class Keep> void write_back(cycle t, std::size_t column, Keep keep) {
         for (SharedCache& shared : caches_)
@@ -107,7 +115,7 @@ public:
 protected:
     Beyond(const Config& config, Reply reply);
     /// Memory, as a cache here sees it, and the way there.
-    virtual Below& memory_below(std::uint32_t cache) = 0;
+    virtual MemoryPort& memory_below(std::uint32_t cache) = 0;
     void push(const Request& r);
     Request pop();
     std::size_t port_of(const Request& r) const { return r.tile * exits_ + r.exit; }

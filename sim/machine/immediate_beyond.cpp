@@ -72,7 +72,8 @@ void ImmediateBeyond::serve_from_memory(Request r) {
         if (buffer.at > r.at)
             return wait(port.for_buffer, r, buffer.at);
         port.write_backs.hold(buffer.entry,
-                              memory_.write(r.write, ways_.write(asker(r), r.write, r.bytes, r.at)));
+                              write_memory(attribution_of(r), r.write, r.bytes,
+                                           ways_.write(asker(r), r.write, r.bytes, r.at), r.column));
         leave(port.for_buffer, r, port.write_backs);
         if (coherence_)
             coherence_->written(r);
@@ -87,7 +88,8 @@ void ImmediateBeyond::serve_from_memory(Request r) {
     if (coherence_) {
         answer = read_coherently(r);
     } else {
-        answer.ready = memory_.read(r.read, ways_.ask(asker(r), r.read, r.at));
+        answer.ready =
+            read_memory(attribution_of(r), r.read, line_bytes_, ways_.ask(asker(r), r.read, r.at), r.column);
         answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
     }
     port.mshrs.hold(mshr.entry, answer.ready);
@@ -135,8 +137,8 @@ bool ImmediateBeyond::serves_alone(const Request& r) {
     }
     if (r.stage != Request::writes || !caches_.empty())
         return false;
-    attribution_of(r).count_memory_write(r.write, r.bytes, r.at, r.column); // an owner's, on its way since
-    memory_.write(r.write, ways_.in_order(r.at));
+    attribution_of(r).count_memory_write(r.write, r.column); // an owner's, on its way since
+    write_memory(attribution_of(r), r.write, r.bytes, ways_.in_order(r.at), r.column);
     return true;
 }
 
@@ -154,8 +156,8 @@ Answer ImmediateBeyond::read_coherently(const Request& r) {
     const Coherence::Outcome out = ask_others(r, there);
     cycle ready = out.at;
     if (out.from == Coherence::Outcome::below) {
-        attribution_of(r).count_memory_read(r.read, line_bytes_, out.at, r.column);
-        ready = memory_.read(r.read, ways_.in_order(out.at));
+        attribution_of(r).count_memory_read(r.read, r.column);
+        ready = read_memory(attribution_of(r), r.read, line_bytes_, ways_.in_order(out.at), r.column);
         ready = ways_.answer(asker(r), r.read, line_bytes_, std::max(ready, out.known));
         coherence_->arrives(r, std::max(ready, out.finished));
         if (out.finished <= ready)

@@ -17,24 +17,33 @@ public:
     cycle drain() override { return std::max({served_, ways_.network().quiet(), memory_.drain()}); }
     void count_from(cycle t) override;
     void finish() override { memory_.finish(); }
+    void ask_memory(bool write, std::uint64_t address, cycle t) override {
+        if (write)
+            memory_.write(address, t);
+        else
+            memory_.read(address, t);
+    }
     cycle next() override { return waiting_.empty() ? ~cycle{0} : waiting_.front().at; }
     MemoryCounters counters() const override { return memory_.counters(); }
     std::vector<MemoryCounters> rank_counters() const override { return memory_.rank_counters(); }
 
 private:
-    struct MemoryBelow final : Below {
-        MemoryBelow(Memory& m, Ways& w, std::uint32_t cache)
-            : memory(m), ways(w), who{Ways::Asker::cache, cache} {}
-        Answer read(const Access& a) override {
-            const cycle ready = memory.read(a.address, ways.ask(who, a.address, a.at));
-            return {ways.answer(who, a.address, a.bytes, ready), Cause::memory};
+    class MemoryBelow final : public MemoryPort {
+    public:
+        MemoryBelow(ImmediateBeyond& beyond, std::uint32_t cache) : MemoryPort(cache), beyond_(beyond) {}
+
+    private:
+        Answer read(const Access& a, Attribution& attribution) override {
+            Ways& ways = beyond_.ways_;
+            const cycle there = ways.ask(who_, a.address, a.at);
+            const cycle ready = beyond_.read_memory(attribution, a.address, a.bytes, there, a.column);
+            return {ways.answer(who_, a.address, a.bytes, ready), Cause::memory};
         }
-        Answer write(const Access& a) override {
-            return {memory.write(a.address, ways.write(who, a.address, a.bytes, a.at)), Cause::memory};
+        Answer write(const Access& a, Attribution& attribution) override {
+            const cycle there = beyond_.ways_.write(who_, a.address, a.bytes, a.at);
+            return {beyond_.write_memory(attribution, a.address, a.bytes, there, a.column), Cause::memory};
         }
-        Memory& memory;
-        Ways& ways;
-        Ways::Asker who;
+        ImmediateBeyond& beyond_;
     };
     /// Requests of one exit that wait for an entry of a pool whose times are known. They have it in the order
     /// of their sequence: the first is among all that are to be served, at the cycle from which on one is
@@ -49,7 +58,18 @@ private:
         Queue for_mshr{}, for_buffer{};
         std::vector<Request> held{}; // until it is known when an MSHR is free
     };
-    Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(memory_, ways_, cache); }
+    MemoryPort& memory_below(std::uint32_t cache) override { return below_.emplace_back(*this, cache); }
+    /// A line that is at memory at cycle `t`.
+    cycle read_memory(Attribution& of, std::uint64_t address, std::uint32_t bytes, cycle t,
+                      std::size_t column) {
+        of.note_memory(traces::Kind::read, address, bytes, t, column);
+        return memory_.read(address, t);
+    }
+    cycle write_memory(Attribution& of, std::uint64_t address, std::uint32_t bytes, cycle t,
+                       std::size_t column) {
+        of.note_memory(traces::Kind::write, address, bytes, t, column);
+        return memory_.write(address, t);
+    }
     void send_on(const Request& r, const Ways::Leg& leg, cycle t) override;
     void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
         take_bank(r, ways_.send(leg, t));

@@ -140,11 +140,37 @@ void QueuedBeyond::send_back(std::uint64_t id, cycle t) {
 }
 
 /// A cache here asks for a line, or writes one. Returns its ticket.
-cycle QueuedBeyond::send_for(Ways::Asker cache, const Access& a, Transfer::Goes goes) {
+cycle QueuedBeyond::send_for(Ways::Asker cache, const Access& a, Transfer::Goes goes,
+                             Attribution& attribution) {
     const cycle ticket = tickets_.open();
-    send({.goes = goes, .who = cache, .address = a.address, .bytes = a.bytes, .ticket = ticket},
+    send({.goes = goes,
+          .who = cache,
+          .address = a.address,
+          .bytes = a.bytes,
+          .ticket = ticket,
+          .attribution = &attribution,
+          .column = a.column},
          std::max(a.at, served_));
     return ticket;
+}
+
+/// A line is there.
+void QueuedBeyond::note_at_memory(const Transfer& line) {
+    const bool of_tile = line.who.kind == Ways::Asker::tile;
+    Attribution& of = of_tile ? attribution_of(line.request) : *line.attribution;
+    of.note_memory(line.goes == Transfer::to_be_read ? traces::Kind::read : traces::Kind::write, line.address,
+                   line.bytes, served_, of_tile ? line.request.column : line.column);
+}
+
+void QueuedBeyond::ask_memory(bool write, std::uint64_t address, cycle t) {
+    served_ = std::max(served_, t);
+    memory_.advance_to(served_);
+    if (write)
+        memory_.write(0, address, served_);
+    else
+        memory_.read(0, address, served_);
+    memory_.reads().clear();
+    memory_.writes().clear();
 }
 
 // --- events
@@ -152,8 +178,10 @@ cycle QueuedBeyond::send_for(Ways::Asker cache, const Access& a, Transfer::Goes 
 void QueuedBeyond::act(const Event& e) {
     switch (e.kind) {
     case Event::reads:
+        note_at_memory(transfers_[e.what]);
         return memory_.read(e.what, transfers_[e.what].address, served_);
     case Event::writes: {
+        note_at_memory(transfers_[e.what]);
         const Transfer& line = transfers_[e.what];
         if (coherence_ && line.who.kind == Ways::Asker::tile && line.request.mshr != Request::no_entry)
             coherence_->written(line.request);
@@ -284,7 +312,7 @@ void QueuedBeyond::ask_others(Request r) {
     r.decision = new_decision();
     coherence_->ask(r, r.at + coherence_->look_up(),
                     {[this, r](cycle at) {
-                         attribution_of(r).count_memory_read(r.read, line_bytes_, at, r.column);
+                         attribution_of(r).count_memory_read(r.read, r.column);
                          arrive(keep({.goes = Transfer::to_be_read,
                                       .who = asker(r),
                                       .address = r.read,
@@ -324,7 +352,7 @@ void QueuedBeyond::is_over(const Request& r, const Coherence::Outcome& out) {
 
 /// What an owner had changed comes to memory, as others read it.
 void QueuedBeyond::write_owners(const Request& r) {
-    attribution_of(r).count_memory_write(r.write, r.bytes, r.at, r.column);
+    attribution_of(r).count_memory_write(r.write, r.column);
     arrive(keep({.goes = Transfer::to_be_written,
                  .who = asker(r),
                  .address = r.write,

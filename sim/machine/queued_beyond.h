@@ -25,6 +25,7 @@ public:
     cycle drain() override;
     void count_from(cycle t) override { memory_.advance_to(t); }
     void finish() override { drain(); }
+    void ask_memory(bool write, std::uint64_t address, cycle t) override;
     cycle next() override;
     MemoryCounters counters() const override { return memory_.queues().counters(); }
     std::vector<MemoryCounters> rank_counters() const override { return memory_.queues().rank_counters(); }
@@ -55,6 +56,9 @@ private:
         cycle ticket = 0;        // of a cache here, among tickets_
         Request request{};       // of a tile
         Cause from = Cause::memory;
+        // Of a cache's: whose traffic it is.
+        Attribution* attribution = nullptr;
+        std::size_t column = 0;
     };
     /// Where caches are coherent: what others say of a line that comes from below, and which answer waits
     /// for that, by Request::decision.
@@ -72,19 +76,21 @@ private:
         Request request;
         cycle ticket;
     };
-    struct MemoryBelow final : Below {
-        MemoryBelow(QueuedBeyond& b, std::uint32_t cache) : beyond(b), who{Ways::Asker::cache, cache} {}
-        Answer read(const Access& a) override {
-            return {beyond.send_for(who, a, Transfer::to_be_read), Cause::memory};
+    class MemoryBelow final : public MemoryPort {
+    public:
+        MemoryBelow(QueuedBeyond& beyond, std::uint32_t cache) : MemoryPort(cache), beyond_(beyond) {}
+
+    private:
+        Answer read(const Access& a, Attribution& attribution) override {
+            return {beyond_.send_for(who_, a, Transfer::to_be_read, attribution), Cause::memory};
         }
-        Answer write(const Access& a) override {
-            return {beyond.send_for(who, a, Transfer::to_be_written), Cause::memory};
+        Answer write(const Access& a, Attribution& attribution) override {
+            return {beyond_.send_for(who_, a, Transfer::to_be_written, attribution), Cause::memory};
         }
-        QueuedBeyond& beyond;
-        Ways::Asker who;
+        QueuedBeyond& beyond_;
     };
 
-    Below& memory_below(std::uint32_t cache) override { return below_.emplace_back(*this, cache); }
+    MemoryPort& memory_below(std::uint32_t cache) override { return below_.emplace_back(*this, cache); }
     void send_on(const Request& r, const Ways::Leg& leg, cycle t) override {
         leave(keep({.goes = Transfer::on, .request = r}), leg, t);
     }
@@ -103,7 +109,8 @@ private:
     std::uint64_t keep(const Transfer& transfer);
     void leave(std::uint64_t transfer, const Ways::Leg& leg, cycle t);
     void arrive(std::uint64_t transfer, cycle there);
-    cycle send_for(Ways::Asker cache, const Access& a, Transfer::Goes goes);
+    cycle send_for(Ways::Asker cache, const Access& a, Transfer::Goes goes, Attribution& attribution);
+    void note_at_memory(const Transfer& line);
     void send(const Transfer& line, cycle t);
     void send_back(std::uint64_t transfer, cycle t);
     void act(const Event& e);

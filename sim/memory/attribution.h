@@ -55,14 +55,17 @@ public:
         if (!idle_)
             map_.note_level_of(address, bytes, other, tile_, notes_);
     }
-    /// Memory is asked for so many bytes of a line at cycle `t`, or is given them.
-    void count_memory_read(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
+    /// A line is asked of memory, or given to it.
+    void count_memory_read(std::uint64_t address, std::size_t column) {
         count(address, &Traffic::memory_reads, column);
-        note(TraceLevel::memory, traces::Kind::read, address, bytes, t, column, tile_);
     }
-    void count_memory_write(std::uint64_t address, std::uint32_t bytes, std::uint64_t t, std::size_t column) {
+    void count_memory_write(std::uint64_t address, std::size_t column) {
         count(address, &Traffic::memory_writes, column);
-        note(TraceLevel::memory, traces::Kind::write, address, bytes, t, column, tile_);
+    }
+    /// ... and so many bytes of it are there at cycle `t`. In the order in which memory gets them.
+    void note_memory(traces::Kind kind, std::uint64_t address, std::uint32_t bytes, std::uint64_t t,
+                     std::size_t column) {
+        note(TraceLevel::memory, kind, address, bytes, t, column, tile_);
     }
     /// From now on nobody asks what belongs to what, until it is said again.
     void set_idle(bool on) {

@@ -29,7 +29,7 @@ public:
 
     Answer read(const Access& a) override {
         if (to_memory_ && !coherent_)
-            attribution_.count_memory_read(a.address, a.bytes, a.at, a.column);
+            attribution_.count_memory_read(a.address, a.column);
         if (tickets_.at_once()) [[unlikely]] {
             ++leaving_.reads_at_once;
             return {a.at, Cause::memory};
@@ -55,7 +55,7 @@ public:
     }
     Answer write(const Access& a) override {
         if (to_memory_)
-            attribution_.count_memory_write(a.address, a.bytes, a.at, a.column);
+            attribution_.count_memory_write(a.address, a.column);
         if (tickets_.at_once()) [[unlikely]] {
             ++leaving_.writes_at_once;
             return {a.at, Cause::memory};

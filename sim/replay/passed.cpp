@@ -1,4 +1,5 @@
 // What a level of caches passed on in a run, passed on to the levels below once more.
+#include "sim/replay/addresses.h"
 #include "sim/replay/replay_machine.h"
 #include "sim/trace/passing.h"
 
@@ -6,6 +7,8 @@ namespace sim {
 
 Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
                            cycle t) {
+    if (is_memory())
+        return pass_to_memory(a, s, address, bytes, t);
     const Passing passing(a.detail);
     s.tile->site = passing.site();
     Access access{address, bytes, t, a.column};
@@ -39,6 +42,28 @@ Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t a
         pass_word(a, s, address, t);
     }
     return {t, Cause::l1};
+}
+
+/// Memory has it at cycle `t`: each of its lines.
+Answer ReplayMachine::pass_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address,
+                                     std::uint32_t bytes, cycle t) {
+    const bool write = a.kind == traces::Kind::write || a.kind == traces::Kind::write_back ||
+                       a.kind == traces::Kind::write_through;
+    const std::uint64_t line_bytes = std::uint64_t{1} << line_shift_, before = address & (line_bytes - 1);
+    for (std::uint64_t from = 0; from < before + bytes; from += line_bytes) {
+        const std::uint64_t line = address - before + from;
+        std::uint64_t counted = line;
+        if (by_reference_) {
+            counted %= CompactAddresses::end;
+            place(a, counted);
+        }
+        if (write)
+            s.tile->attribution.count_memory_write(counted, a.column);
+        else
+            s.tile->attribution.count_memory_read(counted, a.column);
+        beyond_->ask_memory(write, line, t);
+    }
+    return {t, Cause::memory};
 }
 
 /// Word to a level below, or beyond the tile.

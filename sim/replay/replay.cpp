@@ -12,21 +12,27 @@ namespace {
 
 /// Of a machine's windows, in which references may lie this far ahead.
 constexpr cycle far_ahead = cycle{1} << 24U;
-/// No time of a trace is later: clocks of memories are counted in picoseconds.
-constexpr cycle latest_cycle = cycle{1} << 48U;
 
 } // namespace
 
 Replay::Replay(const Config& config, const traces::Description& about, const ReplayOptions& options,
                ReplayListener* listener)
     : vocabulary_(about, options), machine_(config, about, vocabulary_.labels()), listener_(listener),
-      clocked_(about.time == "cycles" || about.time == "instructions"),
-      following_(about.window == machine_.window_cycles()), eventful_(config.sim.mode == "reference") {}
+      clocked_(about.time == "cycles" || about.time == "instructions" ||
+               (about.time == "clocks" && machine_.is_memory())),
+      following_(about.window == machine_.window_cycles() && !machine_.is_memory()),
+      eventful_(config.sim.mode == "reference" && !machine_.is_memory()),
+      from_zero_(following_ || (machine_.is_memory() && about.window != 0)), clocks_(about.time == "clocks"),
+      clock_ps_(wide(config.memory.clock_ps)), cycle_ps_(wide(config.chip.clock_ps)) {}
 
 void Replay::check(const traces::Block& block) const {
     const std::uint32_t last = block.segments.back().stream;
     if (last < machine_.streams())
         return;
+    if (machine_.is_memory())
+        throw traces::Error(fmt::format("the trace has requests of a tile {}, but the machine has {} tiles, "
+                                        "numbered from 0; give a machine with more (-g chip.tiles=...)",
+                                        last, machine_.streams()));
     if (machine_.first_level() == 0)
         throw traces::Error(
             fmt::format("the trace has a stream {}, but the machine {} threads, numbered from 0; "
@@ -75,7 +81,7 @@ void Replay::add(const traces::Block& block) {
     following_ = following_ && !block.order.empty();
     if (!begun_) {
         begun_ = true;
-        origin_ = following_ ? 0 : *std::min_element(block.times.begin(), block.times.end());
+        origin_ = from_zero_ ? 0 : *std::min_element(block.times.begin(), block.times.end());
     }
     if (block.order.empty())
         return traces::each_in_time(
@@ -95,6 +101,10 @@ void Replay::add(const traces::Block& block) {
 
 /// A window or the end, as the trace has it.
 void Replay::mark(const traces::Turn& turn) {
+    if (machine_.is_memory()) { // which goes on until it has all that it was asked for
+        result_.ended = result_.ended || turn.what == traces::Turn::What::end;
+        return;
+    }
     if (turn.what == traces::Turn::What::end) {
         if (result_.ended) // and of a level above those that are driven, what it wrote back then
             return machine_.settle_level();
@@ -141,9 +151,19 @@ void Replay::pass_window(cycle t, std::uint64_t time) {
         come_to(t);
 }
 
+/// ... after the trace's origin.
+inline cycle Replay::cycle_of(std::uint64_t time) const {
+    const std::uint64_t since = time - std::min(time, origin_);
+    if (!clocks_) [[likely]]
+        return since;
+    if (since >= latest_cycle)
+        return latest_cycle;
+    return since / cycle_ps_ * clock_ps_ + since % cycle_ps_ * clock_ps_ / cycle_ps_;
+}
+
 /// The cycle of the next reference, whose window is open.
 inline cycle Replay::arrive(std::uint64_t time) {
-    const cycle t = (clocked_ ? time - std::min(time, origin_) : result_.references) + offset_;
+    const cycle t = (clocked_ ? cycle_of(time) : result_.references) + offset_;
     if (t >= machine_.window_end()) [[unlikely]]
         pass_window(t, time);
     return std::max(t, machine_.earliest());
@@ -160,7 +180,7 @@ inline void Replay::perform(const ReplayAction& a, std::uint32_t stream, std::ui
 
 /// References of a stream, one after the other.
 void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end) {
-    const bool compacts = machine_.by_reference();
+    const bool compacts = machine_.by_reference() && !machine_.is_memory(); // of a DRAM any has a place
     const unsigned shift = machine_.line_shift();
     for (std::size_t i = begin; i < end;) {
         const std::uint32_t number = block.classes[i];
@@ -273,7 +293,7 @@ Answer Replay::wait_for_room(const ReplayAction& a, std::uint32_t stream, std::u
 }
 
 ReplayResult Replay::finish(const traces::Description& about) {
-    if (!result_.ended)
+    if (!result_.ended || machine_.is_memory())
         machine_.settle(machine_.window_end());
     else if (machine_.first_level() != 0)
         machine_.end_frame(end_);

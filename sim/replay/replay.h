@@ -3,11 +3,13 @@
 // ones have brought; where the machine has no room for one (an MSHR), it and all that follow come so much
 // later. On the machine that a trace of its cores, or of what a level of caches in its tiles passed on, was
 // recorded on, in its fast mode and from cold caches, nothing has to wait, and all that the memory system
-// counts is what the run counted. In the reference mode a trace does not tell what happened within a tile
+// counts is what the run counted. (What memory was asked for has no windows: each request comes when it came
+// there, in either mode.) In the reference mode a trace does not tell what happened within a tile
 // between two accesses of one operation, and when a reference waited for room in an L1: that is what counts
 // may be off by.
 //
-// Times that are no cycles or instructions do not count: references come one a cycle.
+// Times that are no cycles or instructions do not count: references come one a cycle. Clocks of memory count
+// where memory alone is driven.
 #pragma once
 
 #include "sim/replay/addresses.h"
@@ -102,6 +104,7 @@ private:
                 std::uint32_t accesses, cycle t, const Answer& refused);
     Answer wait_for_room(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
                          std::uint32_t bytes, std::uint32_t accesses, cycle& t);
+    cycle cycle_of(std::uint64_t time) const;
     cycle arrive(std::uint64_t time);
     void pass_window(cycle t, std::uint64_t time);
     void come_to(cycle t);
@@ -118,6 +121,9 @@ private:
     std::vector<std::uint8_t> goes_on_, leads_; // likewise: equal where one goes on with the other
     bool clocked_, following_;                  // times are cycles; the run's windows are followed
     bool eventful_;                             // the machine is in the reference mode
+    bool from_zero_;                            // times are the run's
+    bool clocks_;                               // ... or clocks of memory, of which each is
+    std::uint64_t clock_ps_, cycle_ps_;         // so many picoseconds, and a cycle
     bool begun_ = false;
     cycle end_ = 0;
     std::uint64_t origin_ = 0, offset_ = 0;

@@ -24,13 +24,15 @@ bool uses_strides(const Config& config) {
 unsigned level_of(const traces::Description& about, const Config& config) {
     if (about.level.empty() || about.level == "core")
         return 0;
+    if (about.level == "dram")
+        return config.cache_levels();
     for (unsigned level = 1; level <= config.tile_levels(); ++level)
         if (about.level == fmt::format("l{}", level))
             return level;
     throw traces::Error(fmt::format(
         "the trace is of what passes level {}, which is beyond this machine's tiles: only what cores ask "
-        "for, "
-        "or what passes a level of a tile, can be replayed; record it at level core, or l1 to l{}",
+        "for, what passes a level of a tile, or what memory is asked for, can be replayed; record it at "
+        "level core, l1 to l{}, or dram",
         about.level, config.tile_levels()));
 }
 
@@ -48,6 +50,8 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
       shortest_line_(shortest_line(config)), l1_latency_(wide(config.l1.latency)) {
     level_ = level_of(about, config);
     passing_latency_ = level_ == 0 ? 0 : wide(config.cache(level_ - 1).latency);
+    if (is_memory())
+        line_shift_ = static_cast<unsigned>(std::countr_zero(wide(config.last_cache().line_bytes)));
     std::vector<std::string> names = about.structures;
     std::vector<LineMap::Extent> extents;
     std::uint64_t end = CompactAddresses::end;
@@ -78,7 +82,9 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
         }
         if (tile.events)
             tile.events->tell([](cycle, const Cache*) {});
-        if (level_ == 0)
+        if (is_memory())
+            seats_.push_back({&tile, nullptr, 0, nullptr});
+        if (level_ == 0 || is_memory())
             continue;
         const std::size_t sharing = level_ == 1 ? 1 : tile.sharing[level_ - 1];
         for (std::size_t c = 0; c < tile.cores.size(); c += sharing)
@@ -87,7 +93,10 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
     }
     sites_.resize(tiles_.size());
     beyond_->connect(tiles_);
-    open_window(window_cycles_, 0);
+    if (is_memory())
+        window_end_ = latest_cycle; // there is nobody who would have to wait for one
+    else
+        open_window(window_cycles_, 0);
 }
 
 void ReplayMachine::set_floors(cycle served) {
@@ -215,6 +224,10 @@ void ReplayMachine::discard(const ReplayAction& a, const Seat& s, std::uint64_t 
 }
 
 void ReplayMachine::settle(cycle served) {
+    if (is_memory()) {
+        end_ = beyond_->drain();
+        return;
+    }
     if (tiles_.front().events)
         finish_windows(served);
     serve(served);

@@ -7,6 +7,8 @@
 // there, but only stand in for those of the run: levels below find in them what a trace says that they found
 // (traces::Kind::recall).
 //
+// A trace of what memory is asked for drives memory alone, request by request, each when it came there.
+//
 // In the reference mode what happens within a tile by itself happens when let_events_happen() says so, and in
 // the windows of the run, as far as a trace and these events tell them.
 #pragma once
@@ -51,6 +53,9 @@ struct ReplayAction {
     std::uint32_t detail = 0; // sim/trace/passing.h
 };
 
+/// No time of a trace is later: clocks of memories are counted in picoseconds.
+inline constexpr cycle latest_cycle = cycle{1} << 48U;
+
 /// Of traces that do not say what lies where: names may still come.
 inline constexpr std::size_t most_replayed_structures = 4096;
 
@@ -61,8 +66,10 @@ public:
 
     /// That references may be of: threads, or caches of the trace's level.
     std::size_t streams() const { return seats_.size(); }
-    /// The first level of caches that is driven, 0 for the L1.
+    /// The first level of caches that is driven, 0 for the L1; memory comes after the last.
     unsigned first_level() const { return level_; }
+    /// Whether a trace is of what memory is asked for, and nothing else is driven.
+    bool is_memory() const { return level_ == config_.cache_levels(); }
     std::uint64_t window_cycles() const { return window_cycles_; }
     cycle window_end() const { return window_end_; }
     /// No reference comes before this cycle any more.
@@ -131,10 +138,12 @@ private:
                          cycle t);
     Answer pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
     void settle_stand_ins();
+    Answer pass_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
+                          cycle t);
     void pass_word(const ReplayAction& a, const Seat& s, std::uint64_t address, cycle t);
     /// What is left in caches that stand in for others, which are empty then.
     template <class Visit> void each_stand_in(Visit visit) {
-        if (level_ == 0)
+        if (level_ == 0 || is_memory())
             return;
         for (const Seat& s : seats_)
             s.cache->stand_down([&](std::uint64_t address, bool dirty) { visit(s, address, dirty); });

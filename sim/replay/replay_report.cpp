@@ -61,9 +61,10 @@ json counts(const Report& r, unsigned first_level) {
         for (json& c : out["l1_by_core"])
             c.erase("busy_cycles");
     }
-    if (r.config.coherence.kept())
+    const bool memory_alone = first_level == r.config.cache_levels();
+    if (r.config.coherence.kept() && !memory_alone)
         out["coherence"] = json_of_counters(r.coherence, coherence_counters);
-    if (!r.network.ideal())
+    if (!r.network.ideal() && !memory_alone)
         out["network"] = json_of_counters(r.network.counters, network_counters);
     out["memory"] = json_of_counters(r.memory, memory_counters);
     for (const MemoryCounters& c : r.memory_by_rank)

@@ -38,6 +38,22 @@ What what_of(const traces::Class& c, const ReplayOptions& options) {
     }
 }
 
+/// Memory reads and writes, whatever for.
+What what_at_memory(traces::Kind kind) {
+    switch (kind) {
+    case traces::Kind::read:
+    case traces::Kind::modify:
+    case traces::Kind::fetch:
+    case traces::Kind::prefetch:
+    case traces::Kind::write:
+    case traces::Kind::write_back:
+    case traces::Kind::write_through:
+        return What::pass;
+    default:
+        return What::nothing;
+    }
+}
+
 } // namespace
 
 /// Tables of a trace without regions may grow while it is read.
@@ -66,10 +82,13 @@ void ReplayVocabulary::learn(const std::vector<traces::Class>& table,
                             "told apart; leave some out",
                             max_columns, most_replayed_structures));
         ReplayAction a;
-        a.what = level_.empty() ? what_of(c, options_) : c.detail != 0 ? What::pass : What::nothing;
+        a.what = level_.empty()     ? what_of(c, options_)
+                 : level_ == "dram" ? what_at_memory(c.kind)
+                 : c.detail != 0    ? What::pass
+                                    : What::nothing;
         a.kind = c.kind;
         a.detail = c.detail;
-        if (!level_.empty() && c.kind == traces::Kind::read && c.detail == 0)
+        if (!level_.empty() && level_ != "dram" && c.kind == traces::Kind::read && c.detail == 0)
             throw traces::Error(
                 fmt::format("the trace does not say how its references pass level {}: an earlier "
                             "version recorded it; record it again",

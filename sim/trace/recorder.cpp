@@ -139,14 +139,13 @@ void Recorder::begin(const Labels& labels, const std::vector<std::string>& struc
                                   (core >= settings_.cores.first && core <= settings_.cores.last));
     }
     for (std::size_t tile = 0; tile < wide(config_.chip.tiles); ++tile)
-        taps_.emplace_back(filter_);
+        taps_.emplace_back(filter_, is_of_tiles() || tile == 0 ? nullptr : &taps_.front());
     names_.resize(taps_.size());
     if (sharing_ != nullptr) {
         sharing_->begin(config_, structures.size());
         return;
     }
-    // What is asked for beyond the tiles is in no order of its own.
-    writer_.emplace(std::move(sink_), d, block_references, is_of_tiles());
+    writer_.emplace(std::move(sink_), d, block_references);
 }
 
 void Recorder::start(std::uint64_t cycle) {

@@ -38,7 +38,11 @@ public:
         std::int32_t pixel;   // of the picture, for which it was; below 0: none
     };
 
-    explicit TraceTap(const Filter& filter) : filter_(&filter) {}
+    /// `all`: where tiles note what they do in one order, or null.
+    TraceTap(const Filter& filter, TraceTap* all)
+        : filter_(&filter), noted_(all != nullptr ? all->noted_ : &own_) {}
+    TraceTap(const TraceTap&) = delete;
+    TraceTap& operator=(const TraceTap&) = delete;
 
     bool is_at(unsigned level) const { return filter_->level == level && on_; }
     /// Whether it is of what caches pass on, of which level `level` (1: the L2) is asked by itself.
@@ -61,14 +65,14 @@ public:
             return;
         if (f.sample < 1 && traces::hash_of_line(n.address >> f.line_shift) >= f.sample)
             return;
-        noted_.push_back(n);
-        noted_.back().time = latest_ = time;
+        noted_->push_back(n);
+        noted_->back().time = latest_ = time;
     }
 
     /// The number of a place in the source, for this tile; 0 is none.
     std::uint32_t site_number(isa::timing::site where) { return sites_.number(where) + 1; }
     const Sites& sites() const { return sites_; }
-    std::vector<Noted>& noted() { return noted_; }
+    std::vector<Noted>& noted() { return *noted_; }
     /// Of the access of an L1 at hand.
     std::uint32_t site = 0;
 
@@ -77,7 +81,8 @@ private:
     bool on_ = false;
     std::uint64_t origin_ = 0, latest_ = 0;
     Sites sites_;
-    std::vector<Noted> noted_;
+    std::vector<Noted>* noted_;
+    std::vector<Noted> own_;
 };
 
 } // namespace sim

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 10> columns = {"stream",    "kind",  "address", "size", "site",
                                                       "structure", "phase", "work",    "part", "detail"};
 constexpr std::array<std::string_view, parts> part_names = {"operation", "access", "piece", "aside"};
-constexpr std::array<std::string_view, 4> units = {"cycles", "instructions", "seconds", "order"};
+constexpr std::array<std::string_view, 5> units = {"cycles", "clocks", "instructions", "seconds", "order"};
 enum Column : std::size_t {
     stream,
     kind,

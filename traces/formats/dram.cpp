@@ -14,7 +14,7 @@ public:
     DramInput(std::unique_ptr<Source> source, bool cycles) : TextInput(std::move(source)), cycles_(cycles) {
         description_.level = "dram";
         if (cycles_)
-            description_.time = "cycles";
+            description_.time = "clocks";
     }
 
 private:

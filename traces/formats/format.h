@@ -53,7 +53,8 @@ struct Holds {
     bool parts = false; // of which operation a reference is, and the details of its class
     bool order =
         false; // in which all streams' references were made, and the windows in which streams went on
-    bool tiles = false; // of the picture
+    bool tiles = false;  // of the picture
+    bool clocks = false; // times are memory's clocks
     bool holds(Kind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 
