@@ -4,6 +4,7 @@
 #include "tests/sim/replay/workload.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,6 +95,31 @@ TEST_P(ExactReplay, OfWhatALevelPassesOnCountsWhatTheRunCountedBelow) {
             EXPECT_FALSE(one.part.starts_with(settings.level)) << one.part;
         expect_much(run.report);
         EXPECT_GT(all.size(), 50U);
+    }
+}
+
+/// What memory is asked for drives it alone, whichever of its models: in both modes all that it counts is
+/// what it counted in the run.
+TEST_P(ExactReplay, OfWhatMemoryIsAskedForCountsWhatItCounted) {
+    const Case& c = GetParam();
+    const std::vector<std::string> reference{"sim.mode=reference", "memory.controller=queued"};
+    for (const std::vector<std::string>& mode : {{}, {"memory.controller=queued"}, reference}) {
+        SCOPED_TRACE(fmt::format("{}", fmt::join(mode, " ")));
+        const Config config = read_machine(machine(c.file), with(c.settings, mode));
+        TraceSettings settings;
+        settings.level = "dram";
+        const test::Recorded run = test::record(config, config.all_threads() > 64 ? 150 : 700, settings);
+        const ReplayResult result = replay(run.trace, config);
+        EXPECT_EQ(result.first_level, config.cache_levels());
+        EXPECT_TRUE(result.ended);
+        EXPECT_EQ(result.waits, 0U);
+        EXPECT_EQ(result.references, run.report.memory.reads + run.report.memory.writes);
+        const std::vector<Comparison> all = compare_with_run(result, print_json(run.report), "run");
+        EXPECT_EQ(differences(all), "");
+        for (const Comparison& one : all)
+            EXPECT_TRUE(one.part.starts_with("memory") || one.counter.starts_with("memory")) << one.part;
+        expect_much(run.report);
+        EXPECT_GT(all.size(), 20U);
     }
 }
 

@@ -217,6 +217,8 @@ TEST(IndependentReplay, WhatCannotBeReplayedIsSaid) {
               std::string::npos);
     traces::Description dram = description("order");
     dram.level = "dram";
+    EXPECT_NE(mistake([&] { Replay(config, dram, {}).add(block); }).find("chip.tiles"), std::string::npos);
+    dram.level = "l7";
     EXPECT_NE(mistake([&] { Replay(config, dram, {}); }).find("level core"), std::string::npos);
     Config reference = config;
     reference.sim.mode = "reference";
