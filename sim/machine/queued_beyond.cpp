@@ -114,6 +114,8 @@ void QueuedBeyond::arrive(std::uint64_t id, cycle there) {
         free_.push_back(id);
         return arrives(there);
     }
+    case Transfer::unasked:
+        return;
     case Transfer::back:
         const Transfer t = transfers_[id];
         free_.push_back(id);
@@ -165,12 +167,12 @@ void QueuedBeyond::note_at_memory(const Transfer& line) {
 void QueuedBeyond::ask_memory(bool write, std::uint64_t address, cycle t) {
     served_ = std::max(served_, t);
     memory_.advance_to(served_);
+    const std::uint64_t line = keep({.goes = Transfer::unasked});
     if (write)
-        memory_.write(0, address, served_);
+        memory_.write(line, address, served_);
     else
-        memory_.read(0, address, served_);
-    memory_.reads().clear();
-    memory_.writes().clear();
+        memory_.read(line, address, served_);
+    take_answers();
 }
 
 // --- events
@@ -460,6 +462,10 @@ void QueuedBeyond::take_answers() {
         return;
     for (const WaitingMemory::Done& d : memory_.reads()) {
         const Transfer& t = transfers_[d.id];
+        if (t.goes == Transfer::unasked) {
+            free_.push_back(d.id);
+            continue;
+        }
         if (!coherence_ || !config_.coherence.snoops() || t.who.kind != Ways::Asker::tile) {
             send_back(d.id, d.at);
             continue;
@@ -475,9 +481,9 @@ void QueuedBeyond::take_answers() {
     }
     for (const WaitingMemory::Done& d : memory_.writes()) {
         const Transfer& t = transfers_[d.id];
-        if (t.who.kind == Ways::Asker::tile)
+        if (t.goes != Transfer::unasked && t.who.kind == Ways::Asker::tile)
             answer(t.request, {d.at, Cause::memory});
-        else
+        else if (t.goes != Transfer::unasked)
             answer_ticket(t.ticket, {d.at, Cause::memory});
         free_.push_back(d.id);
     }

@@ -49,7 +49,7 @@ private:
     };
     /// What is on its way over the network, or in memory.
     struct Transfer {
-        enum Goes : std::uint8_t { to_be_read, to_be_written, to_a_bank, on, word, back } goes;
+        enum Goes : std::uint8_t { to_be_read, to_be_written, to_a_bank, on, word, back, unasked } goes;
         Ways::Asker who{};
         std::uint64_t address = 0;
         std::uint32_t bytes = 0; // that come back, or go there
