@@ -96,6 +96,12 @@ Attribution& Beyond::attribution_of(const Request& r) {
     return (*tiles_)[r.tile].attribution;
 }
 
+MemoryPort& Beyond::way_to_memory(std::uint32_t tile) {
+    MemoryPort& port = caches_[tile / tiles_sharing_].port;
+    port.charge((*tiles_)[tile].attribution);
+    return port;
+}
+
 /// A line is written elsewhere, or dead: word of it goes to each cache that may have it, and acts there.
 void Beyond::tell(Request r) {
     const std::size_t own = r.tile / tiles_sharing_;

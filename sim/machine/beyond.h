@@ -93,6 +93,8 @@ public:
     /// A line that is at memory at cycle `t`, no earlier than those before it: it is read or written, and
     /// nobody waits for the answer.
     virtual void ask_memory(bool write, std::uint64_t address, cycle t) = 0;
+    /// How the cache here that a tile shares asks memory for the tile's sake.
+    MemoryPort& way_to_memory(std::uint32_t tile);
     /// The frame is over: dirty lines that `keep` says so of are written back.
     template <class Keep> void write_back(cycle t, std::size_t column, Keep keep) {
         for (SharedCache& shared : caches_)

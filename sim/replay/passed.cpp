@@ -7,8 +7,13 @@ namespace sim {
 
 Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
                            cycle t) {
-    if (is_memory())
-        return pass_to_memory(a, s, address, bytes, t);
+    if (is_memory()) {
+        if (beyond_tiles_)
+            send_to_memory(a, s, address, bytes, t);
+        else
+            give_to_memory(a, s, address, bytes, t);
+        return {t, Cause::memory};
+    }
     const Passing passing(a.detail);
     s.tile->site = passing.site();
     Access access{address, bytes, t, a.column};
@@ -44,9 +49,9 @@ Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t a
     return {t, Cause::l1};
 }
 
-/// Memory has it at cycle `t`: each of its lines.
-Answer ReplayMachine::pass_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address,
-                                     std::uint32_t bytes, cycle t) {
+/// It is there at cycle `t`: each of its lines.
+void ReplayMachine::give_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address,
+                                   std::uint32_t bytes, cycle t) {
     const bool write = a.kind == traces::Kind::write || a.kind == traces::Kind::write_back ||
                        a.kind == traces::Kind::write_through;
     const std::uint64_t line_bytes = std::uint64_t{1} << line_shift_, before = address & (line_bytes - 1);
@@ -63,7 +68,29 @@ Answer ReplayMachine::pass_to_memory(const ReplayAction& a, const Seat& s, std::
             s.tile->attribution.count_memory_read(counted, a.column);
         beyond_->ask_memory(write, line, t);
     }
-    return {t, Cause::memory};
+}
+
+/// A cache that tiles share asks for it at cycle `t`: a line that it misses, or one that leaves it.
+void ReplayMachine::send_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address,
+                                   std::uint32_t bytes, cycle t) {
+    beyond_->serve(begin_of(t));
+    Access access{address, bytes, t, a.column};
+    Passing(a.detail).apply(access);
+    MemoryPort& way = beyond_->way_to_memory(s.tile->number);
+    switch (a.kind) {
+    case traces::Kind::read:
+    case traces::Kind::write:
+    case traces::Kind::modify:
+    case traces::Kind::prefetch:
+        way.read(access);
+        break;
+    case traces::Kind::write_back:
+    case traces::Kind::write_through:
+        way.write(access);
+        break;
+    default:
+        break;
+    }
 }
 
 /// Word to a level below, or beyond the tile.

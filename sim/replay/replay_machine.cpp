@@ -26,14 +26,13 @@ unsigned level_of(const traces::Description& about, const Config& config) {
         return 0;
     if (about.level == "dram")
         return config.cache_levels();
-    for (unsigned level = 1; level <= config.tile_levels(); ++level)
+    for (unsigned level = 1; level <= config.cache_levels(); ++level)
         if (about.level == fmt::format("l{}", level))
             return level;
-    throw traces::Error(fmt::format(
-        "the trace is of what passes level {}, which is beyond this machine's tiles: only what cores ask "
-        "for, what passes a level of a tile, or what memory is asked for, can be replayed; record it at "
-        "level core, l1 to l{}, or dram",
-        about.level, config.tile_levels()));
+    throw traces::Error(
+        fmt::format("the trace is of what passes level {}, which this machine does not have; give one that "
+                    "has more levels than {}, or a trace of level core, l1 to l{}, or dram",
+                    about.level, config.cache_levels(), config.cache_levels()));
 }
 
 /// The most memory that regions may take, which tables are made for.
@@ -49,6 +48,7 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
       reach_(reach_cycles(config)), shortest_answer_(shortest_answer(config)),
       shortest_line_(shortest_line(config)), l1_latency_(wide(config.l1.latency)) {
     level_ = level_of(about, config);
+    beyond_tiles_ = level_ > tile_levels_ && about.level != "dram";
     passing_latency_ = level_ == 0 ? 0 : wide(config.cache(level_ - 1).latency);
     if (is_memory())
         line_shift_ = static_cast<unsigned>(std::countr_zero(wide(config.last_cache().line_bytes)));

@@ -7,7 +7,8 @@
 // there, but only stand in for those of the run: levels below find in them what a trace says that they found
 // (traces::Kind::recall).
 //
-// A trace of what memory is asked for drives memory alone, request by request, each when it came there.
+// A trace of what memory is asked for drives memory alone, request by request, each when it came there; one
+// of a level that tiles share does so over the network, on which nothing else is.
 //
 // In the reference mode what happens within a tile by itself happens when let_events_happen() says so, and in
 // the windows of the run, as far as a trace and these events tell them.
@@ -68,7 +69,8 @@ public:
     std::size_t streams() const { return seats_.size(); }
     /// The first level of caches that is driven, 0 for the L1; memory comes after the last.
     unsigned first_level() const { return level_; }
-    /// Whether a trace is of what memory is asked for, and nothing else is driven.
+    /// Whether a trace is of what memory is asked for, or of what the caches that tiles share pass on:
+    /// memory is driven alone.
     bool is_memory() const { return level_ == config_.cache_levels(); }
     std::uint64_t window_cycles() const { return window_cycles_; }
     cycle window_end() const { return window_end_; }
@@ -138,8 +140,10 @@ private:
                          cycle t);
     Answer pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
     void settle_stand_ins();
-    Answer pass_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
-                          cycle t);
+    void give_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
+                        cycle t);
+    void send_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
+                        cycle t);
     void pass_word(const ReplayAction& a, const Seat& s, std::uint64_t address, cycle t);
     /// What is left in caches that stand in for others, which are empty then.
     template <class Visit> void each_stand_in(Visit visit) {
@@ -161,6 +165,7 @@ private:
     std::vector<traces::Description::Region> regions_;
     bool by_reference_, strides_;
     unsigned level_ = 0;
+    bool beyond_tiles_;                 // it is one that tiles share
     std::uint64_t passing_latency_ = 0; // of the level that a trace is of, if that is one of caches
     unsigned line_shift_, tile_levels_;
     std::uint64_t window_cycles_, reach_, shortest_answer_, shortest_line_, l1_latency_;

@@ -102,7 +102,8 @@ TEST_P(ExactReplay, OfWhatALevelPassesOnCountsWhatTheRunCountedBelow) {
 /// what it counted in the run.
 TEST_P(ExactReplay, OfWhatMemoryIsAskedForCountsWhatItCounted) {
     const Case& c = GetParam();
-    const std::vector<std::string> reference{"sim.mode=reference", "memory.controller=queued"};
+    const std::vector<std::string> reference{"sim.mode=reference", "sim.quantum=1",
+                                             "memory.controller=queued"};
     for (const std::vector<std::string>& mode : {{}, {"memory.controller=queued"}, reference}) {
         SCOPED_TRACE(fmt::format("{}", fmt::join(mode, " ")));
         const Config config = read_machine(machine(c.file), with(c.settings, mode));
@@ -120,6 +121,30 @@ TEST_P(ExactReplay, OfWhatMemoryIsAskedForCountsWhatItCounted) {
             EXPECT_TRUE(one.part.starts_with("memory") || one.counter.starts_with("memory")) << one.part;
         expect_much(run.report);
         EXPECT_GT(all.size(), 20U);
+    }
+}
+
+/// So does what caches that tiles share pass on, over a network on which nothing else is.
+TEST(SharedLevelReplay, CountsWhatMemoryCounted) {
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{},
+          {"memory.controller=queued"},
+          {"l3.prefetcher=next", "sim.quantum=1000"},
+          {"sim.mode=reference", "sim.quantum=1", "memory.controller=queued"},
+          {"coherence.plain=directory"},
+          {"l3.size_bytes=16384", "l3.share=2", "chip.tiles=4"}}) {
+        SCOPED_TRACE(fmt::format("{}", fmt::join(more, " ")));
+        const Config config = read_machine(
+            machine("tiny"), with(with(two_by_two, {"l3.size_bytes=65536", "l3.share=chip"}), more));
+        TraceSettings settings;
+        settings.level = "l3";
+        const test::Recorded run = test::record(config, 1500, settings);
+        const ReplayResult result = replay(run.trace, config);
+        EXPECT_EQ(result.first_level, 3U);
+        EXPECT_EQ(result.waits, 0U);
+        const std::vector<Comparison> all = compare_with_run(result, print_json(run.report), "run");
+        EXPECT_EQ(differences(all), "");
+        expect_much(run.report);
     }
 }
 
