@@ -131,7 +131,7 @@ TEST(SharedLevelReplay, CountsWhatMemoryCounted) {
           {"memory.controller=queued"},
           {"l3.prefetcher=next", "sim.quantum=1000"},
           {"sim.mode=reference", "sim.quantum=1", "memory.controller=queued"},
-          {"coherence.plain=directory"},
+          {"coherence.plain=directory", "l2.inclusion=inclusive"},
           {"l3.size_bytes=16384", "l3.share=2", "chip.tiles=4"}}) {
         SCOPED_TRACE(fmt::format("{}", fmt::join(more, " ")));
         const Config config = read_machine(

@@ -9,6 +9,7 @@
 #include "traces/formats/format.h"
 #include "traces/in_order.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -194,6 +195,34 @@ TEST(IndependentReplay, AProgramsTraceCountsAsInSimpleCaches) {
             expect_equal(result.report, oracle);
             expect_sums(result.report);
         }
+}
+
+/// Requests for memory of another tool, far apart and all over 64 bits of addresses: each is served by
+/// itself, at its clock.
+TEST(IndependentReplay, RequestsOfMemoryComeAtItsClocks) {
+    constexpr std::uint64_t count = 3000, apart = 5000, first = 70000;
+    std::string text;
+    for (std::uint64_t i = 0; i < count; ++i)
+        text += fmt::format("0x{:X} {} {}\n", i * 0x0123456789ABCDC0U, i % 3 == 0 ? "WRITE" : "READ",
+                            first + i * apart);
+    const auto input = traces::read_dramsim3(traces::memory_source(text, "sample"));
+    Config config = machine(hierarchies.front());
+    for (const char* controller : {"immediate", "queued"}) {
+        SCOPED_TRACE(controller);
+        config.memory.controller = controller;
+        Replay replay(config, input->description(), {});
+        const auto again = traces::read_dramsim3(traces::memory_source(text, "sample"));
+        for (traces::Block block; again->next(block);)
+            replay.add(block);
+        const Report r = replay.finish(again->description()).report;
+        EXPECT_EQ(r.memory.reads, count - count / 3);
+        EXPECT_EQ(r.memory.writes, count / 3);
+        EXPECT_NEAR(static_cast<double>(r.memory.last_clock), static_cast<double>((count - 1) * apart), 500);
+        std::uint64_t reads = 0;
+        for (const TrafficRow& row : r.traffic)
+            reads += row.traffic.memory_reads;
+        EXPECT_EQ(reads, r.memory.reads);
+    }
 }
 
 /// What a machine or a trace does not have is an error in a line that says what to do.
