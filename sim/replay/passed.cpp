@@ -8,7 +8,7 @@ namespace sim {
 Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
                            cycle t) {
     if (is_memory()) {
-        if (beyond_tiles_)
+        if (of_shared_level_)
             send_to_memory(a, s, address, bytes, t);
         else
             give_to_memory(a, s, address, bytes, t);

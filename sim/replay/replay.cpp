@@ -298,6 +298,7 @@ ReplayResult Replay::finish(const traces::Description& about) {
     else if (machine_.first_level() != 0)
         machine_.end_frame(end_);
     result_.first_level = machine_.first_level();
+    result_.memory_alone = machine_.is_memory();
     result_.windows = following_ && begun_;
     result_.report = machine_.finish();
     vocabulary_.name(about, result_.report);

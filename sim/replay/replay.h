@@ -35,7 +35,8 @@ struct ReplayResult {
     bool windows = false;               // the run's own windows of time were followed to the end
     bool timed = false;                 // each came when what it waited for was there (timed_replay.h)
     unsigned first_level = 0;           // of caches that is driven, 0 for the L1; those above are in no trace
-    bool ended = false; // the trace says when it was over, and what lasts was written back then
+    bool memory_alone = false; // no cache is driven, and of the network only the way to memory, if any
+    bool ended = false;        // the trace says when it was over, and what lasts was written back then
 };
 
 /// What a trace is to a machine: which columns its phases and work count under, what its classes do.

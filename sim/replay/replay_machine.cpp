@@ -48,7 +48,8 @@ ReplayMachine::ReplayMachine(const Config& config, const traces::Description& ab
       reach_(reach_cycles(config)), shortest_answer_(shortest_answer(config)),
       shortest_line_(shortest_line(config)), l1_latency_(wide(config.l1.latency)) {
     level_ = level_of(about, config);
-    beyond_tiles_ = level_ > tile_levels_ && about.level != "dram";
+    of_shared_level_ = level_ > tile_levels_ && about.level != "dram";
+    memory_ = of_shared_level_ || about.level == "dram";
     passing_latency_ = level_ == 0 ? 0 : wide(config.cache(level_ - 1).latency);
     if (is_memory())
         line_shift_ = static_cast<unsigned>(std::countr_zero(wide(config.last_cache().line_bytes)));

@@ -71,7 +71,7 @@ public:
     unsigned first_level() const { return level_; }
     /// Whether a trace is of what memory is asked for, or of what the caches that tiles share pass on:
     /// memory is driven alone.
-    bool is_memory() const { return level_ == config_.cache_levels(); }
+    bool is_memory() const { return memory_; }
     std::uint64_t window_cycles() const { return window_cycles_; }
     cycle window_end() const { return window_end_; }
     /// No reference comes before this cycle any more.
@@ -165,7 +165,8 @@ private:
     std::vector<traces::Description::Region> regions_;
     bool by_reference_, strides_;
     unsigned level_ = 0;
-    bool beyond_tiles_;                 // it is one that tiles share
+    bool memory_ = false;               // is driven alone
+    bool of_shared_level_ = false;      // ... by what a level that tiles share passes on
     std::uint64_t passing_latency_ = 0; // of the level that a trace is of, if that is one of caches
     unsigned line_shift_, tile_levels_;
     std::uint64_t window_cycles_, reach_, shortest_answer_, shortest_line_, l1_latency_;

@@ -44,7 +44,9 @@ json traffic(const Report& r, unsigned first_level) {
 }
 
 /// What a replay and a run count alike.
-json counts(const Report& r, unsigned first_level) {
+json counts(const ReplayResult& result) {
+    const Report& r = result.report;
+    const unsigned first_level = result.first_level;
     json out = json::object();
     for (unsigned level = first_level; level < r.config.cache_levels(); ++level) {
         const std::string name = fmt::format("l{}", level + 1);
@@ -61,10 +63,9 @@ json counts(const Report& r, unsigned first_level) {
         for (json& c : out["l1_by_core"])
             c.erase("busy_cycles");
     }
-    const bool memory_alone = first_level == r.config.cache_levels();
-    if (r.config.coherence.kept() && !memory_alone)
+    if (r.config.coherence.kept() && !result.memory_alone)
         out["coherence"] = json_of_counters(r.coherence, coherence_counters);
-    if (!r.network.ideal() && !memory_alone)
+    if (!r.network.ideal() && !result.memory_alone)
         out["network"] = json_of_counters(r.network.counters, network_counters);
     out["memory"] = json_of_counters(r.memory, memory_counters);
     for (const MemoryCounters& c : r.memory_by_rank)
@@ -120,13 +121,14 @@ std::string print_replay(const ReplayResult& result) {
                   {"timed", result.timed},
                   {"windows_of_the_run", result.windows},
                   {"ended", result.ended},
-                  {"first_level", result.first_level + 1}}}};
+                  {"first_level", result.first_level + 1},
+                  {"memory_alone", result.memory_alone}}}};
     json left_out = json::object();
     for (std::size_t k = 0; k < result.left_out.size(); ++k)
         if (result.left_out[k] != 0)
             left_out[traces::kind_names[k]] = result.left_out[k];
     out["replay"]["left_out"] = std::move(left_out);
-    out.update(counts(r, result.first_level));
+    out.update(counts(result));
     out["traffic"] = traffic(r, result.first_level);
     return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -147,7 +149,7 @@ std::vector<Comparison> compare_with_run(const ReplayResult& result, const std::
         if (!run.is_object() || !run.contains("warm_up_cycles"))
             throw traces::Error(
                 fmt::format("{}: is no report of a run; give what razor-sim run --json wrote", name));
-        const json counted = counts(result.report, result.first_level);
+        const json counted = counts(result);
         for (const auto& [part, values] : counted.items()) {
             if (!run.contains(part) || (values.is_array() && run.at(part).size() != values.size()))
                 throw traces::Error(

@@ -86,6 +86,7 @@ TEST_P(ExactReplay, OfWhatALevelPassesOnCountsWhatTheRunCountedBelow) {
         const test::Recorded run = test::record(config, config.all_threads() > 64 ? 150 : 1500, settings);
         const ReplayResult result = replay(run.trace, config);
         EXPECT_EQ(result.first_level, level);
+        EXPECT_FALSE(result.memory_alone);
         EXPECT_TRUE(result.windows);
         EXPECT_TRUE(result.ended);
         EXPECT_EQ(result.waits, 0U);
@@ -111,6 +112,7 @@ TEST_P(ExactReplay, OfWhatMemoryIsAskedForCountsWhatItCounted) {
         settings.level = "dram";
         const test::Recorded run = test::record(config, config.all_threads() > 64 ? 150 : 700, settings);
         const ReplayResult result = replay(run.trace, config);
+        EXPECT_TRUE(result.memory_alone);
         EXPECT_EQ(result.first_level, config.cache_levels());
         EXPECT_TRUE(result.ended);
         EXPECT_EQ(result.waits, 0U);
@@ -132,7 +134,7 @@ TEST(SharedLevelReplay, CountsWhatMemoryCounted) {
           {"l3.prefetcher=next", "sim.quantum=1000"},
           {"sim.mode=reference", "sim.quantum=1", "memory.controller=queued"},
           {"coherence.plain=directory", "l2.inclusion=inclusive"},
-          {"l3.size_bytes=16384", "l3.share=2", "chip.tiles=4"}}) {
+          {"l3.size_bytes=16384", "l3.share=4", "chip.tiles=4"}}) {
         SCOPED_TRACE(fmt::format("{}", fmt::join(more, " ")));
         const Config config = read_machine(
             machine("tiny"), with(with(two_by_two, {"l3.size_bytes=65536", "l3.share=chip"}), more));
@@ -140,6 +142,7 @@ TEST(SharedLevelReplay, CountsWhatMemoryCounted) {
         settings.level = "l3";
         const test::Recorded run = test::record(config, 1500, settings);
         const ReplayResult result = replay(run.trace, config);
+        EXPECT_TRUE(result.memory_alone);
         EXPECT_EQ(result.first_level, 3U);
         EXPECT_EQ(result.waits, 0U);
         const std::vector<Comparison> all = compare_with_run(result, print_json(run.report), "run");
