@@ -36,6 +36,10 @@ void Conversion::convert(Reference r) {
     names_ |= r.what.structure != 0 || r.what.phase != 0 || r.what.work != 0;
     parts_ |= r.what.part != Part::operation || r.what.detail != 0;
     tiles_ |= r.tile != 0;
+    if (r.address == 0 && !holds_.zero) {
+        ++zeros_;
+        return;
+    }
     const auto put = [&](Kind kind) {
         r.what.kind = kind;
         output_.write(r);
@@ -73,6 +77,8 @@ std::string Conversion::lost() const {
     field(tiles_, holds_.tiles, "screen tiles");
     if (!fields.empty())
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
+    if (zeros_ != 0)
+        parts.push_back(fmt::format("{} references to address 0 are left out", zeros_));
     const std::string& time = input_.description().time;
     if (holds_.clocks && time != "clocks" && time != "order")
         parts.push_back(fmt::format("times are {}, which pass for clocks of memory", time));

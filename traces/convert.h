@@ -24,7 +24,7 @@ private:
     Output& output_;
     Holds holds_;
     Block block_;
-    std::uint64_t read_ = 0, written_ = 0;
+    std::uint64_t read_ = 0, written_ = 0, zeros_ = 0; // zeros: references to address 0 that are left out
     bool streams_ = false, size_ = false, sites_ = false, names_ = false, parts_ = false, windows_ = false,
          tiles_ = false; // met
     std::array<std::uint64_t, kind_names.size()> replaced_{}, left_out_{};

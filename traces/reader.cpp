@@ -191,6 +191,10 @@ void Reader::see(const Chunk& chunk) {
         ended_ = true;
         if (!complete_)
             throw Error(fmt::format("{}: ends without its index; record the trace again", place(at_)));
+        std::uint8_t more = 0;
+        if (source_->read(&more, 1) != 0)
+            note_ =
+                fmt::format("{}: more bytes follow the end of the trace; they are not read", source_->name());
     }
 }
 

@@ -7,11 +7,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 namespace razor {
 namespace {
@@ -209,7 +212,11 @@ int parse_share(std::string_view text) {
 int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action) {
     try {
         app.parse(argc, argv);
-        return action();
+        const int done = action();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw UserError(fmt::format("standard output: cannot be written ({}); check who reads it",
+                                        std::strerror(errno)));
+        return done;
     } catch (const CLI::Success& help) {
         return app.exit(help, std::cout, std::cerr);
     } catch (const CLI::ParseError& error) {
@@ -218,6 +225,10 @@ int run_program(CLI::App& app, int argc, const char* const* argv, const std::fun
         return complain(app, error.what(), 2);
     } catch (const std::bad_alloc&) {
         return complain(app, "out of memory; render a smaller model or picture", 1);
+    } catch (const std::system_error& error) {
+        return std::ferror(stdout) != 0
+                   ? complain(app, fmt::format("standard output: {}; check who reads it", error.what()), 2)
+                   : complain(app, fmt::format("internal error: {}", printable(error.what(), 300)), 1);
     } catch (const std::exception& error) {
         return complain(app, fmt::format("internal error: {}", printable(error.what(), 300)), 1);
     }

@@ -44,6 +44,48 @@ TEST_F(TraceTool, ConvertsThroughFilesPipesAndCompression) {
     EXPECT_EQ(text("d.ramulator"), "0x7fff0010 R\n0x7fff0010 W\n0x20 R\n");
 }
 
+/// Address 0 is no operand there; what takes times for clocks of memory is told that they are not.
+TEST_F(TraceTool, SaysWhatOtherFormatsCannotHold) {
+    folder_.file("a.csv", "cycles,kind,address\n1,read,0x0\n5,read,0x40\n9,write,0x0\n");
+    Outcome result = tool("convert a.csv a.champsim");
+    EXPECT_NE(result.err.find("2 references to address 0 are left out"), std::string::npos) << result.err;
+    EXPECT_EQ(text("a.champsim").size(), 64U);
+    result = tool("convert a.csv a.dramsim3");
+    EXPECT_NE(result.err.find("times are cycles, which pass for clocks of memory"), std::string::npos);
+    result = tool("convert a.dramsim3 b.dramsim3");
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(result.err, "");
+}
+
+/// Two outputs are two files; what cannot be printed was not done.
+TEST_F(TraceTool, LosesNoOutput) {
+    folder_.file("a.din", "0 7fff0010 8\n1 7fff0010 8\n");
+    folder_.file("empty.din", "");
+    for (const char* arguments :
+         {"lines a.din --csv x --json ./x", "lines a.din --csv - --json -",
+          "report a.din -o x.html --json x.html", "picture a.din -o x.svg --csv x.svg",
+          "report a.din -o x.pdf", "causes a.din --sizes 1KiB --svg x.png", "picture empty.din -o x.svg",
+          "strides a.din --top 1 --histogram"}) {
+        SCOPED_TRACE(arguments);
+        const Outcome result = tool(arguments);
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+        EXPECT_EQ(result.out, "");
+        for (const char* name : {"x", "x.html", "x.svg", "x.pdf", "x.png"})
+            EXPECT_FALSE(std::filesystem::exists(folder_ / name)) << name;
+    }
+    for (const char* arguments : {"info a.din", "lines a.din", "curve a.din --sizes 1KiB"}) {
+        SCOPED_TRACE(arguments);
+        const Outcome result = run("(" + program + " " + arguments + " > /dev/full)", folder_.path());
+        EXPECT_EQ(result.code, 2);
+        EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
+    }
+    // Of two that are one behind the other, the second is not read.
+    ASSERT_EQ(tool("convert a.din a.rzt").code, 0);
+    folder_.file("two.rzt", text("a.rzt") + text("a.rzt"));
+    EXPECT_NE(tool("lines two.rzt").err.find("more bytes"), std::string::npos);
+}
+
 TEST_F(TraceTool, SaysWhatIsInATrace) {
     folder_.file("a.din", "2 401000 3\n0 7fff0010 8\n1 7fff0010 8\n0 20 4\n");
     ASSERT_EQ(tool("convert a.din a.rzt").code, 0);

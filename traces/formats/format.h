@@ -55,6 +55,7 @@ struct Holds {
         false; // in which all streams' references were made, and the windows in which streams went on
     bool tiles = false;  // of the picture
     bool clocks = false; // times are memory's clocks
+    bool zero = true;    // address 0 is one
     bool holds(Kind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 
@@ -76,6 +77,9 @@ const Format* format_by_suffix(std::string_view path);
 const Format& format_of_input(std::string_view name, const std::string& path, PeekingSource& source);
 /// By a name if there is one, else by the file's name. Throws Error.
 const Format& format_of_output(std::string_view name, const std::string& path);
+
+/// Of a file that is written as this project's own: throws Error where its name is another format's.
+void check_own_name(const std::string& path);
 
 std::unique_ptr<Input> read_own(std::unique_ptr<Source> source);
 std::unique_ptr<Output> write_own(std::unique_ptr<Sink> sink);

@@ -61,7 +61,7 @@ constexpr Format table[] = {
     {"champsim",
      "ChampSim: 64 bytes an instruction, as many as references",
      ".champsim .champsimtrace",
-     {false, false, false, true, false, plain},
+     {.sites = true, .kinds = plain, .zero = false},
      read_champsim,
      write_champsim},
     {"oraclegeneral",
@@ -134,6 +134,14 @@ const Format& format_of_output(std::string_view name, const std::string& path) {
         return *f;
     throw Error(fmt::format("{}: its name does not show a format; say which by --to: {}",
                             path == "-" ? "standard output" : path, names()));
+}
+
+void check_own_name(const std::string& path) {
+    const Format* const named = format_by_suffix(path);
+    if (named != nullptr && named != &table[0])
+        throw Error(fmt::format("{}: is a name of {}'s, and what is recorded is this project's own; name a "
+                                ".rzt file, of which razor-trace convert makes others",
+                                path, named->name));
 }
 
 } // namespace traces

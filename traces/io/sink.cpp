@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <set>
 #include <unistd.h>
 
 namespace traces {
@@ -98,7 +99,6 @@ public:
             fail();
     }
 
-private:
     [[noreturn]] static void fail() {
         throw Error(
             fmt::format("standard output: cannot be written ({}); check who reads it", std::strerror(errno)));
@@ -130,6 +130,26 @@ std::unique_ptr<Sink> open_sink(const std::string& path, const std::vector<std::
             throw Error(fmt::format("{}: is read; name another output", path));
     }
     return open_sink(path);
+}
+
+void check_apart(const std::vector<std::string>& outputs) {
+    std::set<std::filesystem::path> seen;
+    for (const std::string& output : outputs) {
+        if (output.empty())
+            continue;
+        std::error_code error;
+        const fs::path name =
+            output == "-" ? fs::path(output) : fs::weakly_canonical(fs::absolute(output), error);
+        if (!seen.insert(error ? fs::path(output) : name).second)
+            throw Error(output == "-"
+                            ? std::string("-: standard output is for one; name files for others")
+                            : fmt::format("{}: is the name of two outputs; name two files", output));
+    }
+}
+
+void finish_standard_output() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        StandardOutput::fail();
 }
 
 std::unique_ptr<Sink> memory_sink(std::string& bytes) {

@@ -28,6 +28,10 @@ public:
 std::unique_ptr<Sink> open_sink(const std::string& path);
 /// Likewise; also throws Error where it is one of these, which are read.
 std::unique_ptr<Sink> open_sink(const std::string& path, const std::vector<std::string>& inputs);
+/// Throws Error where two outputs are one file, or all standard output; empty names are none.
+void check_apart(const std::vector<std::string>& outputs);
+/// All that was printed is written. Throws Error where it cannot be.
+void finish_standard_output();
 /// Into a string of the caller's, which outlives the sink.
 std::unique_ptr<Sink> memory_sink(std::string& bytes);
 

@@ -144,7 +144,12 @@ void AnalysisOptions::add_to(CLI::App& app, const char* by, bool draws) {
         app.add_option("--svg", svg_, "draw a chart of the table")->type_name("FILE");
 }
 
-void AnalysisOptions::prepare() {
+void AnalysisOptions::prepare(const std::vector<std::string>& outputs) {
+    std::vector<std::string> all{csv_, json_, svg_};
+    all.insert(all.end(), outputs.begin(), outputs.end());
+    check_apart(all);
+    if (!svg_.empty() && svg_ != "-" && !svg_.ends_with(".svg"))
+        throw Error(fmt::format("--svg {}: name a .svg file", svg_));
     if (!kinds_.empty()) {
         kinds_in_.fill(false);
         for (const std::string& kind : split(kinds_))

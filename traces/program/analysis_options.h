@@ -60,8 +60,8 @@ public:
     /// Adds a row of a group.
     void add_row(analysis::Table& table, const analysis::Touches& touches, std::size_t group,
                  std::vector<analysis::Table::Cell> cells) const;
-    /// Opens the trace and checks all options.
-    void prepare();
+    /// Opens the trace and checks all options. `outputs`: what is written besides.
+    void prepare(const std::vector<std::string>& outputs = {});
     /// After prepare(), where the trace is read twice. Throws Error.
     void refuse_pipe() const;
     /// Opens the trace again, after each_block() has read it. Throws Error.

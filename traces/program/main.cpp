@@ -1,6 +1,7 @@
 // razor-trace: what is in a trace, the same in another format, and what caches would make of it.
 #include "traces/convert.h"
 #include "traces/error.h"
+#include "traces/io/sink.h"
 #include "traces/program/analyses.h"
 #include "traces/program/interrupt.h"
 #include "traces/program/overlay_command.h"
@@ -14,9 +15,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 namespace {
 
@@ -122,22 +125,24 @@ int main(int argc, char** argv) {
     traces::listen_for_interrupts();
     try {
         app.parse(argc, argv);
+        int done = 0;
         if (informing.parsed())
-            return info.run();
+            done = info.run();
         if (converting.parsed())
-            return convert.run();
+            done = convert.run();
         for (const auto& analysis : analyses)
             if (analysis->parsed())
                 analysis->run();
         if (overlay.parsed())
             overlay.run();
         if (study.parsed())
-            return study.run();
+            done = study.run();
 #ifdef RAZOR_HAS_SIMULATED
         if (replay.parsed())
             replay.run();
 #endif
-        return 0;
+        traces::finish_standard_output();
+        return done;
     } catch (const traces::Interrupted&) {
         return complain("interrupted; nothing written", interrupted_exit);
     } catch (const CLI::Success& help) {
@@ -148,6 +153,10 @@ int main(int argc, char** argv) {
         return complain(e.what(), mistake_exit);
     } catch (const std::bad_alloc&) {
         return complain("out of memory", failure_exit);
+    } catch (const std::system_error& e) {
+        return std::ferror(stdout) != 0
+                   ? complain(fmt::format("standard output: {}; check who reads it", e.what()), mistake_exit)
+                   : complain(fmt::format("internal error: {}", e.what()), failure_exit);
     } catch (const std::exception& e) {
         return complain(fmt::format("internal error: {}", e.what()), failure_exit);
     }

@@ -23,11 +23,13 @@ public:
         if (suffix != ".png" && suffix != ".svg")
             throw Error(
                 fmt::format("-o {}: name a .png file, or an .svg one, which says what is what", file_));
-        options_.prepare();
+        options_.prepare({file_});
         analysis::AddressTime counts;
         analysis::Touches touches = options_.touches();
         options_.each_block(
             [&](const Block& block) { touches.each_access(block, [&](const Access& a) { counts.add(a); }); });
+        if (counts.columns() == 0)
+            throw Error(fmt::format("{}: holds no references", options_.file()));
         const analysis::AddressPicture picture =
             analysis::draw(counts, static_cast<std::size_t>(width_), static_cast<std::size_t>(height_));
         std::vector<std::string> names;

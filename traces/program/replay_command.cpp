@@ -321,6 +321,7 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
 void ReplayCommand::run() {
     if (std::find(by_names.begin(), by_names.end(), by_) == by_names.end())
         throw Error(fmt::format("--by {}: there is no such thing; give all, structure, phase, kind", by_));
+    check_apart({csv_, json_});
     if (!against_.empty() && machines_.size() > 1)
         throw Error("--against: is of one machine; give one --machine");
     try {

@@ -22,7 +22,9 @@ public:
         : AnalysisCommand("report", "a page of HTML with charts of all this, of one cache size",
                           "structure") {}
     void run() override {
-        options_.prepare();
+        if (!output_.ends_with(".html") && !output_.ends_with(".htm"))
+            throw Error(fmt::format("-o {}: name a .html file", output_));
+        options_.prepare({output_});
         options_.refuse_sample();
         options_.refuse_pipe();
         caches_.prepare(options_.line_bytes());

@@ -52,7 +52,7 @@ private:
         app.add_option("--top", top_, "instead, so many strides that are most frequent")
             ->type_name("N")
             ->check(CLI::Range(1, 512));
-        app.add_flag("--histogram", histogram_, "instead, all strides by powers of two");
+        app.add_flag("--histogram", histogram_, "instead, all strides by powers of two")->excludes("--top");
     }
     Table patterns(const Strides& strides, const analysis::Touches& touches) const {
         Table table =

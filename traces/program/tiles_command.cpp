@@ -30,20 +30,21 @@ public:
         options_.always_by_tile();
     }
     void run() override {
+        const std::string drawn = figure_.empty() ? "misses" : figure_;
         const auto figure =
-            static_cast<TileFigure>(std::find(figures.begin(), figures.end(), figure_) - figures.begin());
-        if (figure_ != figures[std::min(static_cast<std::size_t>(figure), figures.size() - 1)])
-            throw Error(fmt::format("--figure {}: there is no such thing; give {}", figure_,
-                                    fmt::join(figures, ", ")));
+            static_cast<TileFigure>(std::find(figures.begin(), figures.end(), drawn) - figures.begin());
+        if (drawn != figures[std::min(static_cast<std::size_t>(figure), figures.size() - 1)])
+            throw Error(
+                fmt::format("--figure {}: there is no such thing; give {}", drawn, fmt::join(figures, ", ")));
         const bool png = output_.ends_with(".png");
         if (over_.empty() != output_.empty())
             throw Error("--over PICTURE and -o FILE are of no use without each other; give both");
         if (!output_.empty() && !png && !output_.ends_with(".svg"))
             throw Error(fmt::format("-o {}: name a .png file, or an .svg one, which says what colours mean",
                                     output_));
-        if (over_.empty() && (!range_.empty() || linear_))
-            throw Error("--range and --linear are of what --over draws; add it, or leave them out");
-        options_.prepare();
+        if (over_.empty() && (!range_.empty() || linear_ || !figure_.empty()))
+            throw Error("--figure, --range and --linear are of what --over draws; add it, or leave them out");
+        options_.prepare({output_});
         options_.refuse_sample();
         caches_.prepare(options_.line_bytes());
         if (caches_.sizes().size() != 1)
@@ -64,7 +65,7 @@ public:
             sink->write(png ? over->png() : analysis::svg_file(over->svg()));
             sink->commit();
             // Counts are whole.
-            text = fmt::format("; {0}: {1} from {2:.{4}f} to {3:.{4}f}", output_, figure_, over->scale().low,
+            text = fmt::format("; {0}: {1} from {2:.{4}f} to {3:.{4}f}", output_, drawn, over->scale().low,
                                over->scale().high, figure == analysis::TileFigure::ratio ? 4 : 0);
         }
         give(tiles, picture, text);
@@ -118,7 +119,7 @@ private:
         app.add_flag("--linear", linear_, "colours by values, not by their logarithms");
     }
 
-    std::string over_, output_, figure_ = "misses", range_;
+    std::string over_, output_, figure_, range_;
     bool linear_ = false;
     CacheOptions caches_{"1", "32KiB"};
 };
