@@ -7,6 +7,7 @@
 #include "razor/program/arguments.h"
 #include "razor/recording/frame_recorder.h"
 #include "traces/error.h"
+#include "traces/formats/format.h"
 
 #include <fmt/format.h>
 
@@ -27,6 +28,7 @@ template <class Work> auto with_user_errors(Work work) {
 
 FrameTrace::FrameTrace(const std::string& file, const std::string& configuration) {
     recorder_ = with_user_errors([&] {
+        traces::check_own_name(file);
         return std::make_unique<FrameRecorder>(traces::open_sink(file), fmt::format("razor {}", version()),
                                                configuration);
     });

@@ -2,6 +2,7 @@
 
 #include "razor/program/arguments.h"
 #include "razor/scene/error.h"
+#include "traces/formats/format.h"
 
 #include <fmt/format.h>
 
@@ -68,6 +69,8 @@ TraceSettings TraceOptions::settings() const {
         needs_file("--trace-window", !window_.empty());
         needs_file("--trace-sample", !sample_.empty());
     }
+    if (wanted())
+        traces::check_own_name(file_);
     TraceSettings s;
     if (!level_.empty())
         s.level = level_;
