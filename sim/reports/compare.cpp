@@ -110,10 +110,11 @@ std::map<std::string, double> memory_bytes_of(const json& report) {
 
 FigureRange range_of(const std::vector<std::map<std::string, double>>& reports, const std::string& name) {
     std::vector<double> values;
-    for (const std::map<std::string, double>& r : reports) {
-        const auto found = r.find(name);
-        values.push_back(found == r.end() ? 0 : found->second);
-    }
+    for (const std::map<std::string, double>& r : reports)
+        if (const auto found = r.find(name); found != r.end())
+            values.push_back(found->second);
+    if (values.empty())
+        return {.known = false};
     std::sort(values.begin(), values.end());
     const std::size_t n = values.size();
     return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
@@ -170,11 +171,13 @@ std::string misfit(const json& report) {
 } // namespace
 
 double FigureChange::ratio() const {
-    return first.median == 0 ? std::numeric_limits<double>::quiet_NaN() : second.median / first.median;
+    return first.median == 0 || !known() ? std::numeric_limits<double>::quiet_NaN()
+                                         : second.median / first.median;
 }
 
 bool FigureChange::beyond_spread() const {
-    return first.median != second.median && (first.most < second.least || second.most < first.least);
+    return known() && first.median != second.median &&
+           (first.most < second.least || second.most < first.least);
 }
 
 ReportFile read_report(const std::string& file) {
@@ -237,14 +240,20 @@ ReportComparison compare_reports(std::span<const ReportFile> first, std::span<co
     for (const std::string& name : order)
         if (const FigureChange f = change_of(name, of_first, of_second); is_there(f))
             c.figures.push_back(f);
-    const Flat bytes_of_first = flat_of(first, memory_bytes_of),
-               bytes_of_second = flat_of(second, memory_bytes_of);
-    for (const std::string& name : names_in(bytes_of_first, bytes_of_second))
+    Flat bytes_of_first = flat_of(first, memory_bytes_of), bytes_of_second = flat_of(second, memory_bytes_of);
+    const std::set<std::string> structures = names_in(bytes_of_first, bytes_of_second);
+    for (const auto& [reports, bytes] : {std::pair{first, &bytes_of_first}, {second, &bytes_of_second}})
+        for (std::size_t k = 0; k < reports.size(); ++k)
+            if (reports[k].json.contains("traffic")) // of what it does not name there was none
+                for (const std::string& name : structures)
+                    (*bytes)[k].try_emplace(name, 0.0);
+    for (const std::string& name : structures)
         if (const FigureChange f = change_of(name, bytes_of_first, bytes_of_second); is_there(f))
             c.memory_bytes.push_back(f);
     for (const std::string& name : names_in(of_first, of_second))
         if (const FigureChange f = change_of(name, of_first, of_second);
-            f.first.median != f.second.median && std::find(order.begin(), order.end(), name) == order.end())
+            (f.first.median != f.second.median || !f.known()) &&
+            std::find(order.begin(), order.end(), name) == order.end())
             c.all.push_back(f);
     return c;
 }

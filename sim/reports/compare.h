@@ -23,15 +23,18 @@ ReportFile read_report(const std::string& file);
 /// Of one figure in all reports of a design.
 struct FigureRange {
     double median = 0, least = 0, most = 0;
+    bool known = true; // else none of the reports has it
 };
 
 struct FigureChange {
     std::string name; // as in reports, "l2.misses"; see `razor-sim explain`
     FigureRange first, second;
 
-    /// Second over first by their medians; not a number where the first is 0.
+    /// Whether both designs have it.
+    bool known() const { return first.known && second.known; }
+    /// Second over first by their medians; not a number where the first is 0, or one of them is unknown.
     double ratio() const;
-    /// Whether the ranges of the two do not meet, and the medians differ at all.
+    /// Whether both are known, their ranges do not meet, and the medians differ at all.
     bool beyond_spread() const;
 };
 

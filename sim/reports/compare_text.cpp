@@ -18,12 +18,16 @@ std::string number(double x) {
 }
 
 std::string ranged(const FigureRange& r) {
+    if (!r.known)
+        return "-";
     if (r.least == r.most)
         return number(r.median);
     return fmt::format("{} [{} .. {}]", number(r.median), number(r.least), number(r.most));
 }
 
 std::string verdict(const FigureChange& f, bool several, double noise) {
+    if (!f.known())
+        return "of one alone";
     if (f.first.median == f.second.median)
         return "same";
     if (several && !f.beyond_spread())
@@ -62,7 +66,7 @@ std::string or_nothing(const std::string& value) {
 json json_of(const std::vector<FigureChange>& figures) {
     json all = json::array();
     const auto range = [](const FigureRange& r) {
-        return json{{"median", r.median}, {"least", r.least}, {"most", r.most}};
+        return !r.known ? json() : json{{"median", r.median}, {"least", r.least}, {"most", r.most}};
     };
     for (const FigureChange& f : figures)
         all.push_back({{"figure", f.name},

@@ -85,6 +85,31 @@ TEST(CompareReports, KnowWhatRunsOfOneDesignDifferBy) {
     EXPECT_THROW(compare({report(1), report(1, 2, 8)}, {report(1)}), ConfigError);
 }
 
+/// An estimate has no levels of caches, a machine no third one: that is not none.
+TEST(CompareReports, InventNothing) {
+    ReportFile estimate = report(1000);
+    estimate.json.erase("l1");
+    estimate.json.erase("traffic");
+    const ReportComparison c = compare({report(1000)}, {estimate});
+    ASSERT_EQ(c.figures[1].name, "l1.misses");
+    EXPECT_FALSE(c.figures[1].known());
+    EXPECT_TRUE(std::isnan(c.figures[1].ratio()));
+    EXPECT_FALSE(c.figures[1].beyond_spread());
+    ASSERT_EQ(c.memory_bytes.size(), 1u);
+    EXPECT_FALSE(c.memory_bytes[0].known());
+    EXPECT_TRUE(json::parse(comparison_json(c))["figures"][1]["second"].is_null());
+    const std::string text = comparison_text(c, 0, true);
+    EXPECT_EQ(text.find("0.0000"), std::string::npos) << text;
+    EXPECT_NE(text.find("of one alone"), std::string::npos) << text;
+
+    ReportFile other = report(1000); // traffic of another structure: of the first's there was none
+    other.json["traffic"][0]["structure"] = "nodes";
+    const ReportComparison d = compare({report(1000)}, {other});
+    ASSERT_EQ(d.memory_bytes.size(), 2u);
+    EXPECT_TRUE(d.memory_bytes[1].known());
+    EXPECT_EQ(d.memory_bytes[1].first.median, 0);
+}
+
 TEST(CompareReports, AreOfReports) {
     EXPECT_THROW(read_report("/nowhere/report.json"), ConfigError);
     EXPECT_THROW(read_report(RAZOR_SOURCE_DIR "/README.md"), ConfigError);
