@@ -207,6 +207,25 @@ TEST(GltfMaterials, TexturesThatArePassedOverAreTold) {
     EXPECT_TRUE(read(with_images({{"name", "plain"}}, folder), folder).own_materials->notes.empty());
 }
 
+TEST(GltfMaterials, WhatIsTakenOtherwiseIsTold) {
+    const TemporaryFolder folder;
+    const Mesh mesh = read(
+        with_images({{"name", "odd"}, {"pbrMetallicRoughness", {{"roughnessFactor", -3}}}}, folder), folder);
+    EXPECT_EQ(mesh.own_materials->materials[0].roughness, 0.0F);
+    ASSERT_EQ(mesh.own_materials->notes.size(), 1U);
+    EXPECT_NE(mesh.own_materials->notes[0].find("roughnessFactor of -3 is taken as 0"), std::string::npos)
+        << mesh.own_materials->notes[0];
+    GltfWriter points = with_images({{"name", "plain"}}, folder);
+    Json more = points.json["meshes"][0]["primitives"][0];
+    more["mode"] = 0;
+    points.json["meshes"][0]["primitives"].push_back(more);
+    const Mesh drawn = read(points, folder);
+    ASSERT_EQ(drawn.own_materials->notes.size(), 1U);
+    EXPECT_NE(drawn.own_materials->notes[0].find("mesh 0 primitive 1 is of points, which are passed over"),
+              std::string::npos)
+        << drawn.own_materials->notes[0];
+}
+
 TEST(GltfMaterials, DataUrisAreDecoded) {
     const TemporaryFolder folder;
     GltfWriter w = with_images({{"emissiveTexture", {{"index", 1}}}}, folder);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -91,6 +92,9 @@ struct Document {
 
     /// Throws UserError; `mistake`: "cause; mend".
     [[noreturn]] void fail(std::string_view mistake) const;
+    /// What is read otherwise than it stands there, or not at all; said once. Found while the file is read.
+    void note(std::string_view what) const;
+    std::shared_ptr<std::vector<std::string>> notes = std::make_shared<std::vector<std::string>>();
 };
 
 /// `list[index]`, or UserError: "what names kind index, but the file has n".

@@ -66,8 +66,11 @@ private:
         if (primitive.mode < 0 || primitive.mode > 6)
             document_.fail(
                 fmt::format("{} has mode {}, which is not known; export triangles", what_, primitive.mode));
-        if (primitive.mode < 4)
+        if (primitive.mode < 4) {
+            document_.note(fmt::format("{} is of {}, which are passed over: only triangles are drawn", what_,
+                                       primitive.mode == 0 ? "points" : "lines"));
             return;
+        }
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end())
             return; // nothing to draw: glTF 2.0, 3.7.2.1

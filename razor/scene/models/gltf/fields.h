@@ -93,7 +93,11 @@ private:
     double to_number(const Json& value, const char* key, Range range) const {
         if (!value.is_number() || !std::isfinite(value.get<double>()))
             fail(fmt::format("has {} {}, which is no number", key, shown(value)));
-        return std::clamp(value.get<double>(), range.least, range.most);
+        const double stated = value.get<double>(), taken = std::clamp(stated, range.least, range.most);
+        if (taken != stated)
+            document_->note(fmt::format("{}: {} of {} is taken as {}, the nearest that there is", what_, key,
+                                        stated, taken));
+        return taken;
     }
     static std::string shown(const Json& value) {
         return printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -154,6 +154,12 @@ void Document::fail(std::string_view mistake) const {
     throw UserError(fmt::format("{}: {}", printable(file, 1000), mistake));
 }
 
+void Document::note(std::string_view what) const {
+    std::string text = fmt::format("{}: {}", printable(file, 1000), what);
+    if (std::find(notes->begin(), notes->end(), text) == notes->end())
+        notes->push_back(std::move(text));
+}
+
 void fail_index(const Document& document, std::size_t count, int index, std::string_view kind,
                 std::string_view what) {
     document.fail(

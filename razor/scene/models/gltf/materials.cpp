@@ -50,7 +50,10 @@ public:
             result_.materials.push_back(read(entry_of("materials", "material", number, "a mesh primitive")));
         return known->second;
     }
-    ModelMaterials finish() { return std::move(result_); }
+    ModelMaterials finish() {
+        result_.notes.insert(result_.notes.end(), document_.notes->begin(), document_.notes->end());
+        return std::move(result_);
+    }
 
 private:
     Fields entry_of(const char* list, const char* kind, int number, const std::string& user) const {
