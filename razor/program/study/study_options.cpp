@@ -42,6 +42,15 @@ private:
     bool shown_;
 };
 
+/// Why the first point that failed did.
+std::string first_failure(const std::vector<analysis::Point>& points, const analysis::Store& store) {
+    for (const analysis::Point& point : points)
+        if (point.impossible.empty() && store.is_done(point))
+            if (const std::string why = store.read_result(point)->failed; !why.empty())
+                return printable(why, 500);
+    return "";
+}
+
 } // namespace
 
 void StudyOptions::add_to(CLI::App& command, StudyKind kind) {
@@ -102,7 +111,18 @@ std::filesystem::path StudyOptions::folder() const {
 }
 
 std::pair<int, int> StudyOptions::part() const {
-    return part_.empty() ? std::pair{1, 1} : parse_span("--part", part_, {1, 100000}, "/");
+    if (part_.empty())
+        return {1, 1};
+    const std::size_t slash = part_.find('/');
+    const std::string number = part_.substr(0, slash),
+                      of = slash == std::string::npos ? "" : part_.substr(slash + 1);
+    const auto whole = [](const std::string& text) {
+        return !text.empty() && text.size() < 7 && text.find_first_not_of("0123456789") == std::string::npos;
+    };
+    if (!whole(number) || !whole(of) || std::stoi(number) < 1 || std::stoi(number) > std::stoi(of))
+        throw UserError(
+            fmt::format("--part '{}': give N/M, the N-th of M parts, as 1/4 to 4/4", printable(part_)));
+    return {std::stoi(number), std::stoi(of)};
 }
 
 analysis::Study StudyOptions::read(const StudyProgram& program) const {
@@ -128,6 +148,11 @@ int StudyOptions::run(
     const StudyProgram& program, const analysis::Study& study, const std::vector<analysis::Point>& points,
     const analysis::Store& store,
     const std::function<std::vector<StudyStage>(const std::vector<analysis::Point>& missing)>& stages) const {
+    if (!points.empty() && std::none_of(points.begin(), points.end(), [](const analysis::Point& point) {
+            return point.impossible.empty();
+        }))
+        throw UserError(fmt::format("{}: none of its points can be measured; the first: {}", study.file,
+                                    printable(points.front().impossible, 500)));
     if (plan_ || step_ == "plan") {
         print_plan(study, points, store);
         return 0;
@@ -174,8 +199,14 @@ int StudyOptions::run(
     }
     if (wants("collect"))
         return collect(program, study, points, store);
+    std::size_t failed_before = 0;
+    for (const analysis::Point& point : points)
+        if (point.impossible.empty() && store.is_done(point) && !store.read_result(point)->failed.empty())
+            ++failed_before;
+    failed_before -= std::min(failed_before, all.failed);
     if (!quiet_)
-        fmt::print("{} measured, {} of them failed; {} were there\n", all.measured, all.failed, all.kept);
+        fmt::print("{} measured, {} of them failed; {} were there, {} of them failed\n", all.measured,
+                   all.failed, all.kept, failed_before);
     return 0;
 }
 
@@ -196,6 +227,9 @@ int StudyOptions::collect(const StudyProgram& program, const analysis::Study& st
     const analysis::Collection all = analysis::collect(study, points, store, program.figures, program.views);
     const std::vector<std::string> written = analysis::write_collection(all, store, program.remarks);
     const int code = all.failed > 0 && all.failed + all.missing == points.size() ? 1 : 0;
+    if (code != 0)
+        fmt::print(stderr, "{}: all that was measured of {} failed; {}\n",
+                   program.name.substr(0, program.name.find(' ')), study.file, first_failure(points, store));
     if (quiet_)
         return code;
     fmt::print("{} points: {} measured, {} failed, {} missing\n", points.size(),
