@@ -199,7 +199,7 @@ void Recorder::collect(std::size_t tile) {
         noted.clear();
         return;
     }
-    if (window_)
+    if (window_ && is_of_tiles()) // memory is in no window
         writer_->mark(*std::exchange(window_, std::nullopt));
     learn_sites(tile);
     const std::vector<std::uint32_t>& site = names_[tile].number;
