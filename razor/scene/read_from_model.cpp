@@ -32,7 +32,7 @@ FromModel read_from_model(TomlTable& table, const std::filesystem::path& folder,
         from.file = std::filesystem::absolute(folder / file).lexically_normal().string();
         load_stage(from, camera);
     } catch (const UserError& error) {
-        table.fail("from", error.what());
+        table.fail(table.key_in(error.what(), {"clip", "name"}, "from"), error.what());
     }
     return from;
 }

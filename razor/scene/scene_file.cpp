@@ -272,7 +272,8 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         }
         load_cage(mesh, cages);
     } catch (const UserError& error) {
-        table.fail(table.has("file") ? "file" : "shape", error.what());
+        table.fail(table.key_in(error.what(), {"clip", "clip_file"}, table.has("file") ? "file" : "shape"),
+                   error.what());
     }
     if (replaced) {
         check_materials(*replaced, mesh);

@@ -317,6 +317,21 @@ void TomlTable::finish() const {
     }
 }
 
+std::string_view TomlTable::key_in(std::string_view message, std::initializer_list<std::string_view> keys,
+                                   std::string_view otherwise) const {
+    for (const std::string_view key : keys) {
+        if (!has(key)) {
+            continue;
+        }
+        const std::string text = printable(table_->get(key)->value_or(std::string()));
+        if (!text.empty() && (message.find(fmt::format("named '{}'", text)) != std::string_view::npos ||
+                              message.find(text + ":") != std::string_view::npos)) {
+            return key;
+        }
+    }
+    return otherwise;
+}
+
 void TomlTable::fail(std::string_view key, std::string_view message) const {
     if (has(key)) {
         fail_at(file_name_, table_->get(key)->source(), message);

@@ -8,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -67,6 +68,11 @@ public:
 
     /// Throws UserError at the place of `key`, or of the table where `key` is not stated.
     [[noreturn]] void fail(std::string_view key, std::string_view message) const;
+
+    /// The one of `keys` whose text a message about a file says: "no clip is named 'run'", or "run.glb: ...";
+    /// `otherwise` where it says none.
+    std::string_view key_in(std::string_view message, std::initializer_list<std::string_view> keys,
+                            std::string_view otherwise) const;
 
 private:
     const toml::node* find(std::string_view key);

@@ -111,7 +111,8 @@ TEST_F(ModelsInMotion, ClipsArePlayed) {
     EXPECT_NE(
         message("file = \"m.gltf\"\nframes = [0, 1]\n").find("frames in a mesh whose file has no frames"),
         std::string::npos);
-    EXPECT_NE(message("file = \"m.gltf\"\nclip = \"run\"\n").find("s.toml:2:"), std::string::npos);
+    EXPECT_NE(message("file = \"m.gltf\"\nclip = \"run\"\n").find("s.toml:3:"), std::string::npos);
+    EXPECT_NE(message("file = \"m.gltf\"\nclip_file = \"none.glb\"\n").find("s.toml:3:"), std::string::npos);
 }
 
 } // namespace
