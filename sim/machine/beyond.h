@@ -90,8 +90,8 @@ public:
         for (SharedCache& shared : caches_)
             shared.cache.judge_prefetches();
     }
-    /// A line that is at memory at cycle `t`, no earlier than those before it: it is read or written, and
-    /// nobody waits for the answer.
+    /// A line that is at memory at cycle `t`, or when those before it are, if that is (much) later: it is
+    /// read or written, and nobody waits for the answer.
     virtual void ask_memory(bool write, std::uint64_t address, cycle t) = 0;
     /// How the cache here that a tile shares asks memory for the tile's sake.
     MemoryPort& way_to_memory(std::uint32_t tile);

@@ -18,6 +18,7 @@ public:
     void count_from(cycle t) override;
     void finish() override { memory_.finish(); }
     void ask_memory(bool write, std::uint64_t address, cycle t) override {
+        t = ways_.in_order(t);
         if (write)
             memory_.write(address, t);
         else

@@ -225,6 +225,25 @@ TEST(IndependentReplay, RequestsOfMemoryComeAtItsClocks) {
     }
 }
 
+/// Times that go back are no mistake: such a request comes when it can.
+TEST(IndependentReplay, RequestsOfMemoryMayComeInAnyOrder) {
+    std::string text;
+    std::mt19937 random(3);
+    for (std::uint64_t i = 0; i < 5000; ++i)
+        text += fmt::format("0x{:X} {} {}\n", random() & ~63U, i % 3 == 0 ? "WRITE" : "READ",
+                            random() % 10'000'000);
+    Config config = machine(hierarchies.front());
+    for (const char* controller : {"immediate", "queued"}) {
+        config.memory.controller = controller;
+        const auto input = traces::read_dramsim3(traces::memory_source(text, "sample"));
+        Replay replay(config, input->description(), {});
+        for (traces::Block block; input->next(block);)
+            replay.add(block);
+        const Report r = replay.finish(input->description()).report;
+        EXPECT_EQ(r.memory.reads + r.memory.writes, 5000U) << controller;
+    }
+}
+
 /// What a machine or a trace does not have is an error in a line that says what to do.
 TEST(IndependentReplay, WhatCannotBeReplayedIsSaid) {
     const auto mistake = [](const std::function<void()>& act) -> std::string {
