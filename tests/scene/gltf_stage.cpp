@@ -200,7 +200,7 @@ TEST_F(GltfStageTest, CamerasAreChosenByName) {
         EXPECT_EQ(pose_at(scene(std::string("[camera]\nfrom = \"m.glb\"\n") + name), 0).camera.projection,
                   Projection::orthographic)
             << "the first, node by node from the root";
-    EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\nname = \"x\"\n").find("s.toml:3:8: "), std::string::npos);
+    EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\nname = \"x\"\n").find("s.toml:4:8: "), std::string::npos);
     EXPECT_NE(message("[camera]\nfrom = \"m.glb\"\nname = \"x\"\n")
                   .find("no camera is named 'x'; there are: Plan, Sun, View"),
               std::string::npos);
