@@ -65,6 +65,31 @@ void add_rows(const sim::ReplayResult& result, const std::vector<Table::Cell>& h
          all ? ratio(m.row_hits, bursts) : none});
 }
 
+/// Of machines whose memory was driven alone: what it made of its requests. Times in nanoseconds.
+Table memory_table(const std::vector<std::string>& machines, const std::vector<sim::ReplayResult>& results) {
+    Table out;
+    for (const char* name : {"machine", "row hits", "row empties", "row conflicts", "ns a read burst",
+                             "of them queued", "ns before the queue", "buses busy", "GB/s", "us in all"})
+        out.columns.emplace_back(name);
+    for (std::size_t m = 0; m < machines.size(); ++m) {
+        const sim::MemoryCounters& c = results[m].report.memory;
+        const sim::MemoryConfig& memory = results[m].report.config.memory;
+        const double clock_ns = static_cast<double>(memory.clock_ps) / 1000;
+        const auto ns_of = [&](std::uint64_t clocks, std::uint64_t of) {
+            return of == 0 ? none : clock_ns * static_cast<double>(clocks) / static_cast<double>(of);
+        };
+        const double all_ns = clock_ns * static_cast<double>(c.last_clock);
+        const double bytes = static_cast<double>(c.read_bursts + c.write_bursts) *
+                             static_cast<double>(memory.bus_bytes * memory.burst_length);
+        out.rows.push_back({machines[m], c.row_hits, c.row_empties, c.row_conflicts,
+                            ns_of(c.read_clocks, c.read_bursts), ns_of(c.queue_clocks, c.read_bursts),
+                            ns_of(c.read_wait_clocks, c.read_bursts),
+                            ratio(c.busy_clocks, c.last_clock * static_cast<std::uint64_t>(memory.channels)),
+                            all_ns > 0 ? bytes / all_ns : none, all_ns / 1000});
+    }
+    return out;
+}
+
 /// The machine that the trace says it is of.
 std::optional<sim::Config> recorded_on(const Description& about) {
     if (about.configuration.empty() || about.window == 0)
@@ -83,9 +108,9 @@ std::optional<sim::Config> recorded_on(const Description& about) {
 
 void ReplayCommand::add_to(CLI::App& app) {
     app_ = app.add_subcommand("replay", "what the memory systems of machines make of a trace");
-    app_->add_option(
-            "TRACE", file_,
-            "a trace of any format, of what cores ask for or a level of caches in tiles passes on, or -")
+    app_->add_option("TRACE", file_,
+                     "a trace of any format, of what cores ask for, a level of caches passes on, or memory "
+                     "is asked for; or -")
         ->required();
     app_->add_option("--from", from_, "its format; without it, as it begins or is named")
         ->type_name("FORMAT");
@@ -303,7 +328,7 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
                     ? ", each at its time"
                     : fmt::format(", {} of which found no room: all came {} cycles later in the end", r.waits,
                                   r.delay),
-                r.ended ? "" : "; what caches have changed stays there", left_out);
+                r.ended || r.memory_alone ? "" : "; what caches have changed stays there", left_out);
         }
         if (!d.filters.empty() || d.sample < 1)
             fmt::print("The trace is of a part alone: {}{}\n", d.filters,
@@ -311,6 +336,12 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
                                                   d.filters.empty() ? "" : "; ", d.sample)
                                     : "");
         fmt::print("\n{}", rows.text());
+        if (results.front().memory_alone) {
+            std::vector<std::string> labels;
+            for (const Machine& m : machines)
+                labels.push_back(m.label);
+            fmt::print("\n{}", memory_table(labels, results).text());
+        }
         if (!compared.empty())
             compare(compared.front());
     }
