@@ -200,13 +200,16 @@ int StudyOptions::run(
     if (wants("collect"))
         return collect(program, study, points, store);
     std::size_t failed_before = 0;
-    for (const analysis::Point& point : points)
-        if (point.impossible.empty() && store.is_done(point) && !store.read_result(point)->failed.empty())
+    const auto [mine, parts] = part();
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (i % static_cast<std::size_t>(parts) + 1 == static_cast<std::size_t>(mine) &&
+            (point_.empty() || points[i].name == point_) && points[i].impossible.empty() &&
+            store.is_done(points[i]) && !store.read_result(points[i])->failed.empty())
             ++failed_before;
     failed_before -= std::min(failed_before, all.failed);
     if (!quiet_)
-        fmt::print("{} measured, {} of them failed; {} were there, {} of them failed\n", all.measured,
-                   all.failed, all.kept, failed_before);
+        fmt::print("{} measured, {} of them failed; {} were there{}\n", all.measured, all.failed, all.kept,
+                   failed_before == 0 ? "" : fmt::format(", {} of them failed", failed_before));
     return 0;
 }
 
