@@ -203,8 +203,8 @@ int StudyOptions::run(
     const auto [mine, parts] = part();
     for (std::size_t i = 0; i < points.size(); ++i)
         if (i % static_cast<std::size_t>(parts) + 1 == static_cast<std::size_t>(mine) &&
-            (point_.empty() || points[i].name == point_) && points[i].impossible.empty() &&
-            store.is_done(points[i]) && !store.read_result(points[i])->failed.empty())
+            (point_.empty() || points[i].name == point_) && store.is_done(points[i]) &&
+            !store.read_result(points[i])->failed.empty())
             ++failed_before;
     failed_before -= std::min(failed_before, all.failed);
     if (!quiet_)
