@@ -111,7 +111,12 @@ enum BeamLine : int {
 /// Light gathered for each lane by lobes (razor/kernels/glossy.h) other than the first.
 inline constexpr int packet_lobes = (packet_beam + 3 * beam_axis + 15) / 16 * 16;
 inline constexpr int most_lobes = 15; // five, each in red, green and blue where light has many colours
-inline constexpr int packet_floats = packet_lobes + (most_lobes - 1) * ISA_WIDTH;
+/// Points that the hits of a packet sample on a light, four of each (razor/kernels/quarters.h): u, v and
+/// which of the four it is; and what the surface makes of each, by that, of every lobe.
+inline constexpr int packet_quarters = packet_lobes + (most_lobes - 1) * ISA_WIDTH;
+inline constexpr int quarters = 4;
+inline constexpr int packet_parts = packet_quarters + 3 * quarters * ISA_WIDTH;
+inline constexpr int packet_floats = packet_parts + most_lobes * quarters * ISA_WIDTH;
 
 /// Where lights are chosen from, nodes of their tree that between them hold all that may light each lane's
 /// hit: three arrays of a vector each, for each part of the cut; nodes, chances, and while nodes are divided

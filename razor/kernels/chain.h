@@ -38,8 +38,8 @@ struct Chain {
 
 /// The node that a group goes to at once which goes beyond the list at `line` and asks for `least` or more in
 /// its box; -1: there is none, or it is not for them.
-inline sint node_beyond(const Context& c, const Group& g, pointer<ItemList> list, sfloat coarse,
-                        sfloat least) {
+[[gnu::always_inline]] inline sint node_beyond(const Context& c, const Group& g, pointer<ItemList> list,
+                                               sfloat coarse, sfloat least) {
     sint beyond = load_acquire(field(list, &ItemList::beyond));
     if (branch(beyond < 0))
         return -1;

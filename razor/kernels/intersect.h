@@ -111,7 +111,8 @@ struct Interval {
 /// Those of a box widened by the slack of positions. Its planes lie at low[k * step] and at low[(k + 3) *
 /// step].
 template <bool Mixed>
-inline Interval box_interval(const Group& g, const Slabs& rays, pointer<const float> low, sint step) {
+[[gnu::always_inline]] inline Interval box_interval(const Group& g, const Slabs& rays,
+                                                    pointer<const float> low, sint step) {
     Interval i;
     for (int k = 0; k < 3; ++k) {
         sint half = step * 3;

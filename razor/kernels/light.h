@@ -1,9 +1,11 @@
-// The light that hits receive and reflect, by shadow rays. Shadow packets hold width/4 neighbouring
-// hits x 4 samples.
+// The light that hits receive and reflect, by shadow rays. Packets of them hold a sample of each hit, of a
+// quarter of the light, where the light is large beside the hits; else of width/4 neighbouring hits 4
+// samples.
 #pragma once
 
 #include "razor/kernels/cutout.h"
 #include "razor/kernels/glossy.h"
+#include "razor/kernels/quarters.h"
 
 namespace razor::ISA_TARGET {
 inline namespace light_kernel {
@@ -30,35 +32,35 @@ struct LightDomain {
     vfloat load() const { return load_broadcast(field(light, &LightRecord::domain)); }
 };
 
-/// Where shadow rays go: to points of one light, or in directions about the normal.
-struct TowardsRectangle {
+/// Where shadow rays go: to points of one light, or in directions about the normal. dimension(): of the
+/// points of the unit square that samples stand for; extent(): how far apart their rays may end.
+struct TowardsLight {
     static constexpr RayKind kind = kind_light;
     pointer<LightRecord> light;
-    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
-        return sample_rectangle(c, s, light, number);
-    }
+    sint dimension() const { return load(field(light, &LightRecord::dimension)); }
+    sfloat extent(const Context& c) const { return extent_of(c, light); }
     template <class Response>
     void reflect(const Response& r, const Surface& s, const LightRays& l, sint samples,
                  vfloat (&part)[Response::lobes]) const {
         r.reflect(s, l, LightDomain{light}, samples, part);
     }
 };
-struct TowardsShape {
-    static constexpr RayKind kind = kind_light;
-    pointer<LightRecord> light;
-    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
-        return sample_shape(c, s, light, number);
+struct TowardsRectangle : TowardsLight {
+    LightRays sample(const Context& c, const Surface& s, const vpoint& at) const {
+        return sample_rectangle(c, s, light, at);
     }
-    template <class Response>
-    void reflect(const Response& r, const Surface& s, const LightRays& l, sint samples,
-                 vfloat (&part)[Response::lobes]) const {
-        r.reflect(s, l, LightDomain{light}, samples, part);
+};
+struct TowardsShape : TowardsLight {
+    LightRays sample(const Context& c, const Surface& s, const vpoint& at) const {
+        return sample_shape(c, s, light, at);
     }
 };
 struct TowardsSky {
     static constexpr RayKind kind = kind_sky;
-    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
-        return sample_sky(c, s, number);
+    sint dimension() const { return sint(dimension_sky); }
+    sfloat extent(const Context&) const { return infinite; }
+    LightRays sample(const Context& c, const Surface& s, const vpoint& at) const {
+        return sample_sky(c, s, at);
     }
     template <class Response>
     void reflect(const Response& r, const Surface& s, const LightRays& l, sint,
@@ -67,20 +69,24 @@ struct TowardsSky {
     }
 };
 
-/// Of each hit its sample of that number, where `first` come before it; `lane`: the hit's.
+/// Where a light's samples are points of the unit square, and how far apart they may be is known.
 template <class Towards>
-inline auto sample_towards(const Context& c, const Towards& towards, const Surface& here, const vint& number,
-                           const vint& first, const vint& lane) {
-    if constexpr (requires { towards.sample_lane(c, here, number, lane); })
-        return towards.sample_lane(c, here, number, lane);
-    else
-        return towards.sample(c, here, number + first);
-}
+concept towards_points = requires(const Towards& t, const Context& c) {
+    t.dimension();
+    t.extent(c);
+};
 
 /// Of each lobe.
 template <class Response> struct Gathered { vfloat lobe[Response::lobes]; };
 template <class Response> inline pointer<float> lobe_sums(const Context& c, int lobe) {
     return lobe == 0 ? c.packets + packet_sum : c.packets + (packet_lobes + (lobe - 1) * isa::width);
+}
+
+template <class Response>
+inline void add_to_lobe(const Context& c, int lobe, const vint& lane, const vmask& m, const vfloat& sum) {
+    pointer<float> sums = lobe_sums<Response>(c, lobe);
+    vfloat before = gather(sums, lane, m);
+    scatter(sums, lane, before + sum, m);
 }
 
 /// Sums over `samples` shadow rays a hit of what the surface makes of the weights of those that arrive.
@@ -93,6 +99,12 @@ template <Features F, bool Mapped, class Towards, class Response>
     // Few samples leave room for more hits.
     sint fewer_log2 = samples - 1;
     sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), fewer_log2);
+    sbool dealt = false;
+    if constexpr (towards_points<Towards>) {
+        if (branch(samples > 1))
+            dealt = quarters_pay(s.position, s.hit, s.fine, towards.extent(c));
+    }
+    per_hit_log2 = select(dealt, sint(0), per_hit_log2);
     sint per_hit = sint(1) << per_hit_log2;
     sint hits_per_packet = sint(isa::width) >> per_hit_log2;
     for (int k = 0; k < lobes; ++k)
@@ -111,7 +123,24 @@ template <Features F, bool Mapped, class Towards, class Response>
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
             vmask wanted = number < vint(samples);
-            auto l = sample_towards(c, towards, here, number, first_sample, lane);
+            vint own = number; // of each hit's four, where they are dealt
+            if (branch(dealt & begins_quarters(k))) {
+                for (int lobe = 0; lobe < lobes; ++lobe)
+                    clear_parts(c, lobe);
+            }
+            auto l = [&] {
+                if constexpr (towards_points<Towards>) {
+                    if (branch(dealt)) {
+                        Dealt d = dealt_point(c, here.pixel, first_sample, k, samples, towards.dimension());
+                        own = d.number;
+                        return towards.sample(c, here, d.at);
+                    }
+                    vint of_pixel = first_sample + number;
+                    return towards.sample(c, here, sample_square(here.pixel, of_pixel, towards.dimension()));
+                } else {
+                    return towards.sample_lane(c, here, number, lane);
+                }
+            }();
             l.rays.active = l.rays.active & wanted;
             if (branch(any(l.rays.active))) {
                 vmask arrives;
@@ -126,14 +155,20 @@ template <Features F, bool Mapped, class Towards, class Response>
                 vmask leader = present & (member == vint(0));
                 for (int lobe = 0; lobe < lobes; ++lobe) {
                     vfloat sum = select(arrives, part[lobe], vfloat(0.0F));
+                    if (branch(dealt)) {
+                        keep_part(c, lobe, own, sum);
+                        continue;
+                    }
                     for (sint step = 1; branch(step < per_hit); step = step + step) {
                         vint pair = lane_index() ^ vint(step);
                         sum = sum + permute(sum, pair);
                     }
-                    pointer<float> sums = lobe_sums<Response>(c, lobe);
-                    vfloat before = gather(sums, lane, leader);
-                    scatter(sums, lane, before + sum, leader);
+                    add_to_lobe<Response>(c, lobe, lane, leader, sum);
                 }
+            }
+            if (branch(dealt & ends_quarters(k, samples))) {
+                for (int lobe = 0; lobe < lobes; ++lobe)
+                    add_to_lobe<Response>(c, lobe, lane, present, sum_of_parts(c, lobe));
             }
         }
     }
@@ -149,8 +184,8 @@ inline Gathered<Response> gather_light(const Context& c, const Surface& s, point
                                        const Response& response, sint samples) {
     sint shape = load(field(light, &LightRecord::shape));
     if (branch(shape == light_rectangle))
-        return gather_light<F, Mapped>(c, s, TowardsRectangle{light}, response, samples);
-    return gather_light<F, Mapped>(c, s, TowardsShape{light}, response, samples);
+        return gather_light<F, Mapped>(c, s, TowardsRectangle{{light}}, response, samples);
+    return gather_light<F, Mapped>(c, s, TowardsShape{{light}}, response, samples);
 }
 
 } // namespace light_kernel

@@ -49,9 +49,7 @@ inline LightRays sample_area(const Context& c, const Surface& s, pointer<LightRe
 }
 
 inline LightRays sample_rectangle(const Context& c, const Surface& s, pointer<LightRecord> light,
-                                  const vint& sample) {
-    sint dimension = load(field(light, &LightRecord::dimension));
-    vpoint at = sample_square(s.pixel, sample, dimension);
+                                  const vpoint& at) {
     vvec corner = load_broadcast_vec(field(light, &LightRecord::corner));
     vvec edge_u = load_broadcast_vec(field(light, &LightRecord::edge_u));
     vvec edge_v = load_broadcast_vec(field(light, &LightRecord::edge_v));
@@ -158,17 +156,38 @@ inline LightRays sample_directional(const Context& c, const Surface& s, pointer<
 
 /// Of all shapes but rectangles.
 inline LightRays sample_shape(const Context& c, const Surface& s, pointer<LightRecord> light,
-                              const vint& sample) {
+                              const vpoint& at) {
     sint shape = load(field(light, &LightRecord::shape));
     if (branch(shape == light_point))
         return sample_point(c, s, light);
-    sint dimension = load(field(light, &LightRecord::dimension));
-    vpoint at = sample_square(s.pixel, sample, dimension);
     if (branch(shape == light_disk))
         return sample_disk(c, s, light, at);
     if (branch(shape == light_sphere))
         return sample_sphere(c, s, light, at);
     return sample_directional(c, s, light, at);
+}
+
+/// How far from each other points of the light may be that rays go to.
+inline sfloat extent_of(const Context& c, pointer<LightRecord> light) {
+    sint shape = load(field(light, &LightRecord::shape));
+    if (branch(shape == light_point))
+        return 0.0F;
+    svec u = load_svec(field(light, &LightRecord::edge_u));
+    svec v = load_svec(field(light, &LightRecord::edge_v));
+    sfloat square = dot(u, u);
+    square = max(dot(v, v), square);
+    if (branch(shape == light_rectangle))
+        return sqrt(square);
+    if (branch(shape == light_sphere))
+        return load(field(light, &LightRecord::radius)) * 2.0F;
+    if (branch(shape == light_directional)) {
+        sfloat versine = load(field(light, &LightRecord::versine));
+        sfloat sine_square = versine * (sfloat(2.0F) - versine);
+        sfloat reach = load(field(c.frame, &FrameHeader::reach));
+        sfloat across = reach * 2.0F;
+        return sqrt(sine_square) * across;
+    }
+    return sqrt(square) * 2.0F;
 }
 
 /// A direction about the normal for each lane whose density is its cosine over pi, and that cosine.
@@ -183,8 +202,7 @@ inline vvec sample_cosine(const vvec& normal, const vpoint& square, vfloat& cosi
 
 /// A cosine-distributed direction about the shading normal for each lane. header.sky holds radiance /
 /// samples.
-inline LightRays sample_sky(const Context& c, const Surface& s, const vint& sample) {
-    vpoint at = sample_square(s.pixel, sample, dimension_sky);
+inline LightRays sample_sky(const Context& c, const Surface& s, const vpoint& at) {
     LightRays l;
     l.rays.origin = s.position;
     vfloat height;

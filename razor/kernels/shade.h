@@ -18,6 +18,7 @@ struct Surface {
     vvec albedo;
     vfloat target, growth; // the edge length that the camera ray asked for here, and how fast it changes
     vint pixel, sample;    // number of the pixel and of its camera sample, for sampling
+    vmask fine;            // the block that was hit is of several cells
 };
 
 /// Bound on the error of a point p computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the
@@ -154,6 +155,9 @@ template <Look L>
     constexpr int instance_words = sizeof(InstanceRecord) / 4;
     vint block = h.block << 4;
     vint instance = gather(as<std::int32_t>(c.grids) + instance_word, block, s.hit);
+    constexpr int cells_word = offsetof(BlockHeader, cells_at) / 4;
+    vint cells = gather(as<std::int32_t>(c.grids) + cells_word, block, s.hit);
+    s.fine = cells != vint(0);
     vint record = instance * vint(instance_words);
     vvec origin = gather_vec(field(c.instances, &InstanceRecord::origin), record, vint(1), s.hit);
     if constexpr (L == look_matte)

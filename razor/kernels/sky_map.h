@@ -130,8 +130,8 @@ inline vfloat sky_density(pointer<SkyRecord> sky, const SkyPlace& p, const vmask
 
 /// A shadow ray for each lane.
 inline LightRays sample_mapped_sky(const Context& c, pointer<SkyRecord> sky, const Surface& s,
-                                   const vint& sample) {
-    SkySample way = sample_sky_direction(sky, sample_square(s.pixel, sample, dimension_sky), s.hit);
+                                   const vpoint& at) {
+    SkySample way = sample_sky_direction(sky, at, s.hit);
     LightRays l;
     l.rays.origin = s.position;
     l.rays.direction = way.direction;
@@ -176,8 +176,10 @@ struct TowardsMappedSky {
     static constexpr RayKind kind = kind_sky;
     const Context& context;
     pointer<SkyRecord> sky;
-    LightRays sample(const Context& c, const Surface& s, const vint& number) const {
-        return sample_mapped_sky(c, sky, s, number);
+    sint dimension() const { return sint(dimension_sky); }
+    sfloat extent(const Context&) const { return infinite; }
+    LightRays sample(const Context& c, const Surface& s, const vpoint& at) const {
+        return sample_mapped_sky(c, sky, s, at);
     }
     template <class Response>
     void reflect(const Tinted<Response>& r, const Surface& s, const LightRays& l, sint samples,
