@@ -14,9 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace razor::test {
@@ -39,12 +39,7 @@ std::vector<Target> probes() {
     std::vector<Target> all;
 #define RAZOR_LIST(target) all.push_back({#target, target::beam});
     RAZOR_TEST_TARGETS(RAZOR_LIST)
-    std::erase_if(all, [](const Target& t) {
-        const auto runs = all_targets();
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, t.name) == 0; });
-    });
-    return all;
+    return of_targets(std::move(all), all_targets());
 }
 
 constexpr int rays = RAZOR_WIDTH;

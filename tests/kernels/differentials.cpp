@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <random>
 
@@ -37,12 +36,7 @@ std::vector<Target> probes() {
     std::vector<Target> all;
 #define RAZOR_LIST(target) all.push_back({#target, target::differentials});
     RAZOR_TEST_TARGETS(RAZOR_LIST)
-    std::erase_if(all, [](const Target& t) {
-        const auto runs = all_targets();
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, t.name) == 0; });
-    });
-    return all;
+    return of_targets(std::move(all), all_targets());
 }
 
 /// A camera ray, a surface through its point at distance t, and what lights and lenses need.

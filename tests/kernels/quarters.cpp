@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <random>
 #include <string>
 #include <utility>
@@ -23,6 +22,7 @@ namespace razor::test {
 #define RAZOR_DECLARE(target)                                                                                \
     namespace target {                                                                                       \
     void quarter(QuarterArguments& a);                                                                       \
+    void extent(ExtentArguments& a);                                                                         \
     }
 RAZOR_TEST_TARGETS(RAZOR_DECLARE)
 
@@ -33,17 +33,13 @@ constexpr int width = RAZOR_WIDTH;
 struct Target {
     const char* name;
     void (*run)(QuarterArguments&);
+    void (*extent)(ExtentArguments&);
 };
 std::vector<Target> probes() {
     std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::quarter});
+#define RAZOR_LIST(target) all.push_back({#target, target::quarter, target::extent});
     RAZOR_TEST_TARGETS(RAZOR_LIST)
-    std::erase_if(all, [](const Target& t) {
-        const auto runs = all_targets();
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, t.name) == 0; });
-    });
-    return all;
+    return of_targets(std::move(all), all_targets());
 }
 
 using SquarePoint = std::pair<float, float>;
@@ -169,6 +165,33 @@ TEST(Quarters, PayWhereTheLightIsLargeBesideManyHits) {
         EXPECT_TRUE(pays(2));
         h.hit[width / 2] = 0;
         EXPECT_FALSE(pays(2));
+    }
+}
+
+TEST(Quarters, AreOfLightsAsFarAsTheyReach) {
+    FrameHeader frame{};
+    frame.reach = 50;
+    LightRecord light{};
+    light.edge_u[0] = 3; // a rectangle's edge, a disk's radius
+    light.edge_v[2] = 3;
+    light.radius = 0.5F;
+    light.versine = 1 - std::cos(0.1F);
+    for (const Target& t : probes()) {
+        SCOPED_TRACE(t.name);
+        const auto extent = [&](LightShape shape) {
+            light.shape = shape;
+            ExtentArguments a{&frame, &light, -1};
+            t.extent(a);
+            return a.extent;
+        };
+        EXPECT_FLOAT_EQ(extent(light_rectangle), 3);
+        EXPECT_FLOAT_EQ(extent(light_disk), 6);
+        EXPECT_FLOAT_EQ(extent(light_sphere), 1);
+        EXPECT_EQ(extent(light_point), 0);
+        EXPECT_NEAR(extent(light_directional), 2 * 50 * std::sin(0.1), 1e-3);
+        light.edge_v[2] = 4;
+        EXPECT_FLOAT_EQ(extent(light_rectangle), 4); // the longer one
+        light.edge_v[2] = 3;
     }
 }
 

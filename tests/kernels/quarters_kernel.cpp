@@ -1,7 +1,6 @@
 #include "tests/kernels/quarters_kernel.h"
 
-#include "razor/kernels/context.h"
-#include "razor/kernels/quarters.h"
+#include "razor/kernels/light.h"
 
 namespace razor::test::ISA_TARGET {
 
@@ -33,6 +32,13 @@ void quarter(QuarterArguments& a) {
     std::int32_t word = 0;
     store(pointer<std::int32_t>(&word), select(pays, sint(1), sint(0)));
     a.pays = word;
+}
+
+void extent(ExtentArguments& a);
+void extent(ExtentArguments& a) {
+    Context c;
+    c.frame = pointer<FrameHeader>(a.frame);
+    store(pointer<float>(&a.extent), extent_of(c, pointer<LightRecord>(a.light)));
 }
 
 } // namespace razor::test::ISA_TARGET

@@ -1,7 +1,7 @@
 // razor/kernels/quarters.h, once a target, for its tests.
 #pragma once
 
-#include <cstdint>
+#include "razor/frame/layout.h"
 
 namespace razor::test {
 
@@ -17,6 +17,13 @@ struct QuarterArguments {
     const std::int32_t *hit = nullptr, *fine = nullptr; // of each hit 0 or 1
     float extent = 0;
     int pays = 0; // result
+};
+
+/// How far apart points of a light are.
+struct ExtentArguments {
+    FrameHeader* frame = nullptr; // its reach
+    LightRecord* light = nullptr;
+    float extent = 0; // result
 };
 
 } // namespace razor::test

@@ -23,6 +23,7 @@
 #include <random>
 #include <set>
 #include <thread>
+#include <utility>
 
 namespace razor::test {
 
@@ -44,12 +45,7 @@ std::vector<Target> probes() {
     std::vector<Target> all;
 #define RAZOR_LIST(target) all.push_back({#target, target::curve, target::take});
     RAZOR_TEST_TARGETS(RAZOR_LIST)
-    std::erase_if(all, [](const Target& t) {
-        const auto runs = all_targets();
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, t.name) == 0; });
-    });
-    return all;
+    return of_targets(std::move(all), all_targets());
 }
 
 Scene picture_of(int width, int height) {

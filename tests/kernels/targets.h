@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 namespace razor::check {}
@@ -33,15 +34,19 @@ template <class Arrays> struct TargetFunction {
     const char* name;
     void (*run)(const Arrays&);
 };
+/// Of such functions, or of anything else that has a target's name, those of these targets.
+template <class Named>
+std::vector<Named> of_targets(std::vector<Named> all, const std::vector<const KernelTable*>& targets) {
+    std::erase_if(all, [&](const Named& one) {
+        return std::none_of(targets.begin(), targets.end(),
+                            [&](const KernelTable* k) { return std::strcmp(k->name, one.name) == 0; });
+    });
+    return all;
+}
 /// Those that this processor runs.
 template <class Arrays>
 std::vector<TargetFunction<Arrays>> runnable(std::vector<TargetFunction<Arrays>> functions) {
-    const std::vector<const KernelTable*> runs = native_targets();
-    std::erase_if(functions, [&](const TargetFunction<Arrays>& f) {
-        return std::none_of(runs.begin(), runs.end(),
-                            [&](const KernelTable* k) { return std::strcmp(k->name, f.name) == 0; });
-    });
-    return functions;
+    return of_targets(std::move(functions), native_targets());
 }
 
 /// Those whose fused multiply-add rounds once, or those whose does not.
