@@ -116,7 +116,9 @@ inline constexpr int most_lobes = 15; // five, each in red, green and blue where
 inline constexpr int packet_quarters = packet_lobes + (most_lobes - 1) * ISA_WIDTH;
 inline constexpr int quarters = 4;
 inline constexpr int packet_parts = packet_quarters + 3 * quarters * ISA_WIDTH;
-inline constexpr int packet_floats = packet_parts + most_lobes * quarters * ISA_WIDTH;
+/// The block that each ray leaves for good (Rays::left).
+inline constexpr int packet_block_left = packet_parts + most_lobes * quarters * ISA_WIDTH;
+inline constexpr int packet_floats = packet_block_left + ISA_WIDTH;
 
 /// Where lights are chosen from, nodes of their tree that between them hold all that may light each lane's
 /// hit: three arrays of a vector each, for each part of the cut; nodes, chances, and while nodes are divided

@@ -6,6 +6,9 @@
 namespace razor::ISA_TARGET {
 inline namespace tessellate_kernel {
 
+/// Before normals: of displaced blocks kept_deviation(), and see chords_at().
+inline constexpr int words_before_normals = 6;
+
 /// How the blocks of a patch at one level look.
 struct Shape {
     sint quads_u, quads_v;
@@ -54,12 +57,12 @@ inline Shape block_shape(const Dicing& d) {
     s.parts = s.parts & (max(d.nu, d.nv) >= block_log2);
     s.parts = s.parts & !d.displaced;
     words = words + select(s.parts, sint(parts_words), sint(0));
-    words = words + select(d.displaced, sint(1), sint(0)); // see kept_deviation()
     // Normals; what lies on vertices besides follows them, and brings them along where they are not needed.
     // Flat patches have no vertices inside, so nothing is shaded at theirs.
     sint attributes = texcoord_arrays(d.shading);
     attributes = attributes + rest_arrays(d.shading);
     sbool plain = flat & (attributes == 0);
+    words = words + select(plain, sint(0), sint(words_before_normals));
     s.normals_at = select(plain, sint(0), words);
     words = words + select(plain, sint(0), vertex_words);
     words = words + s.stride * attributes;

@@ -144,8 +144,13 @@ inline vfloat growth_of_bounce(const Context& c, const Surface& s, const Beyond&
 
 /// As leave_surface(), but each ray's targets grow about as fast as it asks for, one of a few rates: lobes of
 /// one packet may be as wide as all directions, or mirrors.
-inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth, Rays& r) {
+/// They leave from a point of the ray that came, `toward` where it came from: above all of the block if that
+/// is steep.
+inline void leave_apart(const Context& c, const Surface& s, const vvec& toward, const vfloat& growth,
+                        Rays& r) {
     Surface leaving = s;
+    vmask steep = dot(s.chord_normal, toward) > s.chord_slope;
+    leaving.block = select(steep, s.block, vint(-1));
     vfloat step(gradation_cap / growth_steps);
     for (vmask left = r.active; branch(any(left));) {
         Rays some = r;
@@ -162,6 +167,7 @@ inline void leave_apart(const Context& c, const Surface& s, const vfloat& growth
         r.growth = select(some.active, some.growth, r.growth);
         r.slope = select(some.active, some.slope, r.slope);
         r.number = select(some.active, some.number, r.number);
+        r.left = select(some.active, some.left, r.left);
     }
 }
 
@@ -227,7 +233,7 @@ template <class Response>
     r.active = s.hit & chosen;
     r.active = r.active & right;
     r.active = r.active & bright;
-    leave_apart(c, s, growth_of_bounce(c, s, b, out.density), r);
+    leave_apart(c, s, b.toward, growth_of_bounce(c, s, b, out.density), r);
     return out;
 }
 

@@ -16,6 +16,9 @@ struct Rays {
     vvec field_origin, slope;
     vfloat radius, base, growth;
     vint number; // of the field: lanes of the same number have the same
+    /// First line of the block that each leaves so steeply that it does not meet it again (chords.h); -1: of
+    /// none.
+    vint left = vint(-1);
 };
 
 /// Bounds of the fields of a packet's rays: often enough to decide for all of them at once.

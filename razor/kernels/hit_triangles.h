@@ -210,6 +210,10 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
     Corners k;
     k.a = k.b = k.c = k.at_a = k.at_b = k.at_c = k.normal = none_yet;
     k.sway = k.sway_above = zero;
+    k.chord_normal = none_yet;
+    k.chord_slope = zero;
+    k.chord_most = vfloat(infinite);
+    k.has_chords = vmask(false);
     if constexpr (Mapped) {
         k.map_a = k.map_b = k.map_c = {zero, zero};
         k.rest_a = k.rest_b = k.rest_c = none_yet;
@@ -238,6 +242,13 @@ inline Corners find_triangles(const Context& c, const Rays& r, const Hits& h, co
                 k.sway_above = select(here, load_broadcast(sways + 1), k.sway_above);
         }
         sint normals_at = ensure_normals(c, block);
+        if (branch(normals_at != 0)) {
+            k.has_chords = k.has_chords | here;
+            pointer<float> chords = chords_at(header, normals_at);
+            k.chord_normal = select(here, load_broadcast_vec(chords + int{chord_normal}), k.chord_normal);
+            k.chord_slope = select(here, load_broadcast(chords + int{chord_slope}), k.chord_slope);
+            k.chord_most = select(here, load_broadcast(chords + int{chord_most}), k.chord_most);
+        }
         pointer<float> vertices = words + block_header_words;
         pointer<float> normals = words + normals_at;
         [[maybe_unused]] sint shading = 0;

@@ -332,6 +332,12 @@ template <Features F, bool Mixed>
     vmask met = g.alive & (enter <= min(inside.leave, hits.t));
     if (branch(none(met)))
         return true;
+    if (branch(g.leaves)) {
+        vint left = load_vector(as<std::int32_t>(c.packets + packet_block_left));
+        met = met & (left != vint(listed.line));
+        if (branch(none(met)))
+            return true;
+    }
     tally(c.counters->block_tests, 1);
     pointer<BlockHeader> header = as<BlockHeader>(c.grids + listed.line);
     ensure_made(c, header);

@@ -10,10 +10,7 @@ inline namespace light_kernel {
 /// be blended for each of them: hits no further from the first one, in target edge lengths, and whose target
 /// edge lengths differ by no more than this factor.
 inline constexpr float shared_reach = 16.0F;
-inline constexpr float shared_ratio = 1.05F;
 inline constexpr float growth_steps = 8.0F; // from 0 to the cap
-/// So far around its hits, in target edge lengths, a field is that of the rays that found them.
-inline constexpr float leaving_reach = 8.0F;
 
 inline void forget_fields(const Context& c) {
     for (int i = 0; i < left_fields; ++i)
@@ -91,6 +88,9 @@ inline void leave_surface(const Context& c, const Surface& s, const vfloat& want
     r.radius = vfloat(0.0F);
     r.base = s.target;
     r.growth = common_growth(r.active, wanted);
+    vmask steep = dot(s.chord_normal, r.direction) > s.chord_slope;
+    steep = steep & (r.growth <= s.chord_growth);
+    r.left = select(steep, s.block, vint(-1));
     vfloat zero(0.0F);
     r.slope = {zero, zero, zero};
     r.number = vint(-1);

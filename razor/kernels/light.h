@@ -20,6 +20,10 @@ inline Surface permute(const Surface& s, const vint& from, const vmask& m) {
     p.growth = permute(s.growth, from);
     p.pixel = permute(s.pixel, from);
     p.sample = permute(s.sample, from);
+    p.block = permute(s.block, from);
+    p.chord_normal = permute(s.chord_normal, from);
+    p.chord_slope = permute(s.chord_slope, from);
+    p.chord_growth = permute(s.chord_growth, from);
     return p;
 }
 

@@ -29,9 +29,12 @@ struct Corners {
     vvec a, b, c;
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
     vfloat sway, sway_above;       // of the block's finest vertices; of those of the next coarser level
-    vpoint map_a, map_b, map_c;    // texture coordinates, where they are asked for and there are any
-    vmask has_rest;                // where textures are asked for, and the mesh changes its shape:
-    vvec rest_a, rest_b, rest_c;   // the corners while it is at rest, in the mesh's coordinates
+    vmask has_chords;              // the block is not flat, or is shaded at vertices: see chords.h
+    vvec chord_normal;
+    vfloat chord_slope, chord_most;
+    vpoint map_a, map_b, map_c;  // texture coordinates, where they are asked for and there are any
+    vmask has_rest;              // where textures are asked for, and the mesh changes its shape:
+    vvec rest_a, rest_b, rest_c; // the corners while it is at rest, in the mesh's coordinates
 };
 /// The target edge length that each ray asks for `way` from its field's origin (see target_at()).
 inline vfloat asked_at(const Rays& r, const vvec& way) {

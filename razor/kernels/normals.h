@@ -3,6 +3,7 @@
 // coordinates or are asked where they are at rest: their triangles' normals serve.
 #pragma once
 
+#include "razor/kernels/chords.h"
 #include "razor/kernels/displaced_normals.h"
 
 namespace razor::ISA_TARGET {
@@ -71,6 +72,7 @@ inline void make_rest(const Context& c, const Cage& g, const Dicing& d, const Bl
     b.column = load(field(header, &BlockHeader::column));
     b.quads_u = load(field(header, &BlockHeader::quads_u));
     b.stride = load(field(header, &BlockHeader::stride));
+    measure_chords(c, header, normals_at, is_flat(d));
     pointer<float> out = as<float>(c.grids + line) + normals_at;
     if (branch(texcoord_arrays(d.shading) != 0)) {
         sint shift = load(field(c.instances + instance, &InstanceRecord::texture_faces));

@@ -19,6 +19,11 @@ struct Surface {
     vfloat target, growth; // the edge length that the camera ray asked for here, and how fast it changes
     vint pixel, sample;    // number of the pixel and of its camera sample, for sampling
     vmask fine;            // the block that was hit is of several cells
+    // That block, and which rays do not meet it again: those whose direction is steeper (chords.h).
+    vint block;
+    vvec chord_normal; // towards the viewer
+    vfloat chord_slope;
+    vfloat chord_growth; // of what they ask for, at most
 };
 
 /// Bound on the error of a point p computed as a blend of `a`, `b`, `c` and moved by `origin`, and of the
@@ -121,6 +126,41 @@ inline vfloat share_of_vertices(const Context& c, const vint& block, const vfloa
     return min(max(share, 0.0F), 1.0F);
 }
 
+/// Rays that leave a hit ask for edges longer than the ray did that found it by this factor at most, and as
+/// long within so many of them (leave_surface()).
+inline constexpr float shared_ratio = 1.05F;
+inline constexpr float leaving_reach = 8.0F;
+
+/// Which rays leave the blocks that were hit for good; `facet`: normals of the triangles hit, towards the
+/// viewer; `p`: the hits, in their instances' coordinates.
+inline void find_steep(const Context& c, const Corners& k, const vvec& facet, const vvec& p,
+                       const vint& block, Surface& s) {
+    vmask away = dot(k.chord_normal, facet) < vfloat(0.0F);
+    vvec normal = select(away, k.chord_normal * vfloat(-1.0F), k.chord_normal);
+    s.chord_normal = select(k.has_chords, normal, facet); // blocks without are flat
+    s.block = block;
+    // How fast edges that they ask for may grow without being too long anywhere in the block.
+    pointer<float> headers = as<float>(c.grids);
+    constexpr int low_word = offsetof(BlockHeader, box_low) / 4;
+    constexpr int high_word = offsetof(BlockHeader, box_high) / 4;
+    vint word = block << 4;
+    vvec before = p - gather_vec(headers + low_word, word, vint(1), s.hit);
+    vvec after = gather_vec(headers + high_word, word, vint(1), s.hit) - p;
+    vvec far{max(before.x, after.x), max(before.y, after.y), max(before.z, after.z)};
+    sint one_field = load(field(c.frame, &FrameHeader::one_field));
+    vfloat alike = s.target * leaving_reach;
+    alike = select(vmask(one_field != 0), vfloat(0.0F), alike);
+    vfloat reach = max(sqrt(dot(far, far)) - alike, least_target);
+    vfloat room = fnma(s.target, vfloat(shared_ratio * few_up), k.chord_most * (1.0F / level_rounding));
+    s.chord_growth = room / reach;
+    vmask known = room >= vfloat(0.0F);
+    if (branch(one_field != 0)) {
+        known = known & (s.growth <= s.chord_growth);
+        s.chord_growth = vfloat(infinite); // they ask for what the camera does
+    }
+    s.chord_slope = select(known, k.chord_slope, vfloat(never_leaves));
+}
+
 /// `beyond` is filled in for looks that need it. `on_grids`: the rays are the camera's, and find what
 /// textures make of surfaces at the vertices of their grids.
 template <Look L>
@@ -163,6 +203,7 @@ template <Look L>
     if constexpr (L == look_matte)
         s.albedo = gather_vec(field(c.instances, &InstanceRecord::albedo), record, vint(1), s.hit);
     vvec p = blend(k.a, k.b, k.c, h);
+    find_steep(c, k, s.geometric, p, h.block, s);
     vfloat rounding = position_error(k.a, k.b, k.c, origin);
     vmask morphs = vmask(load(field(c.frame, &FrameHeader::leaving_morphs)) != 0);
     vfloat error = select(morphs, k.sway + rounding, rounding);

@@ -461,6 +461,8 @@ template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Con
         store_fields(c, r);
         fields = bound_fields(r, usable_rays(r));
     }
+    sbool leaves = any(r.left >= vint(0));
+    store_vector(as<std::int32_t>(c.packets + packet_block_left), r.left);
     Hits hits = no_hits(r);
     vint axis = largest_component(r.direction);
     vfloat least = largest(abs(r.direction)) * least_component;
@@ -476,6 +478,7 @@ template <Features F, bool AnyHit> [[gnu::noinline]] inline Hits trace(const Con
         left = left & !same;
         Group g = make_group(c, r, same, along, extract(signs, one));
         g.fields = fields;
+        g.leaves = leaves;
         if constexpr (F.hanging) {
             if (branch(choice == sint(by_patch))) {
                 trace_either<F, by_patch, AnyHit>(c, r, g, hits);

@@ -45,6 +45,7 @@ struct Group {
     sfloat begin, end; // of the part of the beam that is in the cell at hand
     sfloat slack;      // of positions
     sbool morphs;      // whether vertices leave their anchors
+    sbool leaves;      // whether some ray leaves a block for good
     FieldBounds fields;
 };
 

@@ -51,6 +51,8 @@ Mesh convex(const std::string& name) {
         return scaled(cube_cage(), {1, 0.4, 2}, "ellipsoid");
     if (name == "cylinder")
         return prism(12);
+    if (name == "beam") // of long triangles, where distances along rays round by more than points do
+        return scaled(bilinear(cube_cage()), {0.5, 0.5, 12}, "beam");
     return bilinear(cube_cage());
 }
 
@@ -96,12 +98,12 @@ TEST_P(Leaving, ConvexBodiesDoNotShadowThemselves) {
                     shot += c.shot;
                     kept += c.arrived;
                 }
-    EXPECT_GT(shot, 50'000);
+    EXPECT_GT(shot, 20'000);
     RecordProperty("shadow_rays", std::to_string(shot));
     RecordProperty("arrived", std::to_string(std::llround(kept)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Bodies, Leaving, testing::Values("ball", "ellipsoid", "cylinder", "box"),
+INSTANTIATE_TEST_SUITE_P(Bodies, Leaving, testing::Values("ball", "ellipsoid", "cylinder", "box", "beam"),
                          [](const auto& name) { return name.param; });
 
 /// A ball on a plane, and a low light behind it: what lies before the ball is dark up to where they touch.
