@@ -205,7 +205,8 @@ void Encoder::encode(const Block& block, std::string& out) {
     std::vector<std::uint32_t> rank(order.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         rank[order[i]] = static_cast<std::uint32_t>(i);
-    const unsigned shift = common_shift(block.addresses), set_bits = Evictions::set_bits(block, shift);
+    const unsigned shift = common_shift(block.addresses);
+    const unsigned set_bits = LineMoves(block.table, model_ != nullptr).set_bits(block, shift);
     std::uint32_t coding = 0;
     table_.clear();
     put_table(block, order, table_);

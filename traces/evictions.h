@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 namespace traces {
 
@@ -18,30 +17,6 @@ public:
 
     static bool comes(const Class& c) { return c.kind <= Kind::prefetch; }
     static bool leaves(const Class& c) { return c.kind == Kind::write_back || c.kind == Kind::clean_back; }
-    /// How many low bits of a line that leaves and of the one that comes next are mostly the same; 0: hardly
-    /// any line makes room for another, which is then coded like all else.
-    static unsigned set_bits(const Block& block, unsigned shift) {
-        std::array<std::size_t, most_set_bits + 1> pairs{}; // by how many bits are
-        std::size_t all = 0, leaving = 0;
-        for (const Segment& s : block.segments)
-            for (std::size_t i = s.begin; i < s.end; ++i) {
-                if (!leaves(block.what(i)))
-                    continue;
-                ++leaving;
-                if (i + 1 == s.end || !comes(block.what(i + 1)))
-                    continue;
-                const std::uint64_t differ = (block.addresses[i] ^ block.addresses[i + 1]) >> shift;
-                ++pairs[std::min<std::size_t>(most_set_bits,
-                                              static_cast<std::size_t>(std::countr_zero(differ)))];
-                ++all;
-            }
-        if (leaving < 64 || all * 2 < leaving)
-            return 0;
-        unsigned bits = most_set_bits;
-        for (std::size_t as_many = pairs[bits]; bits > 0 && as_many * 10 < all * 9;)
-            as_many += pairs[--bits];
-        return bits;
-    }
 
     explicit Evictions(unsigned set_bits)
         : mask_((std::uint64_t{1} << set_bits) - 1), sets_(std::size_t{1} << set_bits) {}

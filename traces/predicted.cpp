@@ -22,7 +22,8 @@ class Put {
 public:
     Put(ReferenceModel& model, const Block& block, const std::vector<std::uint32_t>& rank, unsigned shift,
         unsigned set_bits, std::string& out)
-        : model_(model), block_(block), rank_(rank), shift_(shift), pairs_(set_bits != 0), coder_(out) {}
+        : model_(model), block_(block), rank_(rank), moves_(block.table, true), shift_(shift),
+          pairs_(set_bits != 0), coder_(out) {}
 
     void all(const std::vector<Turn>& turns) {
         for (const Segment& s : block_.segments)
@@ -45,8 +46,8 @@ private:
     }
     /// The place of a line that leaves at i, if it makes room for what comes next, else 0.
     std::uint64_t room(std::size_t i, std::size_t end) const {
-        if (!pairs_ || i + 1 == end || !RecentLines::leaves(block_.what(i)) ||
-            !RecentLines::comes(block_.what(i + 1)) || block_.what(i + 1).part == Part::piece ||
+        if (!pairs_ || i + 1 == end || !moves_.leaves(block_.classes[i]) ||
+            !moves_.comes(block_.classes[i + 1]) || block_.what(i + 1).part == Part::piece ||
             block_.times[i] != block_.times[i + 1] || block_.tile(i) != block_.tile(i + 1))
             return 0;
         return model_.place_of(block_.addresses[i] >> shift_, block_.addresses[i + 1] >> shift_);
@@ -74,6 +75,7 @@ private:
     ReferenceModel& model_;
     const Block& block_;
     const std::vector<std::uint32_t>& rank_;
+    LineMoves moves_;
     unsigned shift_;
     bool pairs_;
     BitWriter coder_;

@@ -15,8 +15,6 @@ public:
         std::uint64_t line;
         std::uint32_t what; // the class that it came with
     };
-    static bool comes(const Class& c) { return Evictions::comes(c); }
-    static bool leaves(const Class& c) { return Evictions::leaves(c); }
     static std::uint64_t mask(unsigned set_bits) { return (std::uint64_t{1} << set_bits) - 1; }
 
     void begin(unsigned set_bits) {

@@ -27,6 +27,7 @@ void ReferenceModel::begin(const std::vector<Class>& table, std::size_t referenc
         far_tile_.begin(line_bits, checked);
     }
     table_ = &table;
+    moves_.emplace(table, true);
     place_ = without_parts(table.size(), [&](std::uint32_t c) -> const Class& { return table[c]; });
     class_bits_ = std::max(1U, static_cast<unsigned>(std::bit_width(table.size() - 1)));
     stream_bits_ = std::max(1U, static_cast<unsigned>(std::bit_width(streams - 1)));

@@ -4,6 +4,7 @@
 // description.
 #pragma once
 
+#include "traces/line_moves.h"
 #include "traces/predictor.h"
 #include "traces/recent_lines.h"
 #include "traces/recent_tiles.h"
@@ -11,6 +12,7 @@
 #include "traces/varint.h"
 
 #include <cstdlib>
+#include <optional>
 #include <unordered_map>
 
 namespace traces {
@@ -120,7 +122,7 @@ public:
     }
     /// After all that belongs to a reference.
     void came(const Coming& r) {
-        if (RecentLines::comes((*table_)[r.what]))
+        if (moves_->comes(r.what))
             recent_.come(stream_, r.line, r.what);
         streams_[stream_].line = r.line;
     }
@@ -261,6 +263,7 @@ private:
     Predictor<3> stream_number_, left_what_, far_tile_;
 
     const std::vector<Class>* table_ = nullptr;
+    std::optional<LineMoves> moves_;
     std::vector<std::uint32_t> place_; // by class: the first that differs in its part alone
     bool tiled_ = false;
     unsigned class_bits_ = 0, stream_bits_ = 0, set_bits_ = 0;

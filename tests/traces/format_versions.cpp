@@ -122,6 +122,25 @@ TEST(TraceFormat, FilesOfVersionSixAreRead) {
     }
 }
 
+TEST(TraceFormat, FilesOfVersionSevenAreRead) {
+    Reader reader(memory_source(decoded(predicted_of_version_7), "old"));
+    Block block;
+    ASSERT_TRUE(reader.next(block));
+    expect_passed_on(block, true);
+    EXPECT_FALSE(reader.next(block));
+    EXPECT_TRUE(reader.complete()) << reader.note();
+
+    Reader writes(memory_source(decoded(writes_of_version_7), "old"));
+    ASSERT_TRUE(writes.next(block));
+    const std::vector<Reference> got = references_of(block), want = passed_on();
+    ASSERT_EQ(got.size(), want.size());
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        EXPECT_EQ(got[i].address, want[i].address) << i;
+        EXPECT_EQ(got[i].time, want[i].time) << i;
+        EXPECT_EQ(got[i].what.kind, want[i].what.kind == Kind::write_back ? Kind::write : Kind::read) << i;
+    }
+}
+
 /// The first block of a file.
 std::string without_last_column(const std::string& file) {
     const std::size_t chunk = file.find(block_chunk);

@@ -181,6 +181,29 @@ TEST(PredictedBlocks, LinesThatLeaveCachesTakeLittle) {
     EXPECT_LT(bytes.size() + 3 * left, encoded(block).size());
 }
 
+/// Memory is told of them as writes.
+TEST(PredictedBlocks, WritesToMemoryTakeLittle) {
+    std::size_t left = 0;
+    std::vector<Reference> all = evicting(30000, left);
+    for (Reference& r : all)
+        r.what.kind = Evictions::leaves(r.what) ? Kind::write : Kind::read;
+    const Block block = block_of(all, 50);
+    Block back;
+    const std::string bytes = encoded(block);
+    Decoder().decode(bytes, limits, format_version, "here", back);
+    expect_same(back, block);
+    // One of three places is two bits. Where there is a line that leaves by its kind, writes are like all
+    // else.
+    all[0].what.kind = Kind::write_back;
+    const Block other = block_of(all, 50);
+    const std::string more = encoded(other);
+    Decoder().decode(more, limits, format_version, "here", back);
+    expect_same(back, other);
+    EXPECT_LT(bytes.size() + 3 * left, more.size());
+    // In columns too: cores, whose traces these are, read and write.
+    EXPECT_GT(encoded(block, Coding::columns).size(), bytes.size() + 4 * left);
+}
+
 /// Four walks through one structure, in turns that nothing tells: two bits each, and nothing for lines and
 /// times.
 TEST(PredictedBlocks, WalksTakeTheRoomOfTheirTurns) {
