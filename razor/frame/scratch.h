@@ -75,11 +75,13 @@ constexpr int slot_floats(bool texcoords, int arrays) {
 inline constexpr int line_floats_log2 = 4;
 static_assert(4 << line_floats_log2 == line_bytes);
 
-inline constexpr int packet_origin = 0;                              // 3 vectors
-inline constexpr int packet_inverse = packet_origin + 3 * ISA_WIDTH; // 3 vectors: 1 / direction
-inline constexpr int packet_error = packet_inverse + 3 * ISA_WIDTH;  // 3 vectors: slack of a plane's distance
+inline constexpr int packet_inverse = 0; // 3 vectors: 1 / direction
+/// 3 vectors each: what is added to a plane's coordinate / direction for when the ray is there, at the
+/// earliest and the latest.
+inline constexpr int packet_early = packet_inverse + 3 * ISA_WIDTH;
+inline constexpr int packet_late = packet_early + 3 * ISA_WIDTH;
 inline constexpr int packet_sum =
-    packet_error + 3 * ISA_WIDTH; // light gathered for each lane of a camera packet
+    packet_late + 3 * ISA_WIDTH; // light gathered for each lane of a camera packet
 /// Target edge lengths: origin x, y, z, radius, base, growth and slope x, y, z of each lane's field, and its
 /// number: lanes of one number have the same field, in whatever packet of the worker.
 inline constexpr int packet_field = packet_sum + ISA_WIDTH;

@@ -10,11 +10,11 @@
 namespace razor::ISA_TARGET {
 inline namespace traverse_kernel {
 
-/// Slacks of positions (a dozen roundings, each of half an ulp u of the scene's reach R) by which lines keep
+/// Slacks of positions (16 roundings, each of half an ulp u of the scene's reach R) by which lines keep
 /// off rays. A ray's place at a plane, fma(plane - o, d / d_z, o), is off by 25 R u, as |d / d_z| <= 2; a
 /// line through two such places by 12 for its rate, 13 for where it begins, 7 where it is evaluated and 20
-/// where that is moved to an instance's origin; what is compared with it by a slack of its own, 12.
-inline constexpr float beam_slack = 12.0F;
+/// where that is moved to an instance's origin; what is compared with it by a slack of its own, 16.
+inline constexpr float beam_slack = 9.0F;
 /// Beams shorter than this part of the reach have no slope: it would be mostly rounding.
 inline constexpr float shortest_beam = 1.0F / 1024;
 

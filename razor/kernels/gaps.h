@@ -64,7 +64,7 @@ inline Along along(const vmask& steep, const Edge& e) {
 }
 
 inline constexpr float gap_slacks =
-    6.0F; // how wide gaps are at most, in slacks of positions, sheared: with room
+    4.5F; // how wide gaps are at most, in slacks of positions, sheared: with room
 
 /// A side with hanging vertices leaves its flat ancestor edge, which is all that the neighbour knows of, by
 /// their rounding. What lies between the ancestor and sub-edge i, over the sub-edge's length, belongs to this

@@ -100,8 +100,17 @@ inline void intersect_cell(const Context& c, const Group& g, const Seen& v, sint
 
 /// The packet's rays against boxes, unpermuted.
 struct Slabs {
-    vfloat origin[3], inverse[3], error[3];
+    vfloat inverse[3], early[3], late[3]; // as in scratch.h
 };
+inline Slabs load_slabs(const Context& c) {
+    Slabs rays;
+    for (int k = 0; k < 3; ++k) {
+        rays.inverse[k] = load_vector(c.packets + (packet_inverse + k * isa::width));
+        rays.early[k] = load_vector(c.packets + (packet_early + k * isa::width));
+        rays.late[k] = load_vector(c.packets + (packet_late + k * isa::width));
+    }
+    return rays;
+}
 
 /// Distances between which rays are in a box, one a lane.
 struct Interval {
@@ -121,17 +130,16 @@ template <bool Mixed>
         pointer<const float> plane = low + step * k;
         vfloat near = load_broadcast(plane + near_at);
         vfloat far = load_broadcast(plane + far_at);
-        near = (near - rays.origin[k]) * rays.inverse[k];
-        far = (far - rays.origin[k]) * rays.inverse[k];
+        vfloat enter = fma(near, rays.inverse[k], rays.early[k]);
+        vfloat leave = fma(far, rays.inverse[k], rays.late[k]);
         if constexpr (Mixed) {
-            vfloat first = min(near, far);
-            far = max(near, far);
-            near = first;
+            near = fma(near, rays.inverse[k], rays.late[k]);
+            far = fma(far, rays.inverse[k], rays.early[k]);
+            enter = min(enter, far);
+            leave = max(leave, near);
         }
-        near = near - rays.error[k];
-        far = far + rays.error[k];
-        i.enter = k == 0 ? near : max(near, i.enter);
-        i.leave = k == 0 ? far : min(far, i.leave);
+        i.enter = k == 0 ? enter : max(enter, i.enter);
+        i.leave = k == 0 ? leave : min(leave, i.leave);
     }
     return i;
 }
@@ -174,10 +182,13 @@ inline void visit_cells(const Group& g, const View& v, const Slabs& scene, sfloa
     }
     Slabs rays;
     for (int k = 0; k < 3; ++k) {
-        rays.origin[k] = scene.origin[k] - load_broadcast(origin_at + k);
-        rays.inverse[k] = scene.inverse[k];
-        vfloat rate = abs(scene.inverse[k]);
-        rays.error[k] = fma(rate, vfloat(widen), scene.error[k]);
+        vfloat inverse = scene.inverse[k];
+        vfloat moved = load_broadcast(origin_at + k);
+        vfloat rate = abs(inverse);
+        vfloat wider = rate * vfloat(widen);
+        rays.inverse[k] = inverse;
+        rays.early[k] = fma(inverse, moved, scene.early[k]) - wider;
+        rays.late[k] = fma(inverse, moved, scene.late[k]) + wider;
     }
     svec origin = load_svec(origin_at);
     sint shift = cells_shift(v.quads_u);
@@ -316,12 +327,7 @@ template <Features F, bool Mixed>
 [[gnu::noinline]] inline sbool intersect_block(const Context& c, Group& g, const Listed& listed,
                                                const Interval& cell, Hits& hits) {
     phase_scope phase(phase_intersect);
-    Slabs rays;
-    for (int k = 0; k < 3; ++k) {
-        rays.origin[k] = load_vector(c.packets + (packet_origin + k * isa::width));
-        rays.inverse[k] = load_vector(c.packets + (packet_inverse + k * isa::width));
-        rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
-    }
+    Slabs rays = load_slabs(c);
     tally(c.counters->box_tests, 1);
     Interval inside = box_interval<Mixed>(g, rays, listed.box, listed.box_step);
     vfloat enter = max(inside.enter, cell.enter);

@@ -141,12 +141,7 @@ template <Features F, bool Mixed>
 [[gnu::noinline]] inline void intersect_pairs(const Context& c, Group& g, const Scale& scale,
                                               const Listed& listed, const Interval& cell, Hits& hits) {
     phase_scope phase(phase_intersect);
-    Slabs rays;
-    for (int k = 0; k < 3; ++k) {
-        rays.origin[k] = load_vector(c.packets + (packet_origin + k * isa::width));
-        rays.inverse[k] = load_vector(c.packets + (packet_inverse + k * isa::width));
-        rays.error[k] = load_vector(c.packets + (packet_error + k * isa::width));
-    }
+    Slabs rays = load_slabs(c);
     tally(c.counters->box_tests, 1);
     Interval inside = box_interval<Mixed>(g, rays, listed.box, listed.box_step);
     vfloat enter = max(inside.enter, cell.enter);

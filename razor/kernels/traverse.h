@@ -27,12 +27,14 @@ inline vfloat safe_inverse(const vfloat& d) {
 /// X^2 + Z^2 <= R^2, and R no less than the distance of any two points of scene and camera:
 ///   the triangle's test (project()): the origin moved to the instance's coordinates R; x - ox: X; z - oz,
 ///   times the shear s = dx / dz, |s| <= 2: 2 Z; s itself: 2 Z; on sse4 the product: 2 Z; their difference,
-///   no larger than |X| + 2 |Z| <= sqrt(5) R: 2.24 R; the box's test: the plane less the origin, 1 / d, their
-///   product: 3 X.
-/// In all 4 X + 6 Z + 3.24 R <= (sqrt(4^2 + 6^2) + 3.24) R = 10.5 R; terms of u^2 are far below the rest.
+///   no larger than |X| + 2 |Z| <= sqrt(5) R: 2.24 R;
+///   the box's test, as no coordinate is beyond R: o / d: R; 1 / d: X; o / d and the slack: R; where boxes
+///   are in coordinates of a mesh, its origin / d on sse4: R, that and o / d: R, that and what boxes are
+///   widened by: R; the plane / d on sse4: R; the sum: X.
+/// In all 3 X + 6 Z + 9.24 R <= (sqrt(3^2 + 6^2) + 9.24) R < 16 R; terms of u^2 are far below the rest.
 inline sfloat position_slack(const Context& c) {
     sfloat reach = load(field(c.frame, &FrameHeader::reach));
-    return reach * (12.0F * unit_roundoff);
+    return reach * (16.0F * unit_roundoff);
 }
 
 /// Rays of a group have a component along its axis of at least this share of their largest. Any but 0 is
@@ -99,12 +101,13 @@ inline Group make_group(const Context& c, const Rays& r, vmask alive, sint along
     const vfloat* origins[3] = {&r.origin.x, &r.origin.y, &r.origin.z};
     const vfloat* directions[3] = {&r.direction.x, &r.direction.y, &r.direction.z};
     for (int k = 0; k < 3; ++k) {
-        vfloat o = *origins[k];
         vfloat inverse = safe_inverse(*directions[k]);
+        vfloat passed = *origins[k] * inverse; // since coordinate 0
         vfloat rate = abs(inverse);
-        store_vector(c.packets + (packet_origin + k * isa::width), o);
+        vfloat error = rate * vfloat(slack);
         store_vector(c.packets + (packet_inverse + k * isa::width), inverse);
-        store_vector(c.packets + (packet_error + k * isa::width), rate * vfloat(slack));
+        store_vector(c.packets + (packet_early + k * isa::width), -passed - error);
+        store_vector(c.packets + (packet_late + k * isa::width), error - passed);
         g.sign[k] = (signs >> k) & 1;
         vmask other = as_int(inverse) < vint(0);
         other = other ^ vmask(g.sign[k] != 0);
@@ -118,15 +121,17 @@ inline void clip_to_tree(const Context& c, const Rays& r, vfloat& enter, vfloat&
     enter = r.t_min;
     leave = r.t_max;
     for (int k = 0; k < 3; ++k) {
-        vfloat o = load_vector(c.packets + (packet_origin + k * isa::width));
         vfloat inverse = load_vector(c.packets + (packet_inverse + k * isa::width));
-        vfloat error = load_vector(c.packets + (packet_error + k * isa::width));
+        vfloat early = load_vector(c.packets + (packet_early + k * isa::width));
+        vfloat late = load_vector(c.packets + (packet_late + k * isa::width));
         vfloat low = load_broadcast(field(c.tree, &TreeRecord::low) + k);
         vfloat high = load_broadcast(field(c.tree, &TreeRecord::high) + k);
-        low = (low - o) * inverse;
-        high = (high - o) * inverse;
-        enter = max(min(low, high) - error, enter);
-        leave = min(max(low, high) + error, leave);
+        vfloat at_low = fma(low, inverse, early);
+        vfloat at_high = fma(high, inverse, early);
+        enter = max(min(at_low, at_high), enter);
+        at_low = fma(low, inverse, late);
+        at_high = fma(high, inverse, late);
+        leave = min(max(at_low, at_high), leave);
     }
 }
 
@@ -234,12 +239,11 @@ template <Features F, LevelChoice By, bool AnyHit, bool Mixed>
             CutBeam cut = cut_beam(g, axis, split);
             vfloat plane(split);
             pointer<float> along = c.packets + axis * isa::width;
-            vfloat o = load_vector(along + packet_origin);
             vfloat inverse = load_vector(along + packet_inverse);
-            vfloat error = load_vector(along + packet_error);
-            vfloat t = (plane - o) * inverse;
-            vfloat early = t - error;
-            vfloat late = t + error;
+            vfloat early = load_vector(along + packet_early);
+            vfloat late = load_vector(along + packet_late);
+            early = fma(plane, inverse, early);
+            late = fma(plane, inverse, late);
             vmask inside = enter <= leave;
             sint sign = select(axis == 1, g.sign[1], g.sign[2]);
             sign = select(axis == 0, g.sign[0], sign);
