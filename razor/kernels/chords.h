@@ -27,6 +27,7 @@ inline namespace tessellate_kernel {
 /// What a block's chords are like: |normal . chord| <= slope |chord|, for rays that ask for edges of length
 /// `most` at most in all of it, as fields hold them. A slope of never_leaves is not known.
 enum ChordWord : int { chord_normal = 0, chord_slope = 3, chord_most = 4, chord_words = 5 };
+static_assert(chord_words + 1 == words_before_normals);
 inline constexpr float never_leaves = 2.0F; // steeper than any direction
 /// What a few roundings of numbers near 1 may come to, with room.
 inline constexpr float chord_rounding = 1.0e-5F;
@@ -34,7 +35,7 @@ inline constexpr float chord_rounding = 1.0e-5F;
 /// Where they are kept, of a block whose normals lie at word `normals_at`: before these, and before what
 /// displaced blocks keep there (kept_deviation()).
 inline pointer<float> chords_at(pointer<BlockHeader> block, sint normals_at) {
-    return as<float>(block) + (normals_at - (chord_words + 1));
+    return as<float>(block) + (normals_at - words_before_normals);
 }
 
 /// Bounds of all edges along one parameter, of some a lane.

@@ -100,15 +100,16 @@ template <Features F, bool Mapped, class Towards, class Response>
                                                          sint samples) {
     phase_scope phase(phase_light);
     constexpr int lobes = Response::lobes;
+    constexpr bool may_deal = towards_points<Towards>;
     // Few samples leave room for more hits.
     sint fewer_log2 = samples - 1;
     sint per_hit_log2 = select(samples > 2, sint(rays_of_hit_log2), fewer_log2);
-    sbool dealt = false;
-    if constexpr (towards_points<Towards>) {
+    [[maybe_unused]] sbool dealt = false;
+    if constexpr (may_deal) {
         if (branch(samples > 1))
             dealt = quarters_pay(s.position, s.hit, s.fine, towards.extent(c));
+        per_hit_log2 = select(dealt, sint(0), per_hit_log2);
     }
-    per_hit_log2 = select(dealt, sint(0), per_hit_log2);
     sint per_hit = sint(1) << per_hit_log2;
     sint hits_per_packet = sint(isa::width) >> per_hit_log2;
     for (int k = 0; k < lobes; ++k)
@@ -127,13 +128,15 @@ template <Features F, bool Mapped, class Towards, class Response>
         for (sint k = 0; branch(k < samples); k += per_hit) {
             vint number = member + vint(k);
             vmask wanted = number < vint(samples);
-            vint own = number; // of each hit's four, where they are dealt
-            if (branch(dealt & begins_quarters(k))) {
-                for (int lobe = 0; lobe < lobes; ++lobe)
-                    clear_parts(c, lobe);
+            [[maybe_unused]] vint own = number; // of each hit's four, where they are dealt
+            if constexpr (may_deal) {
+                if (branch(dealt & begins_quarters(k))) {
+                    for (int lobe = 0; lobe < lobes; ++lobe)
+                        clear_parts(c, lobe);
+                }
             }
             auto l = [&] {
-                if constexpr (towards_points<Towards>) {
+                if constexpr (may_deal) {
                     if (branch(dealt)) {
                         Dealt d = dealt_point(c, here.pixel, first_sample, k, samples, towards.dimension());
                         own = d.number;
@@ -159,9 +162,11 @@ template <Features F, bool Mapped, class Towards, class Response>
                 vmask leader = present & (member == vint(0));
                 for (int lobe = 0; lobe < lobes; ++lobe) {
                     vfloat sum = select(arrives, part[lobe], vfloat(0.0F));
-                    if (branch(dealt)) {
-                        keep_part(c, lobe, own, sum);
-                        continue;
+                    if constexpr (may_deal) {
+                        if (branch(dealt)) {
+                            keep_part(c, lobe, own, sum);
+                            continue;
+                        }
                     }
                     for (sint step = 1; branch(step < per_hit); step = step + step) {
                         vint pair = lane_index() ^ vint(step);
@@ -170,9 +175,11 @@ template <Features F, bool Mapped, class Towards, class Response>
                     add_to_lobe<Response>(c, lobe, lane, leader, sum);
                 }
             }
-            if (branch(dealt & ends_quarters(k, samples))) {
-                for (int lobe = 0; lobe < lobes; ++lobe)
-                    add_to_lobe<Response>(c, lobe, lane, present, sum_of_parts(c, lobe));
+            if constexpr (may_deal) {
+                if (branch(dealt & ends_quarters(k, samples))) {
+                    for (int lobe = 0; lobe < lobes; ++lobe)
+                        add_to_lobe<Response>(c, lobe, lane, present, sum_of_parts(c, lobe));
+                }
             }
         }
     }

