@@ -161,6 +161,33 @@ double largest_error(const std::vector<Comparison>& all, const std::set<std::str
     return largest;
 }
 
+/// Over a network on which other messages were, some come sooner or later than in the run: memory is asked
+/// for the same lines, but finds other rows open.
+TEST(SharedLevelReplay, IsNearWhereMessagesShareTheNetwork) {
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"network.topology=mesh"},
+          {"network.topology=ring", "memory.controller=queued"},
+          {"network.topology=crossbar", "l3.prefetcher=next"},
+          {"network.topology=mesh", "sim.mode=reference", "sim.quantum=1", "memory.controller=queued"}}) {
+        SCOPED_TRACE(fmt::format("{}", fmt::join(more, " ")));
+        const Config config = read_machine(
+            machine("tiny"), with(with(two_by_two, {"l3.size_bytes=65536", "l3.share=chip"}), more));
+        TraceSettings settings;
+        settings.level = "l3";
+        const test::Recorded run = test::record(config, 1500, settings);
+        const ReplayResult result = replay(run.trace, config);
+        EXPECT_TRUE(result.memory_alone);
+        EXPECT_EQ(result.waits, 0U);
+        const std::vector<Comparison> all = compare_with_run(result, print_json(run.report), "run");
+        EXPECT_EQ(largest_error(all, {"reads", "writes"}), 0) << differences(all);
+        EXPECT_LT(largest_error(all, {"row_hits", "row_conflicts", "activates", "precharges"}), 0.01)
+            << differences(all);
+        EXPECT_LT(largest_error(all, {"read_clocks"}), 0.2) << differences(all);
+        EXPECT_NE(differences(all), ""); // else the README says too little
+        expect_much(run.report);
+    }
+}
+
 class ReferenceReplay : public ::testing::TestWithParam<Case> {};
 
 /// Of the machine in the reference mode, in which caches within tiles act in order of time: what a trace does
