@@ -22,12 +22,14 @@ void Engine::note_touch(const Hart& h, std::uint64_t address, std::uint32_t byte
     if (!h.tile->tap->is_at(TraceLevel::core))
         return;
     const std::uint32_t step = accesses == 1 ? 0 : bytes / accesses / 4 * 4;
+    std::uint32_t progress = take_progress(h, at);
     for (std::uint32_t i = 0; i < accesses; ++i) {
         const traces::Part which = i == 0 ? part : traces::Part::piece;
         const std::uint32_t rest = bytes - i * step;
         h.tile->attribution.note_always(write ? traces::Kind::write : traces::Kind::read, address + i * step,
                                         step == 0 || i + 1 == accesses ? rest : step, at, h.column, h.number,
-                                        h.trace_site, which);
+                                        h.trace_site, which, progress);
+        progress = take_progress(h, at);
     }
 }
 

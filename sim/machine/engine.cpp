@@ -419,6 +419,15 @@ void Engine::end_window() {
     }
 }
 
+/// For a trace. Where tiles go on by themselves, nothing happens in the window before cycle `next`; what
+/// happens counts from its beginning.
+void Engine::note_window(cycle next, cycle served) {
+    recorder_->window(window_end_, tiles_.front().events ? next : served);
+    for (Tile& tile : tiles_)
+        if (tile.events)
+            tile.events->take_count();
+}
+
 /// Runs the next window in which something happens; false if nothing ever will.
 bool Engine::run_window() {
     find_active_tiles();
@@ -428,7 +437,7 @@ bool Engine::run_window() {
     const cycle served = window_end_;
     window_end_ = std::max(window_end_ + window_cycles_, (next / window_cycles_ + 1) * window_cycles_);
     if (recorder_ != nullptr)
-        recorder_->window(window_end_, served);
+        note_window(next, served);
     set_floors(next);
     cycle begin = window_end_ - window_cycles_;
     if (intervals_.due(begin))

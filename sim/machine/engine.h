@@ -16,6 +16,7 @@
 #include "sim/machine/windows.h"
 #include "sim/machine/word_moves.h"
 #include "sim/memory/page_tables.h"
+#include "sim/trace/tile_progress.h"
 #include "traces/description.h"
 
 #include <deque>
@@ -282,10 +283,16 @@ private:
                     std::uint32_t accesses, cycle at, traces::Part part) const;
     traces::Part meet_site(Hart& h) const;
     void pass_site(Hart& h) const;
+    /// For a trace: what has happened within the tile since the last reference.
+    static std::uint32_t take_progress(const Hart& h, cycle at) {
+        std::optional<TileEvents>& events = h.tile->events;
+        return events ? TileProgress::of(events->take_count(), events->now(), at) : 0;
+    }
     void note_core(Hart& h, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, cycle at,
                    traces::Part part) const {
         if (recorder_ != nullptr && h.tile->tap->is_at(TraceLevel::core)) [[unlikely]]
-            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site, part);
+            h.tile->attribution.note_always(kind, address, bytes, at, h.column, h.number, h.trace_site, part,
+                                            take_progress(h, at));
     }
     void touch_lanes(Hart& h, std::uint64_t address, std::uint64_t lanes, bool write, cycle from, Data& data);
     void touch_indexed(Hart& h, std::uint64_t address, const std::int32_t* index, std::uint64_t lanes,
@@ -398,6 +405,7 @@ private:
     std::vector<traces::Description::Region> regions() const;
     void trace();
     // --- windows
+    void note_window(cycle next, cycle served);
     bool run_window();
     void forget_before(cycle begin);
     void end_window();

@@ -183,6 +183,7 @@ void TileEvents::step() {
     update();
     if (e.where == nobody)
         return heard_(now_, nullptr);
+    ++count_;
     Arrivals& a = arrivals_[e.where];
     if (e.slot != no_slot)
         a.happen(e.slot, now_);

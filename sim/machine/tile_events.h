@@ -15,6 +15,7 @@
 #include <deque>
 #include <functional>
 #include <queue>
+#include <utility>
 #include <vector>
 
 namespace sim {
@@ -112,6 +113,8 @@ public:
     }
     /// Who waits for room hears at this cycle too, as if something had been answered.
     void look_again(cycle t) { foresee(t, 0, ~std::uint64_t{0}, nobody, no_slot); }
+    /// How many events of requests have happened since this was asked last.
+    std::uint32_t take_count() { return std::exchange(count_, 0U); }
     /// Nothing has happened yet that is later.
     cycle now() const { return now_; }
     void tell(Heard heard) { heard_ = std::move(heard); }
@@ -159,6 +162,7 @@ private:
     std::deque<Arrivals> arrivals_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::uint64_t sequence_ = 0;
+    std::uint32_t count_ = 0;                       // for a trace
     std::uint64_t least_ = ~std::uint64_t{0} >> 1U; // cycles that a cache takes
     cycle now_ = 0;
     Floors beyond_;

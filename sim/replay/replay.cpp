@@ -1,5 +1,7 @@
 #include "sim/replay/replay.h"
 
+#include "sim/config/error.h"
+#include "sim/config/machine_file.h"
 #include "traces/error.h"
 #include "traces/in_order.h"
 
@@ -13,7 +15,26 @@ namespace {
 /// Of a machine's windows, in which references may lie this far ahead.
 constexpr cycle far_ahead = cycle{1} << 24U;
 
+/// Whether a trace says that it is all of a run on this machine.
+bool is_of(const traces::Description& about, const Config& config) {
+    if (!about.filters.empty() || about.sample != 1)
+        return false;
+    const std::optional<Config> own = machine_of(about);
+    return own && print_machine(*own) == print_machine(config);
+}
+
 } // namespace
+
+std::optional<Config> machine_of(const traces::Description& about) {
+    if (about.configuration.empty() || about.window == 0)
+        return std::nullopt;
+    const std::string text = about.configuration.substr(0, about.configuration.find("\n# scene\n"));
+    try {
+        return parse_machine(text, "the trace's machine");
+    } catch (const ConfigError&) {
+        return std::nullopt; // of another program
+    }
+}
 
 Replay::Replay(const Config& config, const traces::Description& about, const ReplayOptions& options,
                ReplayListener* listener)
@@ -22,6 +43,7 @@ Replay::Replay(const Config& config, const traces::Description& about, const Rep
                (about.time == "clocks" && machine_.is_memory())),
       following_(about.window == machine_.window_cycles() && !machine_.is_memory()),
       eventful_(config.sim.mode == "reference" && !machine_.is_memory()),
+      tells_progress_(eventful_ && machine_.first_level() == 0 && is_of(about, config)),
       from_zero_(following_ || (machine_.is_memory() && about.window != 0)), clocks_(about.time == "clocks"),
       clock_ps_(wide(config.memory.clock_ps)), cycle_ps_(wide(config.chip.clock_ps)) {}
 
@@ -178,6 +200,16 @@ inline void Replay::perform(const ReplayAction& a, std::uint32_t stream, std::ui
         tell(a, stream, address, bytes, accesses, t, answer);
 }
 
+/// ... of a reference at cycle `t`: what the trace of this machine says, else as far as it had come when it
+/// was made.
+void Replay::let_events_happen(const ReplayAction& a, std::uint32_t stream, cycle t, cycle acted) {
+    const TileProgress progress(a.detail, t);
+    if (tells_progress_ && progress.told())
+        machine_.let_events_happen(stream, progress);
+    else
+        machine_.let_events_happen(stream, acted);
+}
+
 /// References of a stream, one after the other.
 void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end) {
     const bool compacts = machine_.by_reference() && !machine_.is_memory(); // of a DRAM any has a place
@@ -188,7 +220,7 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];
         const cycle t = arrive(block.times[i]);
         if (eventful_ && a.kind != traces::Kind::recall) [[unlikely]] // which is found by what follows
-            machine_.let_events_happen(stream, acts_[i] + offset_);
+            let_events_happen(a, stream, t, acts_[i] + offset_);
         std::size_t n = 1;
         while (i + n < end && goes_on_[block.classes[i + n]] == leads_[number])
             ++n;

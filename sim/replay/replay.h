@@ -2,11 +2,12 @@
 // (traces::Turn), else that of its times. Each comes at the cycle at which it was recorded, whatever earlier
 // ones have brought; where the machine has no room for one (an MSHR), it and all that follow come so much
 // later. On the machine that a trace of its cores, or of what a level of caches in its tiles passed on, was
-// recorded on, in its fast mode and from cold caches, nothing has to wait, and all that the memory system
-// counts is what the run counted. (What memory was asked for has no windows: each request comes when it came
-// there, in either mode.) In the reference mode a trace does not tell what happened within a tile
-// between two accesses of one operation, and when a reference waited for room in an L1: that is what counts
-// may be off by.
+// recorded on, from cold caches, nothing has to wait, and all that the memory system counts is what the run
+// counted. (What memory was asked for has no windows: each request comes when it came there, in either mode.)
+// In the reference mode, in which caches within tiles act in order of time, that is so of cores, whose traces
+// tell how far a tile had gone on by itself at each reference (tile_progress.h). Those of its caches do not,
+// nor is it so on another machine: there what happened between two accesses of one operation, and when a
+// reference waited for room in an L1, is what counts may be off by.
 //
 // Times that are no cycles or instructions do not count: references come one a cycle. Clocks of memory count
 // where memory alone is driven.
@@ -17,6 +18,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sim {
@@ -57,6 +59,9 @@ private:
     Labels labels_;
 };
 
+/// The machine that a trace says it is of, if it does.
+std::optional<Config> machine_of(const traces::Description& about);
+
 /// Hears what a replay does.
 class ReplayListener {
 public:
@@ -95,6 +100,7 @@ private:
     void find_acts(const traces::Block& block);
     void learn(const std::vector<traces::Class>& table);
     void run(const traces::Block& block, std::uint32_t stream, std::size_t begin, std::size_t end);
+    void let_events_happen(const ReplayAction& a, std::uint32_t stream, cycle t, cycle acted);
     void touch(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
                std::uint32_t accesses, cycle t);
     void touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint64_t low, std::uint64_t high,
@@ -122,6 +128,7 @@ private:
     std::vector<std::uint8_t> goes_on_, leads_; // likewise: equal where one goes on with the other
     bool clocked_, following_;                  // times are cycles; the run's windows are followed
     bool eventful_;                             // the machine is in the reference mode
+    bool tells_progress_;                       // ... and the trace's own, of whose cores it is
     bool from_zero_;                            // times are the run's
     bool clocks_;                               // ... or clocks of memory, of which each is
     std::uint64_t clock_ps_, cycle_ps_;         // so many picoseconds, and a cycle

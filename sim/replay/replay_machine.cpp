@@ -112,7 +112,7 @@ void ReplayMachine::set_floors(cycle served) {
 void ReplayMachine::open_window(cycle until, cycle served) {
     if (tiles_.front().events)
         finish_windows(served);
-    if (served != 0)
+    else if (served != 0)
         serve(served);
     settle_stand_ins();
     window_end_ = until;
@@ -158,7 +158,7 @@ void ReplayMachine::serve(cycle end) {
 
 void ReplayMachine::serve_all() {
     if (tiles_.front().events)
-        finish_windows(Beyond::everything);
+        settle_tiles();
     serve(Beyond::everything);
 }
 
@@ -231,7 +231,8 @@ void ReplayMachine::settle(cycle served) {
     }
     if (tiles_.front().events)
         finish_windows(served);
-    serve(served);
+    else
+        serve(served);
     serve_all();
     end_ = std::max(end_, served);
     for (unsigned level = 1; level < tile_levels_; ++level)

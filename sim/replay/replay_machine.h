@@ -17,6 +17,7 @@
 #include "sim/machine/asides.h"
 #include "sim/machine/beyond.h"
 #include "sim/machine/report.h"
+#include "sim/trace/tile_progress.h"
 #include "traces/description.h"
 #include "traces/reference.h"
 
@@ -107,6 +108,8 @@ public:
     void let_events_happen(std::uint32_t stream, cycle t) {
         finish_events(*seats_[stream].tile, std::min(t + 1, window_end_));
     }
+    /// ... as many as the trace of this machine says.
+    void let_events_happen(std::uint32_t stream, const TileProgress& progress);
     /// Of the reference mode: the next of a stream's tile in the window at hand; false: there is none.
     bool let_one_event_happen(std::uint32_t stream);
     /// When a ticket that perform() gave is answered; false: not yet.
@@ -153,7 +156,12 @@ private:
             s.cache->stand_down([&](std::uint64_t address, bool dirty) { visit(s, address, dirty); });
     }
     void finish_events(Tile& tile, cycle end);
+    void finish_tile(Tile& tile);
+    cycle next_event() const;
+    cycle end_of_window_with(cycle next) const;
+    void finish_window();
     void finish_windows(cycle served);
+    void settle_tiles();
     void set_floors(cycle served);
     void discard(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
     void serve(cycle end);

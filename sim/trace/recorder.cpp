@@ -179,7 +179,14 @@ void Recorder::learn_sites(std::size_t tile) {
     writer_->add_sites(std::move(fresh));
 }
 
+/// Where tiles go on by themselves, what they do depends on all windows.
+void Recorder::pass_idle_window() {
+    if (window_ && writer_ && is_of_tiles() && config_.sim.mode == "reference")
+        writer_->mark(*std::exchange(window_, std::nullopt));
+}
+
 void Recorder::window(std::uint64_t until, std::uint64_t begin) {
+    pass_idle_window();
     if (until > origin_)
         window_ = {traces::Turn::What::window, 0, 0, until - origin_, std::max(begin, origin_) - origin_};
 }
@@ -230,6 +237,7 @@ void Recorder::end(std::uint64_t until, std::uint64_t begin) {
     collect();
     if (sharing_ != nullptr)
         return;
+    pass_idle_window();
     end_ = traces::Turn{traces::Turn::What::end, 0, 0, until - origin_, std::max(begin, origin_) - origin_};
     writer_->mark(*end_);
 }

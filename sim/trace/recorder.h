@@ -72,6 +72,7 @@ private:
     std::vector<std::string> stream_names() const;
     std::string filters_text() const;
     void learn_sites(std::size_t tile);
+    void pass_idle_window();
 
     TraceSettings settings_;
     const Config config_;

@@ -92,16 +92,10 @@ Table memory_table(const std::vector<std::string>& machines, const std::vector<s
 
 /// The machine that the trace says it is of.
 std::optional<sim::Config> recorded_on(const Description& about) {
-    if (about.configuration.empty() || about.window == 0)
-        return std::nullopt;
-    const std::string text = about.configuration.substr(0, about.configuration.find("\n# scene\n"));
-    try {
-        sim::Config config = sim::parse_machine(text, "the trace's machine");
-        config.sim.mode = "fast"; // which says when data came as well, for who waits for them
-        return config;
-    } catch (const sim::ConfigError&) {
-        return std::nullopt; // of another program
-    }
+    std::optional<sim::Config> config = sim::machine_of(about);
+    if (config)
+        config->sim.mode = "fast"; // which says when data came as well, for who waits for them
+    return config;
 }
 
 } // namespace

@@ -116,7 +116,8 @@ struct Recorded {
 };
 
 /// A run of all threads, and what was recorded of it.
-inline Recorded record(const Config& config, int count, const TraceSettings& settings = {}) {
+inline Recorded record(const Config& config, int count, TraceSettings settings = {}) {
+    settings.configuration = print_machine(config);
     WorkMemory memory;
     Recorded out;
     Recorder recorder(settings, config, traces::memory_sink(out.trace));
