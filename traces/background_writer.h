@@ -34,8 +34,14 @@ public:
     }
     /// A window, before the references that follow; or the end.
     void mark(const Turn& turn) {
-        if (turn.what != Turn::What::end && coming_.references.size() >= block_)
-            hand_over();
+        if (turn.what == Turn::What::window) {
+            const std::size_t n = coming_.references.size();
+            const bool idle = coming_.marks.size() >= n + most_idle_windows;
+            if (n >= block_ || (n != 0 && idle))
+                hand_over();
+            else if (idle)
+                coming_.marks.pop_back(); // there is no block without references
+        }
         coming_.marks.push_back({coming_.references.size(), turn});
     }
     /// Waits for all, then ends the file with its index. Throws Error.

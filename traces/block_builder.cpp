@@ -86,6 +86,7 @@ void BlockBuilder::take(Block& block) {
     classes_.clear();
     tiles_.clear();
     any_tile_ = 0;
+    marks_ = 0;
     turns_.clear();
 }
 

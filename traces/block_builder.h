@@ -20,7 +20,12 @@ public:
         any_tile_ |= r.tile;
     }
     /// A window, or the end, before the references that follow.
-    void mark(const Turn& turn) { turns_.push_back(turn); }
+    void mark(const Turn& turn) {
+        turns_.push_back(turn);
+        ++marks_;
+    }
+    /// No further window fits.
+    bool idle() const { return marks_ >= size() + most_idle_windows; }
     /// What stays with the reference before it, in one block.
     static bool continues(const Class& c) {
         return c.part == Part::piece || (c.kind == Kind::flush && c.part == Part::access);
@@ -43,6 +48,7 @@ private:
     std::vector<std::uint32_t> classes_, tiles_;
     std::uint32_t any_tile_ = 0; // 0: all are of none
     std::vector<std::uint64_t> times_, addresses_;
+    std::size_t marks_ = 0;
     std::vector<Turn> turns_; // until a block is made, with streams in place of segments
 };
 

@@ -26,9 +26,8 @@ inline std::size_t header_bytes(std::size_t columns) {
     return 16 + 8 + columns * 8;
 }
 
-/// Of windows there are hardly more than references.
 inline std::size_t most_turns(std::size_t references) {
-    return 2 * references + 16;
+    return 2 * references + 2 * most_idle_windows;
 }
 
 /// Whether addresses of a class, and the bytes of a class's number, lie side by side: a tenth less of what

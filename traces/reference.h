@@ -106,5 +106,7 @@ struct Block {
 
 /// The most references that a block may hold.
 inline constexpr std::size_t most_references = std::size_t{1} << 20;
+/// A block has no more windows than references and these.
+inline constexpr std::size_t most_idle_windows = std::size_t{1} << 15U;
 
 } // namespace traces

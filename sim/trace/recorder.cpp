@@ -179,9 +179,10 @@ void Recorder::learn_sites(std::size_t tile) {
     writer_->add_sites(std::move(fresh));
 }
 
-/// Where tiles go on by themselves, what they do depends on all windows.
+/// Where tiles go on by themselves, what they do depends on all windows. (Caches pass on too little to tell
+/// it.)
 void Recorder::pass_idle_window() {
-    if (window_ && writer_ && is_of_tiles() && config_.sim.mode == "reference")
+    if (window_ && writer_ && filter_.level == TraceLevel::core && config_.sim.mode == "reference")
         writer_->mark(*std::exchange(window_, std::nullopt));
 }
 

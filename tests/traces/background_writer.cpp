@@ -3,6 +3,7 @@
 
 #include "tests/traces/samples.h"
 #include "traces/error.h"
+#include "traces/reader.h"
 #include "traces/writer.h"
 
 #include <gtest/gtest.h>
@@ -54,6 +55,38 @@ TEST(BackgroundWriter, WritesWhatAWriterWrites) {
         EXPECT_TRUE(plain == background) << size;
         EXPECT_EQ(other.references(), all.size());
         EXPECT_EQ(other.bytes(), background.size());
+    }
+}
+
+/// Of many more windows than references, none of which is lost where there is a reference to be with.
+TEST(BackgroundWriter, WindowsWithoutReferencesFit) {
+    for (const char* level : {"core", "l2"}) {
+        Description about = test::small_description();
+        about.level = level;
+        std::string bytes;
+        BackgroundWriter writer(memory_sink(bytes), about, 1000);
+        writer.add_sites({"a:1", "b:2", "c:3"});
+        std::uint64_t time = 0, windows = 0;
+        for (const Reference& r : mixed_references(20, 1, 3)) {
+            for (std::size_t i = 0; i < most_idle_windows / 2; ++i, ++windows, time += 10)
+                writer.mark({Turn::What::window, 0, 0, time + 10, time});
+            writer.add(r);
+        }
+        for (std::size_t i = 0; i < 3 * most_idle_windows; ++i, time += 10) // no reference follows
+            writer.mark({Turn::What::window, 0, 0, time + 10, time});
+        writer.mark({Turn::What::end, 0, 0, time, time});
+        writer.finish();
+        Reader reader(memory_source(bytes, "idle"));
+        Block block;
+        std::uint64_t got = 0, references = 0;
+        while (reader.next(block)) {
+            references += block.size();
+            for (const Turn& t : block.order)
+                got += t.what == Turn::What::window ? 1 : 0;
+        }
+        EXPECT_TRUE(reader.complete()) << reader.note();
+        EXPECT_EQ(references, 20U);
+        EXPECT_GE(got, windows);
     }
 }
 

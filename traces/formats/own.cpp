@@ -50,7 +50,7 @@ public:
 private:
     static constexpr std::size_t references_of_block = std::size_t{1} << 18;
     void begin_block_if_full() {
-        if (builder_.size() >= references_of_block)
+        if (builder_.size() >= references_of_block || (builder_.size() != 0 && builder_.idle()))
             write_block();
     }
     void write_block() {
