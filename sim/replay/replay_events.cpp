@@ -83,6 +83,8 @@ void ReplayMachine::settle_tiles() {
     };
     while (busy()) {
         const cycle next = next_event();
+        if (next == ~cycle{0})
+            return; // on another machine: what waits does so for something that never comes
         window_end_ = end_of_window_with(next);
         set_floors(next);
         finish_window();
