@@ -70,7 +70,7 @@ void assign_face_classes(const Mesh& mesh, const Adjacency& adjacency, const std
             known.try_emplace(n.signature, next_class); // regular faces: the empty signature
         if (is_new) {
             topology.classes.push_back(
-                {f, static_cast<int>(n.controls.size()), adjacency.size(f), n.regular, n.folded});
+                {f, static_cast<int>(n.controls.size()), adjacency.size(f), n.regular, n.folded, n.fading});
         }
         FaceRecord& record = topology.faces[static_cast<std::size_t>(f)];
         record.face_class = entry->second;
@@ -94,7 +94,7 @@ void assign_straight_classes(const Mesh& mesh, const Adjacency& adjacency, const
         }
         const auto [entry, is_new] = of_size.try_emplace(size, static_cast<int>(topology.classes.size()));
         if (is_new) {
-            topology.classes.push_back({f, size, size, false, false, true});
+            topology.classes.push_back({f, size, size, false, false, false, true});
         }
         record.face_class = entry->second;
     }

@@ -97,6 +97,11 @@ int NeighbourhoodWalker::local_number(int point) {
     return local_[p];
 }
 
+void NeighbourhoodWalker::append_sharpness(float sharpness) {
+    result_.signature.push_back(std::bit_cast<std::int32_t>(sharpness));
+    result_.fading = result_.fading || (sharpness > 0 && sharpness < infinite_sharpness);
+}
+
 void NeighbourhoodWalker::append_fan(int corner) {
     gather_fan(corner);
     std::vector<std::int32_t>& out = result_.signature;
@@ -105,15 +110,12 @@ void NeighbourhoodWalker::append_fan(int corner) {
     result_.folded = result_.folded || (fan_.closed && fan_.counter_clockwise == 1);
     out.push_back(fan_.counter_clockwise);
     out.push_back(fan_.clockwise);
-    out.push_back(
-        std::bit_cast<std::int32_t>(sharpness_.point[static_cast<std::size_t>(adjacency_.point(corner))]));
+    append_sharpness(sharpness_.point[static_cast<std::size_t>(adjacency_.point(corner))]);
     for (const int c : fan_.corners) {
         const int size = adjacency_.size(adjacency_.face(c));
         out.push_back(size);
-        out.push_back(std::bit_cast<std::int32_t>(
-            sharpness_.edge[static_cast<std::size_t>(adjacency_.leading_edge(c))]));
-        out.push_back(std::bit_cast<std::int32_t>(
-            sharpness_.edge[static_cast<std::size_t>(adjacency_.trailing_edge(c))]));
+        append_sharpness(sharpness_.edge[static_cast<std::size_t>(adjacency_.leading_edge(c))]);
+        append_sharpness(sharpness_.edge[static_cast<std::size_t>(adjacency_.trailing_edge(c))]);
         for (int k = 1, other = adjacency_.next_corner(c); k < size;
              ++k, other = adjacency_.next_corner(other)) {
             out.push_back(local_number(adjacency_.point(other)));
@@ -124,7 +126,7 @@ void NeighbourhoodWalker::append_fan(int corner) {
 const Neighbourhood& NeighbourhoodWalker::visit(int face, int control_cap) {
     face_ = face;
     result_.signature.clear();
-    result_.folded = false;
+    result_.folded = result_.fading = false;
     result_.regular = gather_regular(face);
     if (result_.regular) {
         return result_;

@@ -30,7 +30,7 @@ struct Neighbourhood {
     /// counter-clockwise.
     std::vector<int> controls;
     std::vector<std::int32_t> signature; // empty if regular
-    bool folded = false;                 // see FaceClass
+    bool folded = false, fading = false; // see FaceClass
 };
 
 class NeighbourhoodWalker {
@@ -52,6 +52,7 @@ private:
     void gather_fan(int corner);
     bool gather_regular(int face);
     int local_number(int point);
+    void append_sharpness(float sharpness);
     void append_fan(int corner);
 
     const Adjacency& adjacency_;

@@ -2,6 +2,7 @@
 // own cache stays off: it would be asked once a class only. Classes that Bfr gets wrong ask Far instead.
 #include "razor/surface/pages.h"
 
+#include "razor/surface/bicubic_cells.h"
 #include "razor/surface/far_stencils.h"
 #include "razor/surface/refiner.h"
 
@@ -29,6 +30,7 @@ struct ClassSurface {
     Bfr::Surface<double> surface;
     std::vector<int> to_control; // from Bfr's control points to positions in the face's control list
     std::unordered_map<int, int> position; // in the control list, of each mesh point
+    std::unique_ptr<BicubicCells> cells;   // null: every point is asked for
 };
 
 /// Position in our regular control list of each point of Bfr's 4 x 4 patch, row by row.
@@ -69,19 +71,40 @@ class StencilEvaluator {
 public:
     /// `far`: null, or what to ask instead of Bfr.
     StencilEvaluator(const ClassSurface& entry, const FaceClass& c, const FarStencils* far)
-        : entry_(entry), class_(c), far_(far), parameters_(OpenSubdiv::Sdc::SCHEME_CATMARK, c.corner_count) {
+        : entry_(entry), class_(c), far_(far), parameters_(OpenSubdiv::Sdc::SCHEME_CATMARK, c.corner_count),
+          cells_(entry.cells.get(), [this](int sub, Uv uv) -> const std::vector<double>& {
+              evaluate_alone(sub, uv, 0);
+              return positions();
+          }) {
         for (std::size_t k = 0; k < raw_.size(); ++k) {
             raw_[k].resize(entry.to_control.size());
             summed_[k].resize(static_cast<std::size_t>(c.control_count));
         }
     }
+    StencilEvaluator(const StencilEvaluator&) = delete;
+    StencilEvaluator& operator=(const StencilEvaluator&) = delete;
 
-    /// Derivatives are by sub-face coordinates; else by whatever has their directions.
-    void scale_derivatives() { scales_ = true; }
-
-    /// Sub-face coordinates in [0,1]^2 (of the face itself if it is a quad). `order`: of the derivatives that
-    /// are wanted.
+    /// Sub-face coordinates in [0,1]^2 (of the face itself if it is a quad), by which derivatives are.
+    /// `order`: of those that are wanted.
     void evaluate(int sub, Uv uv, int order) {
+        if (!cells_.evaluate(sub, uv, order, summed_)) {
+            evaluate_alone(sub, uv, order);
+        }
+    }
+
+    /// Position weights of the point evaluated last.
+    const std::vector<double>& positions() const { return summed_[0]; }
+
+    /// Writes row after row's entry `column`; which: 0 position, 1 d/du, 2 d/dv, 3 d2/du2, 4 d2/dudv, 5
+    /// d2/dv2.
+    void store(std::size_t which, float* rows, std::size_t row_stride, std::size_t column) const {
+        for (std::size_t c = 0; c < summed_[which].size(); ++c) {
+            rows[c * row_stride + column] = static_cast<float>(summed_[which][c]);
+        }
+    }
+
+private:
+    void evaluate_alone(int sub, Uv uv, int order) {
         for (std::vector<double>& weights : summed_) {
             std::fill(weights.begin(), weights.end(), 0.0);
         }
@@ -108,25 +131,13 @@ public:
         const std::size_t rows = order == 2 ? 6 : order == 1 ? 3 : 1;
         for (std::size_t k = 0; k < rows; ++k) {
             // A sub-face is half as long as Bfr's coordinates are on it.
-            const double scale = class_.corner_count == 4 || !scales_ || k == 0 ? 1 : k < 3 ? 0.5 : 0.25;
+            const double scale = class_.corner_count == 4 || k == 0 ? 1 : k < 3 ? 0.5 : 0.25;
             for (std::size_t i = 0; i < entry_.to_control.size(); ++i) {
                 summed_[k][static_cast<std::size_t>(entry_.to_control[i])] += scale * raw_[k][i];
             }
         }
     }
 
-    /// Position weights of the point evaluated last.
-    const std::vector<double>& positions() const { return summed_[0]; }
-
-    /// Writes row after row's entry `column`; which: 0 position, 1 d/du, 2 d/dv, 3 d2/du2, 4 d2/dudv, 5
-    /// d2/dv2.
-    void store(std::size_t which, float* rows, std::size_t row_stride, std::size_t column) const {
-        for (std::size_t c = 0; c < summed_[which].size(); ++c) {
-            rows[c * row_stride + column] = static_cast<float>(summed_[which][c]);
-        }
-    }
-
-private:
     /// Bilinear between a quad's corners, or those of a sub-face: a corner, two middles of edges, the mean of
     /// all.
     void add_straight(int sub, Uv uv) {
@@ -155,9 +166,9 @@ private:
     const ClassSurface& entry_;
     const FaceClass& class_;
     const FarStencils* far_;
-    bool scales_ = false;
     Bfr::Parameterization parameters_;
     std::array<std::vector<double>, 6> raw_, summed_;
+    BicubicCells::Reader cells_;
 };
 
 struct SubPoint {
@@ -289,6 +300,10 @@ struct PageMaker::Impl {
                 throw std::logic_error(fmt::format("face {} has no limit surface", c.representative));
             }
             entry.to_control = map_controls(entry.surface, c, entry.position);
+            if (!c.fading) {
+                entry.cells =
+                    std::make_unique<BicubicCells>(c.corner_count == 4 ? 1 : c.corner_count, c.control_count);
+            }
         });
         return entry;
     }
@@ -313,9 +328,6 @@ void PageMaker::make(const PageKey& key, float* weights) const {
     const bool displaced = impl_->topology.displaced;
     const std::size_t all = page_floats(key, c.control_count, displaced);
     std::fill_n(weights, all, 0.0F);
-    if (displaced) {
-        stencil.scale_derivatives();
-    }
     switch (key.kind) {
     case PageKind::vertex: {
         const SubPoint p = at_vertex(key.local, c.corner_count);

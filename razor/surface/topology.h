@@ -20,6 +20,8 @@ struct FaceClass {
     bool regular = false;
     /// A corner lies inside a fan of only two faces. Bfr 3.5 crashes on some creases there.
     bool folded = false;
+    /// A corner, or an edge that ends at one, is sharp for some levels only.
+    bool fading = false;
     /// Bilinear in its corners, which are its control points: no OpenSubdiv.
     bool straight = false;
 };

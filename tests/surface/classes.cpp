@@ -1,30 +1,22 @@
 // Faces share pages exactly when one page is right for all of them.
+#include "bfr_stencils.h"
 #include "meshes.h"
 #include "patch_samples.h"
 
-#include "razor/surface/refiner.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <opensubdiv/bfr/refinerSurfaceFactory.h>
 
 #include <map>
 
 namespace razor::test {
 namespace {
 
-namespace Bfr = OpenSubdiv::Bfr;
-
 /// Largest difference between the weights of a class's page and a member's own stencil.
 double worst_weight(const Mesh& mesh, int members_a_class) {
     constexpr int level = 3, exponent = 1, n = 3;
     const Topology topology = analyse_topology(mesh);
     PagePool pool(mesh, topology, level);
-    const auto refiner = make_refiner(mesh);
-    const Bfr::RefinerSurfaceFactory<> factory(
-        *refiner,
-        Bfr::SurfaceFactory::Options().EnableCaching(false).SetApproxLevelSmooth(level).SetApproxLevelSharp(
-            level));
+    BfrStencils stencils(mesh, level);
     std::map<int, int> tested;
     double worst = 0;
     for (const PatchRecord& patch : topology.patches) {
@@ -32,37 +24,15 @@ double worst_weight(const Mesh& mesh, int members_a_class) {
         if (++tested[face.face_class] > members_a_class * face.corner_count) {
             continue;
         }
-        Bfr::Surface<double> surface;
-        EXPECT_TRUE(factory.InitVertexSurface(patch.face, &surface));
-        std::vector<int> points(static_cast<std::size_t>(surface.GetNumControlPoints()));
-        surface.GetControlPointIndices(points.data());
         PageKey key;
         key.face_class = face.face_class;
         key.local = patch.sub;
         key.exponent_u = key.exponent_v = exponent;
         const std::vector<float>& page = pool.page(key);
-        const std::size_t row = page.size() / static_cast<std::size_t>(face.control_count);
         for (int i = 0; i < n * n; ++i) {
-            std::array<double, 2> uv{(i % n) / 2.0, (i / n) / 2.0};
-            if (face.corner_count != 4) {
-                const std::array<double, 2> normalized = uv;
-                surface.GetParameterization().ConvertNormalizedSubFaceToCoord(patch.sub, normalized.data(),
-                                                                              uv.data());
-            }
-            std::vector<double> weights(points.size());
-            surface.EvaluateStencil(uv.data(), weights.data());
-            std::map<int, double> by_point;
-            for (std::size_t k = 0; k < points.size(); ++k) {
-                by_point[points[k]] += weights[k];
-            }
-            for (int c = 0; c < face.control_count; ++c) {
-                by_point[topology.controls[static_cast<std::size_t>(face.control_first + c)]] -=
-                    static_cast<double>(
-                        page[static_cast<std::size_t>(c) * row + static_cast<std::size_t>(i)]);
-            }
-            for (const auto& [point, difference] : by_point) {
-                worst = std::max(worst, std::abs(difference));
-            }
+            const PointWeights exact = stencils.at(patch, {(i % n) / 2.0, (i / n) / 2.0});
+            worst = std::max(
+                worst, differences(exact, topology, face, page, nullptr, static_cast<std::size_t>(i))[0]);
         }
     }
     return worst;
