@@ -48,10 +48,10 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
     sums.albedo = sums.albedo + select(hit, s.albedo, {zero, zero, zero});
     sums.depth = sums.depth + select(hit, h.t, zero);
     sums.hits = sums.hits + select(hit, vfloat(1.0F), zero);
-    const auto reflect = [&](const vvec& arriving) {
-        vvec reflected{arriving.x * s.albedo.x, arriving.y * s.albedo.y, arriving.z * s.albedo.z};
+    const auto add_reflected = [&](const vvec& reflected) {
         sums.beauty = sums.beauty + select(hit, reflected, {zero, zero, zero});
     };
+    const auto reflect = [&](const vvec& arriving) { add_reflected(times(arriving, s.albedo)); };
     sint lights = load(field(c.frame, &FrameHeader::light_count));
     pointer<LightRecord> light = load(field(c.frame, &FrameHeader::lights));
     for (sint n = 0; branch(n < lights); ++n) {
@@ -71,7 +71,8 @@ inline void MatteSampler<Mapped>::add(const Context& c, const Rays& r, const vin
         if constexpr (Mapped) {
             pointer<SkyRecord> map = load(field(c.frame, &FrameHeader::sky_map));
             if (branch(!is_null(map))) {
-                reflect(times(radiance, gather_mapped_sky<F>(c, map, s, Matte{}, sky_samples).of(0)));
+                vvec arriving = gather_mapped_sky<F>(c, map, s, Matte{}, sky_samples).of(0);
+                add_reflected(times(times(arriving, s.albedo), radiance)); // in PathSampler's order
                 return;
             }
         }

@@ -1,6 +1,7 @@
 // Scenes that need less run kernels that do less, and show the same, to the last bit.
 #include "tests/kernels/cages.h"
 #include "tests/kernels/targets.h"
+#include "tests/materials/skies.h"
 
 #include "razor/frame/frame.h"
 #include "razor/native/render.h"
@@ -47,6 +48,23 @@ TEST_P(LeavingOut, ShowsTheSame) {
 INSTANTIATE_TEST_SUITE_P(Scenes, LeavingOut,
                          testing::Values("default", "lights", "courtyard", "interior", "forest", "showcase"),
                          [](const auto& info) { return std::string(info.param); });
+
+// A map of the sky, seen and by its light, on matte surfaces.
+TEST(LeavingOut, UnderAMappedSkyToo) {
+    Scene scene = load_scene(std::string(RAZOR_SOURCE_DIR) + "/configs/scenes/default.toml");
+    scene.settings.width = 64;
+    scene.settings.height = 40;
+    scene.sky = {0.3, 0.7, 1.1};
+    set_sky(scene, sky_texture(32, 16, [](double u, double v) { return morning(u, v, 0.3, 20); }), 40);
+    Scene everything = scene;
+    everything.settings.everything = true;
+    for (const KernelTable* target : native_targets()) {
+        const RenderResult own = rendered(scene, target->name);
+        EXPECT_EQ(own.statistics.frame.look, look_mapped);
+        EXPECT_GT(own.statistics.frame.by_kind.kind[kind_sky].rays, 0);
+        expect_same(own.film, rendered(everything, target->name).film, target->name);
+    }
+}
 
 // Materials that nothing has do not count, nor do textures of such.
 TEST(LeavingOut, UnusedMaterialsAreLeftOut) {
