@@ -50,6 +50,16 @@ class Studies(unittest.TestCase):
         self.assertIn("no power of two", self.refused("levels/motion.py", "--counts", "3"))
         self.assertIn("too few", self.refused("levels/motion.py", "--frames", "2"))
 
+    def test_memory_stays_as_it_is_over_a_sequence(self):
+        rows, table = self.run_study("levels/steady.py", os.path.join(SCENES, "courtyard.toml"), "--frames", "150", "--last", "10",
+                                     "--size", "24x16", "--threads", "1")
+        self.assertEqual(len(table.splitlines()), 2)
+        _, half, late = rows[0]["megabytes"]
+        self.assertLess(late, half + 0.5) # of 75 frames
+        self.assertLess(late, 1.1 * rows[0]["fresh_megabytes"])
+        self.assertGreater(rows[0]["over_fresh"], 0)
+        self.assertIn("too few", self.refused("levels/steady.py", "x.toml", "--frames", "10", "--last", "10"))
+
     def test_one_tree_has_no_duplicates(self):
         scene = os.path.join(SCENES, "crowd.toml")
         rows, table = self.run_study("sharing/sharing.py", scene, "--workers", "1,4", "--size", "96x96", "--repeat", "1", "--spp",
