@@ -17,6 +17,10 @@ protected:
     static std::string machine(const std::string& name) {
         return quoted_argument(RAZOR_SOURCE_DIR "/configs/machines/" + name + ".toml");
     }
+    static std::string text_of_machine(const std::string& name) {
+        std::ifstream file(RAZOR_SOURCE_DIR "/configs/machines/" + name + ".toml");
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
     Outcome tool(const std::string& arguments) const {
         return run(program + " " + arguments, folder_.path());
     }
@@ -178,6 +182,25 @@ TEST_F(ReplayTool, WhatIsLeftOfACutTraceCounts) {
     EXPECT_EQ(damaged.code, 2);
     EXPECT_EQ(damaged.error_lines(), 1) << damaged.err;
     EXPECT_EQ(folder_.count(), before);
+}
+
+TEST_F(ReplayTool, OutputsAreNoMachineFiles) {
+    folder_.file("a.din", "0 10 4\n");
+    const std::string base = text_of_machine("tiny"), over = "inherit = \"base.toml\"\n[l2]\nways = 16\n";
+    folder_.file("base.toml", base);
+    folder_.file("m.toml", over);
+    for (const char* arguments :
+         {"replay a.din --machine m.toml --json m.toml",
+          "replay a.din --machine m.toml,l2.ways=8 --csv ./m.toml",
+          "replay a.din --machine m.toml --csv base.toml", "rows a.din --machine m.toml --csv m.toml",
+          "rows a.din --machine m.toml --json base.toml"}) {
+        const Outcome result = run(program + " " + arguments, folder_.path());
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find("is read; name another output"), std::string::npos) << result.err;
+        EXPECT_EQ(text("base.toml"), base) << arguments;
+        EXPECT_EQ(text("m.toml"), over) << arguments;
+    }
 }
 
 TEST_F(ReplayTool, MistakesAreALineAndLeaveNothing) {

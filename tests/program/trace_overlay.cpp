@@ -89,6 +89,21 @@ TEST_F(TraceOverlay, FiguresAreLaidOverThePicture) {
     EXPECT_EQ(html.find("<?xml"), std::string::npos);
 }
 
+TEST_F(TraceOverlay, OutputsAreNoPictures) {
+    const std::string picture = text("a.exr");
+    const std::size_t before = folder_.count();
+    for (const char* arguments :
+         {"tiles a.rzt --over a.exr -o o.svg --csv a.exr", "tiles a.rzt --over a.png -o ./a.png",
+          "report a.rzt --over a.exr -o o.html --csv a.exr", "overlay a.png -o a.png"}) {
+        const Outcome result = tool(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find("is read; name another output"), std::string::npos) << result.err;
+        EXPECT_EQ(text("a.exr"), picture) << arguments;
+        EXPECT_EQ(folder_.count(), before) << arguments;
+    }
+}
+
 TEST_F(TraceOverlay, MistakesAreALineAndLeaveNothing) {
     ASSERT_EQ(run(quoted_argument(RAZOR_PROGRAM) + " render s.toml --size 16x16 --spp 1 --quiet -o small.png",
                   folder_.path())

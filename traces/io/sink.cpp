@@ -123,17 +123,8 @@ std::unique_ptr<Sink> open_sink(const std::string& path) {
     return compressing(std::make_unique<FileSink>(path), path);
 }
 
-std::unique_ptr<Sink> open_sink(const std::string& path, const std::vector<std::string>& inputs) {
-    for (const std::string& input : inputs) {
-        std::error_code none;
-        if (std::filesystem::is_regular_file(path, none) && std::filesystem::equivalent(path, input, none))
-            throw Error(fmt::format("{}: is read; name another output", path));
-    }
-    return open_sink(path);
-}
-
-void check_apart(const std::vector<std::string>& outputs) {
-    std::set<std::filesystem::path> seen;
+void check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+    std::set<fs::path> seen;
     for (const std::string& output : outputs) {
         if (output.empty())
             continue;
@@ -144,7 +135,20 @@ void check_apart(const std::vector<std::string>& outputs) {
             throw Error(output == "-"
                             ? std::string("-: standard output is for one; name files for others")
                             : fmt::format("{}: is the name of two outputs; name two files", output));
+        for (const std::string& input : inputs)
+            if (output != "-" && fs::is_regular_file(output, error) && fs::equivalent(output, input, error))
+                throw Error(fmt::format("{}: is read; name another output", output));
     }
+}
+
+void write_files(const std::vector<OutputFile>& files) {
+    std::vector<std::unique_ptr<Sink>> sinks;
+    for (const OutputFile& file : files)
+        sinks.push_back(open_sink(file.name));
+    for (std::size_t i = 0; i < files.size(); ++i)
+        sinks[i]->write(files[i].text);
+    for (const std::unique_ptr<Sink>& sink : sinks)
+        sink->commit();
 }
 
 void finish_standard_output() {

@@ -26,10 +26,14 @@ public:
 /// A file by its path, compressed by gzip, xz or zstd where it ends in .gz, .xz or .zst, or "-" for standard
 /// output. Throws Error where it cannot be written.
 std::unique_ptr<Sink> open_sink(const std::string& path);
-/// Likewise; also throws Error where it is one of these, which are read.
-std::unique_ptr<Sink> open_sink(const std::string& path, const std::vector<std::string>& inputs);
-/// Throws Error where two outputs are one file, or all standard output; empty names are none.
-void check_apart(const std::vector<std::string>& outputs);
+/// Throws Error where two outputs are one file, or both standard output, or one is an input; empty names are
+/// none.
+void check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+struct OutputFile {
+    std::string name, text;
+};
+/// Writes all before the first gets its name. Throws Error.
+void write_files(const std::vector<OutputFile>& files);
 /// All that was printed is written. Throws Error where it cannot be.
 void finish_standard_output();
 /// Into a string of the caller's, which outlives the sink.

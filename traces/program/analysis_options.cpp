@@ -144,10 +144,11 @@ void AnalysisOptions::add_to(CLI::App& app, const char* by, bool draws) {
         app.add_option("--svg", svg_, "draw a chart of the table")->type_name("FILE");
 }
 
-void AnalysisOptions::prepare(const std::vector<std::string>& outputs) {
+void AnalysisOptions::prepare(const std::vector<std::string>& outputs, std::vector<std::string> inputs) {
     std::vector<std::string> all{csv_, json_, svg_};
     all.insert(all.end(), outputs.begin(), outputs.end());
-    check_apart(all);
+    inputs.push_back(file_);
+    check_apart(all, inputs);
     if (!svg_.empty() && svg_ != "-" && !svg_.ends_with(".svg"))
         throw Error(fmt::format("--svg {}: name a .svg file", svg_));
     if (!kinds_.empty()) {
@@ -258,14 +259,9 @@ void AnalysisOptions::each_block(const std::function<void(const Block&)>& visit)
 }
 
 void AnalysisOptions::give(std::string_view command, const analysis::Table& table, const std::string& heading,
-                           const std::function<std::string()>& draw) const {
-    const auto write = [this](const std::string& file, const std::string& text) {
-        const std::unique_ptr<Sink> sink = open_sink(file, {file_});
-        sink->write(text);
-        sink->commit();
-    };
+                           const std::function<std::string()>& draw, std::vector<OutputFile> files) const {
     if (!csv_.empty())
-        write(csv_, table.csv());
+        files.push_back({csv_, table.csv()});
     if (!json_.empty()) {
         nlohmann::ordered_json out{{"analysis", command},
                                    {"trace", file_},
@@ -277,10 +273,12 @@ void AnalysisOptions::give(std::string_view command, const analysis::Table& tabl
                                    {"note", note_},
                                    {"summary", heading}};
         out["rows"] = nlohmann::ordered_json::parse(table.json());
-        write(json_, out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+        files.push_back(
+            {json_, out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"});
     }
     if (!svg_.empty())
-        write(svg_, analysis::svg_file(draw()));
+        files.push_back({svg_, analysis::svg_file(draw())});
+    write_files(files);
     if (csv_ != "-" && json_ != "-" && svg_ != "-")
         fmt::print("{}\n\n{}", heading, table.text());
     if (!note_.empty())

@@ -5,6 +5,7 @@
 #include "analysis/traces/table.h"
 #include "analysis/traces/touches.h"
 #include "traces/formats/format.h"
+#include "traces/io/sink.h"
 
 #include <CLI/CLI.hpp>
 
@@ -60,8 +61,8 @@ public:
     /// Adds a row of a group.
     void add_row(analysis::Table& table, const analysis::Touches& touches, std::size_t group,
                  std::vector<analysis::Table::Cell> cells) const;
-    /// Opens the trace and checks all options. `outputs`: what is written besides.
-    void prepare(const std::vector<std::string>& outputs = {});
+    /// Opens the trace and checks all options. `outputs`, `inputs`: what is written and read besides.
+    void prepare(const std::vector<std::string>& outputs = {}, std::vector<std::string> inputs = {});
     /// After prepare(), where the trace is read twice. Throws Error.
     void refuse_pipe() const;
     /// Opens the trace again, after each_block() has read it. Throws Error.
@@ -72,10 +73,10 @@ public:
     void require_tiles() const;
     /// After prepare(), where a sample of lines tells nothing. Throws Error.
     void refuse_sample() const;
-    /// Prints the table, or writes it as asked; what the trace lacks is said.
+    /// Prints the table, or writes it as asked, with `files` besides; what the trace lacks is said.
     /// `draw`: makes the chart of --svg, an element.
     void give(std::string_view command, const analysis::Table& table, const std::string& heading,
-              const std::function<std::string()>& draw = nullptr) const;
+              const std::function<std::string()>& draw = nullptr, std::vector<OutputFile> files = {}) const;
 
 private:
     void open();

@@ -45,6 +45,7 @@ void OverlayCommand::run() const {
     if (!png && !output_.ends_with(".svg"))
         throw Error(
             fmt::format("-o {}: name a .png file, or an .svg one, which says what colours mean", output_));
+    check_apart({output_}, {picture_});
     analysis::ImageFile file;
     analysis::LinearImage picture;
     try {
@@ -67,10 +68,8 @@ void OverlayCommand::run() const {
     const analysis::OverlayScale scale =
         range_.empty() ? analysis::scale_of(values, !linear_) : parse_overlay_range(range_, !linear_);
     const analysis::Pixels pixels = analysis::overlaid(picture, values, scale);
-    const auto sink = open_sink(output_, {picture_});
-    sink->write(png ? analysis::png_bytes(pixels)
-                    : analysis::svg_file(analysis::overlay_svg(pixels, scale, layer_)));
-    sink->commit();
+    write_files({{output_, png ? analysis::png_bytes(pixels)
+                               : analysis::svg_file(analysis::overlay_svg(pixels, scale, layer_))}});
 }
 
 } // namespace traces

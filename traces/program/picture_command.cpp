@@ -35,11 +35,6 @@ public:
         std::vector<std::string> names;
         for (std::size_t g = 0; g < touches.groups(); ++g)
             names.push_back(touches.name(g, options_.description()));
-        const std::unique_ptr<Sink> sink = open_sink(file_, {options_.file()});
-        sink->write(suffix == ".png" ? analysis::png_bytes(picture.pixels)
-                                     : analysis::svg_file(analysis::with_legend(
-                                           picture, counts, names, options_.description().time)));
-        sink->commit();
         // What the picture shows, from its top.
         Table table = options_.table(
             {"line of pixels", "lines", "first page", "last page", "pages", "references of a pixel at most"});
@@ -53,7 +48,11 @@ public:
             fmt::format("{} x {} pixels; {} columns of {} of the trace's time ({}) from {}, pages of "
                         "{} bytes",
                         picture.pixels.width, picture.pixels.height, counts.columns(), counts.column_length(),
-                        options_.description().time, counts.begin(), counts.page_bytes()));
+                        options_.description().time, counts.begin(), counts.page_bytes()),
+            nullptr,
+            {{file_, suffix == ".png" ? analysis::png_bytes(picture.pixels)
+                                      : analysis::svg_file(analysis::with_legend(
+                                            picture, counts, names, options_.description().time))}});
     }
 
 private:

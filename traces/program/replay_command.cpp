@@ -4,6 +4,7 @@
 #include "sim/replay/timed_replay.h"
 #include "traces/error.h"
 #include "traces/program/interrupt.h"
+#include "traces/program/machine_files.h"
 #include "traces/program/progress.h"
 
 #include <fmt/format.h>
@@ -148,7 +149,7 @@ std::vector<ReplayCommand::Machine> ReplayCommand::machines() const {
         if (parts.empty())
             throw Error("--machine: names no file; give one, such as configs/machines/tiny.toml");
         settings.insert(settings.end(), parts.begin() + 1, parts.end());
-        Machine m{"", sim::describe_machine(parts.front(), settings)};
+        Machine m{"", parts.front(), sim::describe_machine(parts.front(), settings)};
         m.label = m.description.name;
         for (std::size_t i = 1; i < parts.size(); ++i)
             m.label += " " + parts[i];
@@ -266,11 +267,6 @@ void ReplayCommand::compare(const std::vector<sim::Comparison>& all) const {
 
 void ReplayCommand::give(const Input& input, const std::vector<Machine>& machines,
                          const std::vector<sim::ReplayResult>& results) const {
-    const auto write = [this](const std::string& file, const std::string& text) {
-        const std::unique_ptr<Sink> sink = open_sink(file, {file_, against_});
-        sink->write(text);
-        sink->commit();
-    };
     const auto by = static_cast<By>(std::find(by_names.begin(), by_names.end(), by_) - by_names.begin());
     const Table rows = table(machines, results, by);
     const Description& d = input.description();
@@ -283,8 +279,9 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
             report.append(text, 0, n);
         compared.push_back(sim::compare_with_run(results.front(), report, against_));
     }
+    std::vector<OutputFile> files;
     if (!csv_.empty())
-        write(csv_, rows.csv());
+        files.push_back({csv_, rows.csv()});
     if (!json_.empty()) {
         json out{{"analysis", "replay"}, {"trace", file_},           {"program", d.program},
                  {"level", d.level},     {"complete", note.empty()}, {"note", note}};
@@ -304,8 +301,9 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
                                        {"error", c.run == 0 && c.replayed != 0 ? json() : json(c.error())}});
             out["against"] = {{"report", against_}, {"counts", std::move(rows_of)}};
         }
-        write(json_, out.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+        files.push_back({json_, out.dump(2, ' ', false, json::error_handler_t::replace) + "\n"});
     }
+    write_files(files);
     if (csv_ != "-" && json_ != "-") {
         for (std::size_t m = 0; m < machines.size(); ++m) {
             const sim::ReplayResult& r = results[m];
@@ -346,11 +344,15 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
 void ReplayCommand::run() {
     if (std::find(by_names.begin(), by_names.end(), by_) == by_names.end())
         throw Error(fmt::format("--by {}: there is no such thing; give all, structure, phase, kind", by_));
-    check_apart({csv_, json_});
     if (!against_.empty() && machines_.size() > 1)
         throw Error("--against: is of one machine; give one --machine");
     try {
         const std::vector<Machine> all = machines();
+        std::vector<std::string> inputs{file_, against_};
+        for (const Machine& m : all)
+            for (std::string& file : machine_files(m.file, m.description))
+                inputs.push_back(std::move(file));
+        check_apart({csv_, json_}, inputs);
         auto source = open_source(file_);
         const Format& format = format_of_input(from_, file_, *source);
         const std::unique_ptr<Input> input = format.read(std::move(source));

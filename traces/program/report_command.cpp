@@ -24,7 +24,7 @@ public:
     void run() override {
         if (!output_.ends_with(".html") && !output_.ends_with(".htm"))
             throw Error(fmt::format("-o {}: name a .html file", output_));
-        options_.prepare({output_});
+        options_.prepare({output_}, {over_});
         options_.refuse_sample();
         options_.refuse_pipe();
         caches_.prepare(options_.line_bytes());
@@ -73,9 +73,6 @@ public:
         if (!over_.empty())
             report.write_tiles(page, over_, names, picture);
         report.write(page, names, description);
-        const std::unique_ptr<Sink> sink = open_sink(output_, {options_.file(), over_});
-        sink->write(page.html());
-        sink->commit();
 
         Table table = options_.table({"references", "misses", "ratio"});
         for (std::size_t g = 0; g < report.causes().size(); ++g) {
@@ -83,7 +80,8 @@ public:
             options_.add_row(table, touches, g,
                              {of.references, of.misses(), part(of.misses(), of.references)});
         }
-        options_.give("report", table, fmt::format("{}: {}", output_, names.caches));
+        options_.give("report", table, fmt::format("{}: {}", output_, names.caches), nullptr,
+                      {{output_, page.html()}});
     }
 
 private:

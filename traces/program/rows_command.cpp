@@ -2,9 +2,9 @@
 #include "analysis/plots/table_chart.h"
 #include "analysis/traces/dram_rows.h"
 #include "sim/config/error.h"
-#include "sim/config/machine_file.h"
 #include "traces/error.h"
 #include "traces/program/analyses.h"
+#include "traces/program/machine_files.h"
 
 #include <fmt/format.h>
 
@@ -27,9 +27,10 @@ public:
         options_.count_without_option({true, true, true, true, true, true, true, false});
     }
     void run() override {
-        options_.prepare();
+        const sim::MachineDescription machine = description();
+        options_.prepare({}, machine_files(machine_, machine));
         options_.refuse_sample();
-        const sim::MemoryConfig memory = configuration();
+        const sim::MemoryConfig& memory = machine.config.memory;
         const auto burst = static_cast<std::uint64_t>(memory.bus_bytes * memory.burst_length);
         analysis::DramRows rows(memory, static_cast<std::size_t>(reach_));
         analysis::Touches touches = options_.touches(burst);
@@ -66,14 +67,13 @@ private:
     static std::uint64_t busiest(const analysis::DramRows& rows) {
         return *std::max_element(rows.banks().begin(), rows.banks().end());
     }
-    sim::MemoryConfig configuration() const {
+    sim::MachineDescription description() const {
         try {
             std::vector<std::string> settings = settings_;
             if (!preset_.empty())
                 settings.insert(settings.begin(), "memory.preset=" + preset_);
-            return (machine_.empty() ? sim::describe_machine_text("", "the default machine", settings)
-                                     : sim::describe_machine(machine_, settings))
-                .config.memory;
+            return machine_.empty() ? sim::describe_machine_text("", "the default machine", settings)
+                                    : sim::describe_machine(machine_, settings);
         } catch (const sim::ConfigError& e) {
             throw Error(e.what());
         }

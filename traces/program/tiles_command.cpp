@@ -44,7 +44,7 @@ public:
                                     output_));
         if (over_.empty() && (!range_.empty() || linear_ || !figure_.empty()))
             throw Error("--figure, --range and --linear are of what --over draws; add it, or leave them out");
-        options_.prepare({output_});
+        options_.prepare({output_}, {over_});
         options_.refuse_sample();
         caches_.prepare(options_.line_bytes());
         if (caches_.sizes().size() != 1)
@@ -59,21 +59,21 @@ public:
             touches.each(block, [&](const Touch& t) { tiles.touch(t, caches_.cache_of(t.stream)); });
         });
         std::string text;
+        std::vector<OutputFile> files;
         if (over) {
             over->draw(tiles, figure, range_, !linear_);
-            const std::unique_ptr<Sink> sink = open_sink(output_, {options_.file(), over_});
-            sink->write(png ? over->png() : analysis::svg_file(over->svg()));
-            sink->commit();
+            files.push_back({output_, png ? over->png() : analysis::svg_file(over->svg())});
             // Counts are whole.
             text = fmt::format("; {0}: {1} from {2:.{4}f} to {3:.{4}f}", output_, drawn, over->scale().low,
                                over->scale().high, figure == analysis::TileFigure::ratio ? 4 : 0);
         }
-        give(tiles, picture, text);
+        give(tiles, picture, text, std::move(files));
     }
 
 private:
     /// From the upper left one on; at last what was for no tile.
-    void give(const analysis::TileCounts& tiles, const Picture& picture, const std::string& text) {
+    void give(const analysis::TileCounts& tiles, const Picture& picture, const std::string& text,
+              std::vector<OutputFile> files) {
         Table table;
         for (const char* column : {"tile", "x", "y", "references", "bytes", "misses", "first", "ratio"})
             table.columns.emplace_back(column);
@@ -98,7 +98,8 @@ private:
             fmt::format("{} touches of lines of {} bytes for {} of {} screen tiles of {} x {} pixels, "
                         "{} for none; {}{}",
                         all.references, options_.line_bytes(), met, picture.tiles(), picture.side,
-                        picture.side, none.references, caches_.text(), text));
+                        picture.side, none.references, caches_.text(), text),
+            nullptr, std::move(files));
     }
     void add_options(CLI::App& app) override {
         caches_.add_to(app);
