@@ -17,7 +17,9 @@ void Optimum::touch(std::uint64_t line, std::uint32_t group) {
     touched_.push_back({number, group});
 }
 
-std::vector<std::uint64_t> Optimum::misses(std::uint64_t lines, std::size_t groups) const {
+std::vector<std::uint64_t> Optimum::misses(std::uint64_t lines, std::size_t groups,
+                                           const std::function<void()>& look) const {
+    constexpr std::size_t touches_a_look = std::size_t{1} << 16;
     constexpr std::uint32_t never = std::numeric_limits<std::uint32_t>::max();
     const std::size_t n = touched_.size();
     std::vector<std::uint32_t> next(n), last(numbers_.size(), never); // of each touch and line: its next one
@@ -37,6 +39,8 @@ std::vector<std::uint64_t> Optimum::misses(std::uint64_t lines, std::size_t grou
     std::vector<std::uint64_t> out(groups, 0);
     std::uint64_t held = 0;
     for (std::size_t i = 0; i < n; ++i) {
+        if (i % touches_a_look == 0)
+            look();
         const auto [line, group] = touched_[i];
         if (!in[line]) {
             ++out[group];

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace analysis {
@@ -15,8 +16,9 @@ namespace analysis {
 class Optimum {
 public:
     void touch(std::uint64_t line, std::uint32_t group);
-    /// By group, of a cache of so many lines, at least one.
-    std::vector<std::uint64_t> misses(std::uint64_t lines, std::size_t groups) const;
+    /// By group, of a cache of so many lines, at least one. `look` is called now and then, and may throw.
+    std::vector<std::uint64_t> misses(
+        std::uint64_t lines, std::size_t groups, const std::function<void()>& look = [] {}) const;
     std::uint64_t lines() const { return numbers_.size(); }
 
 private:

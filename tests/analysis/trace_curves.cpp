@@ -14,6 +14,7 @@
 #include <list>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <unordered_map>
 
 namespace analysis {
@@ -117,6 +118,19 @@ TEST(Optimum, IsTheLeastThatAnyChoiceGives) {
             EXPECT_EQ(optimum.misses(lines, 1)[0], test::least_misses(touches, lines))
                 << seed << ' ' << lines;
     }
+}
+
+TEST(Optimum, LetsItsCallerEndIt) {
+    Optimum optimum;
+    for (std::uint64_t i = 0; i < 200000; ++i)
+        optimum.touch(i % 100, 0);
+    int looks = 0;
+    EXPECT_THROW(optimum.misses(10, 1,
+                                [&] {
+                                    if (++looks == 3)
+                                        throw std::runtime_error("enough");
+                                }),
+                 std::runtime_error);
 }
 
 TEST(Optimum, IsNoMoreThanAnyPolicyNeeds) {

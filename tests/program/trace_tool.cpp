@@ -143,6 +143,29 @@ TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
     EXPECT_EQ(folder_.count(), before);
 }
 
+/// Whatever it waits for, and however long nothing comes that it could count.
+TEST_F(TraceTool, EndsWhereItIsAskedTo) {
+    std::string din;
+    for (int i = 0; i < 100000; ++i)
+        din += "0 10 4\n";
+    folder_.file("a.din", din);
+    ASSERT_EQ(run("mkfifo pipe", folder_.path()).code, 0);
+    const std::size_t before = folder_.count();
+    const std::string soon = "timeout --preserve-status -k 5 -s TERM 0.5 " + program + " ",
+                      silent = "exec 3<>pipe; " + soon;
+    for (const std::string& command :
+         {soon + "info /dev/zero --from champsim", "yes '' | " + soon + "info - --from din",
+          "yes '' | " + soon + "curve - --from lackey --json b.json", soon + "info pipe --from din",
+          silent + "info - --from din <&3", silent + "convert - b.csv --from din <&3",
+          silent + "convert a.din pipe --to csv", silent + "convert a.din - --to csv >&3"}) {
+        const Outcome result = run("(" + command + ")", folder_.path());
+        EXPECT_EQ(result.code, 130) << command;
+        EXPECT_EQ(result.err, "razor-trace: interrupted; nothing written\n") << command;
+        EXPECT_EQ(result.out, "") << command;
+        EXPECT_EQ(folder_.count(), before) << command;
+    }
+}
+
 TEST_F(TraceTool, OutputsAreNoInputs) {
     folder_.file("a.din", "0 10 4\n1 20 4\n");
     ASSERT_EQ(tool("convert a.din a.rzt").code, 0);

@@ -4,6 +4,7 @@
 #include "traces/convert.h"
 #include "traces/error.h"
 #include "traces/in_time.h"
+#include "traces/io/interrupt.h"
 #include "traces/summary.h"
 #include "traces/writer.h"
 
@@ -401,6 +402,22 @@ TEST(TraceFormats, ASummaryCountsEveryReferenceInEveryTable) {
         EXPECT_EQ(row.at("references"), kinds[row.at("name")]);
     for (const auto& row : j.at("structures"))
         EXPECT_EQ(row.at("references"), structures[row.at("name")]);
+}
+
+/// Also within a block, which may take a compressor long.
+TEST(TraceFormats, AConversionEndsWhereItIsAskedTo) {
+    std::string din;
+    for (int i = 0; i < 20000; ++i)
+        din += "0 10 4\n";
+    const auto input = format_by_name("--from", "din").read(memory_source(din, "sample"));
+    const Format& target = format_by_name("--to", "csv");
+    const std::string path = testing::TempDir() + "razor-interrupted.csv.xz";
+    const auto output = target.write(open_sink(path));
+    Conversion conversion(*input, *output, target.holds);
+    interrupt_signal = 1;
+    EXPECT_THROW(conversion.step(), Interrupted);
+    interrupt_signal = 0;
+    EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 /// A real input, of an x86 program; through all formats that hold it.

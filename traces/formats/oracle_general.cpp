@@ -4,6 +4,7 @@
 #include "traces/block_builder.h"
 #include "traces/error.h"
 #include "traces/formats/text.h"
+#include "traces/io/interrupt.h"
 #include "traces/varint.h"
 
 #include <fmt/format.h>
@@ -65,6 +66,7 @@ public:
         std::vector<std::int64_t> next(requests_.size());
         std::unordered_map<std::uint64_t, std::int64_t> after;
         for (std::size_t i = requests_.size(); i-- > 0;) {
+            check_interrupts();
             std::int64_t& number = after.try_emplace(requests_[i].object, -1).first->second;
             next[i] = number;
             number = static_cast<std::int64_t>(i) + 1;

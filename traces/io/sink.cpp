@@ -2,6 +2,7 @@
 
 #include "traces/error.h"
 #include "traces/io/compress.h"
+#include "traces/io/interrupt.h"
 
 #include <fmt/format.h>
 
@@ -36,9 +37,11 @@ public:
             if (!nameless_) // file systems of all kinds
                 file_ = std::fopen(temporary_.c_str(), "wb");
         }
-        if (file_ == nullptr)
+        if (file_ == nullptr) {
+            check_interrupts(); // while it waited for who reads a pipe
             throw Error(
                 fmt::format("{}: cannot be written ({}); check the folder", path, std::strerror(errno)));
+        }
     }
     ~FileSink() override {
         if (file_ != nullptr)
@@ -48,6 +51,7 @@ public:
             fs::remove(temporary_, ignored);
     }
     void write(std::string_view bytes) override {
+        check_interrupts();
         if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
             fail();
     }
@@ -79,6 +83,7 @@ private:
         return file < 0 ? nullptr : fdopen(file, "wb");
     }
     [[noreturn]] void fail() const {
+        check_interrupts();
         throw Error(
             fmt::format("{}: cannot be written ({}); check the disk", path_.string(), std::strerror(errno)));
     }
@@ -91,6 +96,7 @@ private:
 class StandardOutput final : public Sink {
 public:
     void write(std::string_view bytes) override {
+        check_interrupts();
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size())
             fail();
     }
@@ -100,6 +106,7 @@ public:
     }
 
     [[noreturn]] static void fail() {
+        check_interrupts();
         throw Error(
             fmt::format("standard output: cannot be written ({}); check who reads it", std::strerror(errno)));
     }

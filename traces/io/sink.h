@@ -17,7 +17,7 @@ public:
     Sink& operator=(const Sink&) = delete;
     virtual ~Sink() = default;
 
-    /// Throws Error.
+    /// Throws Error, Interrupted.
     virtual void write(std::string_view bytes) = 0;
     /// All is written: gives the file its name. Without it nothing is left of it. Throws Error.
     virtual void commit() = 0;

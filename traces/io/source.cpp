@@ -2,14 +2,16 @@
 
 #include "traces/error.h"
 #include "traces/io/decompress.h"
+#include "traces/io/interrupt.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
+#include <unistd.h>
 #include <utility>
 
 namespace traces {
@@ -22,23 +24,33 @@ public:
         std::error_code ignored;
         if (path != "-" && std::filesystem::is_directory(path, ignored))
             throw Error(fmt::format("{}: is a folder; name a file", path));
-        file_ = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-        if (file_ == nullptr)
+        file_ = path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC); // NOLINT: as of POSIX
+        if (file_ < 0) {
+            check_interrupts(); // while it waited for who writes a pipe
             throw Error(fmt::format("{}: cannot be opened ({}); check the path", path, std::strerror(errno)));
+        }
     }
     ~FileSource() override {
-        if (file_ != stdin)
-            std::fclose(file_);
+        if (file_ != STDIN_FILENO)
+            close(file_);
     }
     std::size_t read(void* to, std::size_t most) override {
-        const std::size_t n = std::fread(to, 1, most, file_);
-        if (n < most && std::ferror(file_) != 0)
-            throw Error(fmt::format("{}: cannot be read ({}); check the disk", name_, std::strerror(errno)));
+        std::size_t n = 0;
+        while (n < most && !ended_) {
+            check_interrupts();
+            const ssize_t got = ::read(file_, static_cast<char*>(to) + n, most - n);
+            if (got < 0 && errno != EINTR)
+                throw Error(
+                    fmt::format("{}: cannot be read ({}); check the disk", name_, std::strerror(errno)));
+            ended_ = got == 0;
+            n += got > 0 ? static_cast<std::size_t>(got) : 0;
+        }
         return n;
     }
 
 private:
-    std::FILE* file_ = nullptr;
+    int file_ = -1;
+    bool ended_ = false; // a terminal ends once
 };
 
 class MemorySource final : public Source {

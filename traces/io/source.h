@@ -15,7 +15,7 @@ public:
     Source& operator=(const Source&) = delete;
     virtual ~Source() = default;
 
-    /// Fills `to` with the next `most` bytes, fewer where they end. Throws Error.
+    /// Fills `to` with the next `most` bytes, fewer where they end. Throws Error, Interrupted.
     virtual std::size_t read(void* to, std::size_t most) = 0;
     /// What to call it in messages.
     const std::string& name() const { return name_; }

@@ -2,7 +2,7 @@
 
 #include "analysis/plots/svg.h"
 #include "traces/error.h"
-#include "traces/program/interrupt.h"
+#include "traces/io/interrupt.h"
 #include "traces/program/progress.h"
 
 #include <fmt/format.h>
@@ -250,8 +250,7 @@ void AnalysisOptions::add_row(analysis::Table& table, const analysis::Touches& t
 void AnalysisOptions::each_block(const std::function<void(const Block&)>& visit) {
     Progress progress;
     for (Block block; input_->next(block); progress.add(block.size())) {
-        if (interrupted())
-            throw Interrupted();
+        check_interrupts();
         visit(block);
     }
     description_ = input_->description(); // with all sites
@@ -278,6 +277,7 @@ void AnalysisOptions::give(std::string_view command, const analysis::Table& tabl
     }
     if (!svg_.empty())
         files.push_back({svg_, analysis::svg_file(draw())});
+    check_interrupts();
     write_files(files);
     if (csv_ != "-" && json_ != "-" && svg_ != "-")
         fmt::print("{}\n\n{}", heading, table.text());

@@ -4,6 +4,7 @@
 #include "analysis/traces/sampled_curve.h"
 #include "analysis/traces/set_curve.h"
 #include "traces/error.h"
+#include "traces/io/interrupt.h"
 #include "traces/program/analyses.h"
 
 #include <fmt/format.h>
@@ -142,7 +143,7 @@ Table CurveCommand::exact() {
     std::size_t shown = 0;
     for (bool more = true; shown < lines.size() && more; ++shown) {
         if (optimum_)
-            least.push_back(optimum.misses(lines[shown], groups));
+            least.push_back(optimum.misses(lines[shown], groups, check_interrupts));
         more = chosen || lru.lines() > lines[shown]; // else all larger ones are like this one
     }
     for (std::size_t g = 0; g < groups; ++g)

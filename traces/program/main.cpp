@@ -1,9 +1,9 @@
 // razor-trace: what is in a trace, the same in another format, and what caches would make of it.
 #include "traces/convert.h"
 #include "traces/error.h"
+#include "traces/io/interrupt.h"
 #include "traces/io/sink.h"
 #include "traces/program/analyses.h"
-#include "traces/program/interrupt.h"
 #include "traces/program/overlay_command.h"
 #ifdef RAZOR_HAS_SIMULATED
 #include "traces/program/replay_command.h"
@@ -16,14 +16,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <system_error>
 
 namespace {
-
-using traces::interrupted;
 
 constexpr int mistake_exit = 2, failure_exit = 1, interrupted_exit = 130;
 
@@ -44,10 +43,10 @@ struct Info {
         traces::Summary::File about{source->name(), std::string(format.name), "", 0};
         const auto input = format.read(std::move(source));
         traces::Summary summary;
-        for (traces::Block block; !interrupted() && input->next(block);)
+        for (traces::Block block; input->next(block);) {
+            traces::check_interrupts();
             summary.add(block);
-        if (interrupted())
-            throw traces::Interrupted();
+        }
         about.note = input->note();
         std::error_code none;
         if (std::filesystem::is_regular_file(file, none))
@@ -68,10 +67,8 @@ struct Convert {
         const auto input = source_format.read(std::move(source));
         const auto output = target.write(traces::open_sink(out)); // maybe `in`, whose name it gets at the end
         traces::Conversion conversion(*input, *output, target.holds);
-        while (!interrupted() && conversion.step()) {
-        }
-        if (interrupted())
-            throw traces::Interrupted();
+        while (conversion.step())
+            traces::check_interrupts();
         output->finish();
         if (!input->note().empty())
             fmt::print(stderr, "razor-trace: {}\n", input->note());
@@ -81,6 +78,12 @@ struct Convert {
         return 0;
     }
 };
+
+/// What standard output still holds goes nowhere: who should read it may not.
+[[noreturn]] void end_early() {
+    fmt::print(stderr, "razor-trace: interrupted; nothing written\n");
+    std::_Exit(interrupted_exit);
+}
 
 /// One line.
 int complain(std::string text, int code) {
@@ -144,7 +147,7 @@ int main(int argc, char** argv) {
         traces::finish_standard_output();
         return done;
     } catch (const traces::Interrupted&) {
-        return complain("interrupted; nothing written", interrupted_exit);
+        end_early();
     } catch (const CLI::Success& help) {
         return app.exit(help, std::cout, std::cerr);
     } catch (const CLI::ParseError& e) {
@@ -154,6 +157,8 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return complain("out of memory", failure_exit);
     } catch (const std::system_error& e) {
+        if (traces::interrupted())
+            end_early();
         return std::ferror(stdout) != 0
                    ? complain(fmt::format("standard output: {}; check who reads it", e.what()), mistake_exit)
                    : complain(fmt::format("internal error: {}", e.what()), failure_exit);

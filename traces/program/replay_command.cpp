@@ -3,7 +3,7 @@
 #include "sim/config/error.h"
 #include "sim/replay/timed_replay.h"
 #include "traces/error.h"
-#include "traces/program/interrupt.h"
+#include "traces/io/interrupt.h"
 #include "traces/program/machine_files.h"
 #include "traces/program/progress.h"
 
@@ -185,8 +185,7 @@ std::vector<sim::ReplayResult> ReplayCommand::replay(Input& input, const std::ve
     Progress progress;
     Block block, ahead;
     for (bool more = input.next(block); more; std::swap(block, ahead)) {
-        if (interrupted())
-            throw Interrupted();
+        check_interrupts();
         std::atomic<std::size_t> next{0};
         std::vector<std::exception_ptr> failed(most);
         {
@@ -303,6 +302,7 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
         }
         files.push_back({json_, out.dump(2, ' ', false, json::error_handler_t::replace) + "\n"});
     }
+    check_interrupts();
     write_files(files);
     if (csv_ != "-" && json_ != "-") {
         for (std::size_t m = 0; m < machines.size(); ++m) {
