@@ -67,7 +67,8 @@ std::string Conversion::lost() const {
         if (met && !held)
             fields.emplace_back(name);
     };
-    field(input_.description().time != "order", holds_.time, "times");
+    const Description& about = input_.description();
+    field(about.time != "order", holds_.time, "times");
     field(streams_, holds_.streams, "threads");
     field(size_, holds_.size, "sizes");
     field(sites_, holds_.sites, "sites");
@@ -75,13 +76,24 @@ std::string Conversion::lost() const {
     field(parts_, holds_.parts, "operations and details");
     field(windows_, holds_.order, "the order of streams and its windows");
     field(tiles_, holds_.tiles, "screen tiles");
+    bool named = false; // a thread, otherwise than by its number
+    for (std::size_t s = 0; s < about.streams.size(); ++s)
+        named |= about.streams[s] != fmt::format("thread {}", s);
+    field(named, holds_.description, "thread names");
+    field(!about.level.empty(), holds_.description || about.level == holds_.level, "level");
+    field(about.line_bytes != 0, holds_.description, "line size");
+    field(about.sample < 1, holds_.description, "sampled fraction");
+    field(!about.filters.empty(), holds_.description, "filters");
+    field(!about.program.empty() && about.program != "unknown", holds_.description, "program");
+    field(!about.configuration.empty(), holds_.description, "configuration");
+    field(!about.regions.empty(), holds_.description, "regions");
     if (!fields.empty())
         parts.push_back(fmt::format("{} are lost", fmt::join(fields, ", ")));
     if (zeros_ != 0)
         parts.push_back(fmt::format("{} references to address 0 are left out", zeros_));
-    const std::string& time = input_.description().time;
-    if (holds_.clocks && time != "clocks" && time != "order")
-        parts.push_back(fmt::format("times are {}, which pass for clocks of memory", time));
+    if (!holds_.unit.empty() && about.time != holds_.unit && about.time != "order")
+        parts.push_back(fmt::format("times are {}, which pass for {}{}", about.time, holds_.unit,
+                                    holds_.unit == "clocks" ? " of memory" : ""));
     for (std::size_t k = 0; k < kind_names.size(); ++k) {
         if (replaced_[k] != 0)
             parts.push_back(fmt::format("{} {} references are {}", replaced_[k], kind_names[k],

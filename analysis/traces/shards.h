@@ -75,6 +75,8 @@ public:
 
     std::uint64_t references(std::size_t group) const { return group < seen_.size() ? seen_[group] : 0; }
     std::uint64_t sampled() const { return sampled_; }
+    /// Whether any touch of the group is in the sample.
+    bool knows(std::size_t group) const { return sample_.counts().references(group) > 0; }
     /// In the sample.
     std::uint64_t lines() const { return sample_.lines(); }
     /// Of all lines, now.

@@ -219,7 +219,9 @@ TEST_F(ReplayTool, MistakesAreALineAndLeaveNothing) {
              {"a.din" + on + " --by colour", "there is no such thing; give all, structure"},
              {"a.din" + on + on + " --against no.json", "give one --machine"},
              {"a.din" + on + " --against no.json", "no report of a run"},
-             {"a.din" + on + " --against a.din", "no report of a run"},
+             {"a.din" + on + " --against a.din", "no report of a run, as it is no JSON"},
+             {"a.din" + on + ",", "a part is empty"},
+             {"a.din" + on + ",l2.ways=none", "--machine "},
              {"a.din" + on + " --json no/a.json", "no/a.json: cannot be written"},
              {"a.din" + on + " --threads 0", "--threads"},
              {"t.csv" + on, "give a machine with more (-g chip.threads="}}) {
@@ -233,6 +235,7 @@ TEST_F(ReplayTool, MistakesAreALineAndLeaveNothing) {
     const Outcome some = tool("replay a.din" + on);
     EXPECT_EQ(some.code, 0) << some.err;
     EXPECT_NE(some.out.find("1 references"), std::string::npos) << some.out;
+    EXPECT_NE(some.err.find("a.din: does not say where references were seen"), std::string::npos) << some.err;
     EXPECT_NE(some.out.find("1 fetch references are left out"), std::string::npos) << some.out;
     EXPECT_NE(tool("replay a.din --fetches" + on).out.find("2 references"), std::string::npos);
     const Outcome stopped = run("((while echo 0 10 4; do :; done) 2>/dev/null | timeout -s INT 0.5 " +

@@ -52,6 +52,11 @@ TEST_F(TraceTool, SaysWhatOtherFormatsCannotHold) {
     EXPECT_EQ(text("a.champsim").size(), 64U);
     result = tool("convert a.csv a.dramsim3");
     EXPECT_NE(result.err.find("times are cycles, which pass for clocks of memory"), std::string::npos);
+    result = tool("convert a.csv a.oracleGeneral");
+    EXPECT_NE(result.err.find("times are cycles, which pass for seconds"), std::string::npos) << result.err;
+    result = tool("convert a.dramsim3 a.csv.gz");
+    EXPECT_NE(result.err.find("level are lost"), std::string::npos) << result.err;
+    EXPECT_EQ(tool("convert a.dramsim3 a.rzt").err, "");
     result = tool("convert a.dramsim3 b.dramsim3");
     EXPECT_EQ(result.code, 0);
     EXPECT_EQ(result.err, "");
@@ -78,7 +83,7 @@ TEST_F(TraceTool, LosesNoOutput) {
         SCOPED_TRACE(arguments);
         const Outcome result = run("(" + program + " " + arguments + " > /dev/full)", folder_.path());
         EXPECT_EQ(result.code, 2);
-        EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("standard output: cannot be written"), std::string::npos) << result.err;
     }
     // Of two that are one behind the other, the second is not read.
     ASSERT_EQ(tool("convert a.din a.rzt").code, 0);
@@ -115,7 +120,7 @@ TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
     const std::size_t before = folder_.count();
     for (const auto& [arguments, cause] : std::vector<std::pair<std::string, std::string>>{
              {"", "required"},
-             {"inform", "--help"},
+             {"inform", "inform: there is no such command"},
              {"info", "TRACE"},
              {"info none", "none: cannot be opened"},
              {"info .", "is a folder"},
@@ -307,6 +312,23 @@ TEST_F(TraceTool, SaysWhyCachesMissAndWhatLinesAreUsedFor) {
     EXPECT_EQ(text("b.html"), html);
 }
 
+/// What no line of the sample belongs to is not known.
+TEST_F(TraceTool, AnEstimateFromNothingIsNone) {
+    std::string csv = "address,structure\n100000000,queue\n";
+    for (int i = 0; i < 20000; ++i)
+        csv += std::to_string(1000000 + 100 * i) + ",nodes\n"; // hexadecimal: 256 apart
+    folder_.file("a.csv", csv);
+    const Outcome result = tool("curve a.csv --rate 0.01 --by structure --sizes 1MiB --json -");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const nlohmann::json rows = nlohmann::json::parse(result.out).at("rows");
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows.at(0).at("references"), 1);
+    for (const char* column : {"misses", "ratio", "error"})
+        EXPECT_TRUE(rows.at(0).at(column).is_null()) << column;
+    EXPECT_EQ(rows.at(0).at("sample of"), "none");
+    EXPECT_NEAR(rows.at(1).at("ratio").get<double>(), 1, 0.2);
+}
+
 /// Whatever ends the program: where the file system can have files without names, nothing is left.
 TEST_F(TraceTool, LeavesNothingBehindWhereItIsKilled) {
     folder_.file("a.din", "0 10 4\n");
@@ -319,6 +341,7 @@ TEST_F(TraceTool, LeavesNothingBehindWhereItIsKilled) {
 
 TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
     folder_.file("a.din", "0 10 4\n");
+    folder_.file("empty.din", "");
     const std::size_t before = folder_.count();
     for (const auto& [arguments, cause] : std::vector<std::pair<std::string, std::string>>{
              {"curve", "TRACE"},
@@ -327,8 +350,27 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"curve a.din --sizes 1KB", "no size"},
              {"curve a.din --sizes 4KiB..1KiB", "ends before it begins"},
              {"curve a.din --sizes 100", "give multiples"},
-             {"curve a.din --sizes ,", "no size"},
-             {"curve a.din --ways 2000", "at most 1024"},
+             {"curve a.din --sizes ,", "a part is empty"},
+             {"curve a.din --sizes 32KiB,", "a part is empty"},
+             {"curve a.din --ways 1,8,", "a part is empty"},
+             {"curve a.din --kinds read,", "a part is empty"},
+             {"curve a.din --by structure,", "a part is empty"},
+             {"curve a.din --rate ''", "--rate: is empty"},
+             {"curve a.din --sizes ''", "--sizes: is empty"},
+             {"curve a.din --kinds ''", "--kinds: is empty"},
+             {"curve a.din --by ''", "--by: is empty"},
+             {"curve a.din --tile ''", "--tile: is empty"},
+             {"curve a.din --ways all", "--ways 'all': give a whole number from 1 to 1024"},
+             {"curve a.din --ways 0", "--ways '0': give a whole number"},
+             {"curve a.din --ways 1e3", "--ways '1e3': give a whole number"},
+             {"curve a.din --sample-lines 1e6", "--sample-lines '1e6': give a whole number from 256"},
+             {"curve a.din --sizes 32KiB --ways 3",
+              "give other --ways, or --sizes that are multiples of 192"},
+             {"curve a.din --sizes 32KiB --rate 1e-30", "give a larger --rate"},
+             {"footprint a.din --threads --by structure", "excludes"},
+             {"report empty.din -o a.html", "record some"},
+             {"picture empty.din -o a.svg", "record some"},
+             {"curve a.din --ways 2000", "from 1 to 1024"},
              {"curve a.din --by colour", "there is no such thing; give all, structure"},
              {"curve a.din --kinds read,nothing", "there is no such thing; give read, write"},
              {"curve a.din --rate 0", "no fraction"},
@@ -338,8 +380,8 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"windows a.din --window 5 --sizes 100", "give multiples"},
              {"windows a.din --window 0", "no length"},
              {"lines a.din --hottest 0", "--hottest"},
-             {"curve a.din --sample-lines 10", "give at least 256"},
-             {"curve a.din --sample-lines 1KiB --ways 2", "leave out"},
+             {"curve a.din --sample-lines 10", "from 256"},
+             {"curve a.din --sample-lines 1024 --ways 2", "leave out"},
              {"causes a.din", "--sizes"},
              {"causes a.din --sizes 64KiB --ways 3", "no sets of 3 ways"},
              {"causes a.din --sizes 64KiB --share none", "or all"},

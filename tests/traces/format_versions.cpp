@@ -7,8 +7,12 @@
 #include "traces/reader.h"
 #include "traces/varint.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <string_view>
 
 namespace traces {
@@ -163,6 +167,13 @@ TEST(TraceFormat, BlocksOfVersionFourAreRead) {
     Decoder().decode(bytes, {2, 1, 1, 2}, 4, "old", back);
     expect_passed_on(back, false);
     EXPECT_THROW(Decoder().decode(bytes, {2, 1, 1, 2}, format_version, "new", back), Error);
+}
+
+TEST(TraceFormat, TheDescriptionIsOfThisVersion) {
+    std::ifstream file(RAZOR_SOURCE_DIR "/traces/README.md");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_NE(text.find(fmt::format("## The format, version {}\n", format_version)), std::string::npos);
+    EXPECT_NE(text.find(fmt::format("    version   4 bytes   {}\n", format_version)), std::string::npos);
 }
 
 } // namespace

@@ -53,9 +53,11 @@ struct Holds {
     bool parts = false; // of which operation a reference is, and the details of its class
     bool order =
         false; // in which all streams' references were made, and the windows in which streams went on
-    bool tiles = false;  // of the picture
-    bool clocks = false; // times are memory's clocks
-    bool zero = true;    // address 0 is one
+    bool tiles = false;          // of the picture
+    bool description = false;    // what a trace says of itself
+    std::string_view unit = "";  // of its times; empty: any
+    std::string_view level = ""; // where all its references are seen; empty: anywhere
+    bool zero = true;            // address 0 is one
     bool holds(Kind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 

@@ -20,12 +20,12 @@ constexpr std::array<bool, kind_names.size()> all =
                                               lackey = {true, true, true, true}, plain = {true, true},
                                               requests = {true}, drmemtrace = {true, true, false, true, true};
 
-// time, streams, size, sites, names, kinds, parts, order, tiles
+// time, streams, size, sites, names, kinds, parts, order, tiles, description, unit
 constexpr Format table[] = {
     {"rzt",
      "this project's own, by blocks",
      ".rzt",
-     {true, true, true, true, true, all, true, true, true},
+     {true, true, true, true, true, all, true, true, true, true},
      read_own,
      write_own},
     {"din",
@@ -49,13 +49,13 @@ constexpr Format table[] = {
     {"dramsim3",
      "DRAMsim3: address, READ or WRITE, clock of memory",
      ".dramsim3",
-     {.time = true, .kinds = plain, .clocks = true},
+     {.time = true, .kinds = plain, .unit = "clocks", .level = "dram"},
      read_dramsim3,
      write_dramsim3},
     {"ramulator",
      "Ramulator's DRAM traces: address, R or W",
      ".ramulator",
-     {false, false, false, false, false, plain},
+     {.kinds = plain, .level = "dram"},
      read_ramulator,
      write_ramulator},
     {"champsim",
@@ -67,7 +67,7 @@ constexpr Format table[] = {
     {"oraclegeneral",
      "libCacheSim's oracleGeneral: 24 bytes a request for an object",
      ".oracleGeneral .oracleGeneral.bin",
-     {true, false, true, false, false, requests},
+     {.time = true, .size = true, .kinds = requests, .unit = "seconds"},
      read_oracle_general,
      write_oracle_general},
     {"drmemtrace",

@@ -28,14 +28,6 @@ std::size_t number_of(const char* option, const std::string& text, const Names& 
     return static_cast<std::size_t>(found - names.begin());
 }
 
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> out;
-    std::istringstream in(text);
-    for (std::string part; std::getline(in, part, ',');)
-        out.push_back(part);
-    return out;
-}
-
 /// The number of the tile that pixel "X,Y" lies in.
 std::uint32_t parse_tile(const std::string& text, const Picture& picture) {
     std::array<std::uint32_t, 2> at{};
@@ -55,6 +47,27 @@ std::uint32_t parse_tile(const std::string& text, const Picture& picture) {
 
 } // namespace
 
+std::vector<std::string> split(std::string_view option, const std::string& text) {
+    std::vector<std::string> out;
+    std::istringstream in(text + ',');
+    for (std::string part; std::getline(in, part, ',');) {
+        if (part.empty())
+            throw Error(fmt::format("{} '{}': a part is empty; give a value, and commas only between two",
+                                    option, text));
+        out.push_back(part);
+    }
+    return out;
+}
+
+std::uint64_t parse_count(std::string_view option, std::string_view text, std::uint64_t least,
+                          std::uint64_t most) {
+    std::uint64_t out = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    if (error != std::errc() || end != text.data() + text.size() || out < least || out > most)
+        throw Error(fmt::format("{} '{}': give a whole number from {} to {}", option, text, least, most));
+    return out;
+}
+
 std::uint64_t parse_size(std::string_view option, std::string_view text) {
     std::uint64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -73,7 +86,7 @@ std::uint64_t parse_size(std::string_view option, std::string_view text) {
 
 std::vector<std::uint64_t> parse_sizes(std::string_view option, const std::string& text) {
     std::vector<std::uint64_t> out;
-    for (const std::string& part : split(text)) {
+    for (const std::string& part : split(option, text)) {
         const std::size_t dots = part.find("..");
         const std::uint64_t first = parse_size(option, part.substr(0, dots));
         const std::uint64_t last =
@@ -83,8 +96,6 @@ std::vector<std::uint64_t> parse_sizes(std::string_view option, const std::strin
         for (std::uint64_t size = first; size <= last; size *= 2)
             out.push_back(size);
     }
-    if (out.empty())
-        throw Error(fmt::format("{}: no size; give some, as 1KiB..1MiB or 32KiB,48KiB", option));
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
@@ -153,10 +164,10 @@ void AnalysisOptions::prepare(const std::vector<std::string>& outputs, std::vect
         throw Error(fmt::format("--svg {}: name a .svg file", svg_));
     if (!kinds_.empty()) {
         kinds_in_.fill(false);
-        for (const std::string& kind : split(kinds_))
+        for (const std::string& kind : split("--kinds", kinds_))
             kinds_in_[number_of("--kinds", kind, kind_names)] = true;
     }
-    for (const std::string& name : split(by_names_)) {
+    for (const std::string& name : split("--by", by_names_.empty() ? "all" : by_names_)) {
         const auto by = static_cast<analysis::By>(number_of("--by", name, analysis::by_names));
         if (std::find(by_.begin(), by_.end(), by) != by_.end())
             throw Error(fmt::format("--by {}: names {} twice; name it once", by_names_, name));

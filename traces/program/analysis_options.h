@@ -18,6 +18,11 @@
 
 namespace traces {
 
+/// What stands between commas. Throws Error, which begins with `option`, where that is nothing.
+std::vector<std::string> split(std::string_view option, const std::string& text);
+/// A whole number. Throws Error likewise.
+std::uint64_t parse_count(std::string_view option, std::string_view text, std::uint64_t least,
+                          std::uint64_t most);
 /// "4KiB", or "64" in bytes: a whole number and B, KiB, MiB, GiB or TiB. Throws Error, which begins with
 /// `option`.
 std::uint64_t parse_size(std::string_view option, std::string_view text);

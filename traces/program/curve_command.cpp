@@ -30,15 +30,15 @@ double parse_rate(const std::string& text) {
 }
 
 std::vector<std::uint64_t> parse_ways(const std::string& text) {
-    std::vector<std::uint64_t> out =
-        text.empty() ? std::vector<std::uint64_t>() : parse_sizes("--ways", text);
-    for (const std::uint64_t ways : out)
-        if (ways > 1024)
-            throw Error(fmt::format("--ways {}: at most 1024", ways));
+    std::vector<std::uint64_t> out;
+    for (const std::string& ways : text.empty() ? std::vector<std::string>() : split("--ways", text))
+        out.push_back(parse_count("--ways", ways, 1, 1024));
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
 }
 
-constexpr std::uint64_t least_sample = 256; // lines
+constexpr std::uint64_t least_sample = 256, most_sample = std::uint64_t{1} << 32; // lines
 
 class CurveCommand final : public AnalysisCommand {
 public:
@@ -77,10 +77,8 @@ void CurveCommand::run() {
     if (samples && (!ways_.empty() || optimum_))
         throw Error("--rate, --sample-lines: of fully associative LRU caches alone; leave out --ways and "
                     "--optimum");
-    const std::uint64_t most = most_.empty() ? 0 : parse_size("--sample-lines", most_);
-    if (most != 0 && most < least_sample)
-        throw Error(
-            fmt::format("--sample-lines {}: too few to say anything; give at least {}", most, least_sample));
+    const std::uint64_t most =
+        most_.empty() ? 0 : parse_count("--sample-lines", most_, least_sample, most_sample);
     const double rate = rate_.empty() ? 1 : parse_rate(rate_);
     options_.prepare();
     const double sample = options_.description().sample;
@@ -105,6 +103,12 @@ Table CurveCommand::exact() {
                                       : fmt::format("{}..{}", std::max<std::uint64_t>(1024, line_bytes),
                                                     all_ways.empty() ? "1TiB" : "16MiB"));
     const std::vector<std::uint64_t> lines = lines_of("--sizes", sizes, line_bytes);
+    for (const std::uint64_t ways : all_ways)
+        if (std::none_of(lines.begin(), lines.end(), [&](std::uint64_t n) { return n % ways == 0; }))
+            throw Error(
+                fmt::format("--ways {}: no size has sets of so many; give other --ways, or --sizes that "
+                            "are multiples of {} bytes",
+                            ways, ways * line_bytes));
     // Caches of as many sets are one pass.
     std::map<std::uint64_t, std::vector<std::uint64_t>> ways_by_sets;
     for (const std::uint64_t n : lines)
@@ -196,6 +200,10 @@ Table CurveCommand::sampled(double rate, std::uint64_t most) {
     std::uint64_t references = 0;
     for (std::size_t g = 0; g < touches.groups(); ++g)
         references += shards.references(g);
+    if (references != 0 && shards.sampled() == 0)
+        throw Error(
+            fmt::format("{}: none of {} touches is in a sample of {:g} of all lines; give a larger --rate",
+                        options_.file(), references, shards.rate()));
     heading_ = fmt::format(
         "{} touches of lines of {} bytes, estimated from {} touches of a sample of {:g} of all "
         "lines ({} of them), and of caches of fewer than {:.0f} lines from stretches of the trace, as far "
@@ -212,6 +220,12 @@ Table CurveCommand::sampled(double rate, std::uint64_t most) {
         for (std::size_t size = 0; size < shown; ++size) {
             const auto [r, error, of_lines] = curve.estimate(g, size);
             const std::uint64_t all = shards.references(g);
+            if (of_lines && !shards.knows(g)) {
+                constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+                options_.add_row(table, touches, g,
+                                 {sizes[size], all, unknown, unknown, unknown, std::string("none")});
+                continue;
+            }
             options_.add_row(table, touches, g,
                              {sizes[size], all,
                               static_cast<std::uint64_t>(std::llround(r * static_cast<double>(all))), r,

@@ -48,7 +48,8 @@ public:
 
 private:
     void add_options(CLI::App& app) override {
-        app.add_flag("--threads", threads_, "instead, what each thread touches, and what of it alone");
+        app.add_flag("--threads", threads_, "instead, what each thread touches, and what of it alone")
+            ->excludes(app.get_option("--by"));
     }
     bool threads_ = false;
 };

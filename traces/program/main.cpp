@@ -79,6 +79,15 @@ struct Convert {
     }
 };
 
+/// An empty value is no way to leave an option out.
+void refuse_empty(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty())
+                throw traces::Error(
+                    fmt::format("{}: is empty; give a value, or leave it out", option->get_name()));
+}
+
 /// What standard output still holds goes nowhere: who should read it may not.
 [[noreturn]] void end_early() {
     fmt::print(stderr, "razor-trace: interrupted; nothing written\n");
@@ -128,6 +137,8 @@ int main(int argc, char** argv) {
     traces::listen_for_interrupts();
     try {
         app.parse(argc, argv);
+        for (const CLI::App* command : app.get_subcommands())
+            refuse_empty(*command);
         int done = 0;
         if (informing.parsed())
             done = info.run();
@@ -151,6 +162,9 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& help) {
         return app.exit(help, std::cout, std::cerr);
     } catch (const CLI::ParseError& e) {
+        if (argc > 1 && *argv[1] != '-' && app.get_subcommands().empty())
+            return complain(fmt::format("{}: there is no such command; see razor-trace --help", argv[1]),
+                            mistake_exit);
         return complain(fmt::format("{}; see razor-trace --help", e.what()), mistake_exit);
     } catch (const traces::Error& e) {
         return complain(e.what(), mistake_exit);
@@ -160,7 +174,9 @@ int main(int argc, char** argv) {
         if (traces::interrupted())
             end_early();
         return std::ferror(stdout) != 0
-                   ? complain(fmt::format("standard output: {}; check who reads it", e.what()), mistake_exit)
+                   ? complain(fmt::format("standard output: cannot be written ({}); check who reads it",
+                                          e.code().message()),
+                              mistake_exit)
                    : complain(fmt::format("internal error: {}", e.what()), failure_exit);
     } catch (const std::exception& e) {
         return complain(fmt::format("internal error: {}", e.what()), failure_exit);

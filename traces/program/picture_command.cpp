@@ -29,7 +29,8 @@ public:
         options_.each_block(
             [&](const Block& block) { touches.each_access(block, [&](const Access& a) { counts.add(a); }); });
         if (counts.columns() == 0)
-            throw Error(fmt::format("{}: holds no references", options_.file()));
+            throw Error(fmt::format("{}: holds no references; record some, or give its format by --from",
+                                    options_.file()));
         const analysis::AddressPicture picture =
             analysis::draw(counts, static_cast<std::size_t>(width_), static_cast<std::size_t>(height_));
         std::vector<std::string> names;

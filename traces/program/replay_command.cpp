@@ -4,6 +4,7 @@
 #include "sim/replay/timed_replay.h"
 #include "traces/error.h"
 #include "traces/io/interrupt.h"
+#include "traces/program/analysis_options.h"
 #include "traces/program/machine_files.h"
 #include "traces/program/progress.h"
 
@@ -15,7 +16,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <thread>
 
 namespace traces {
@@ -27,14 +27,6 @@ namespace {
 
 constexpr std::array<const char*, 4> by_names = {"all", "structure", "phase", "kind"};
 constexpr double none = std::numeric_limits<double>::quiet_NaN(); // a dash
-
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> out;
-    std::istringstream in(text);
-    for (std::string part; std::getline(in, part, ',');)
-        out.push_back(part);
-    return out;
-}
 
 double ratio(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? none : static_cast<double>(part) / static_cast<double>(whole);
@@ -144,12 +136,19 @@ void ReplayCommand::add_to(CLI::App& app) {
 std::vector<ReplayCommand::Machine> ReplayCommand::machines() const {
     std::vector<Machine> out;
     for (const std::string& text : machines_) {
-        const std::vector<std::string> parts = split(text);
+        const std::vector<std::string> parts = split("--machine", text);
         std::vector<std::string> settings = settings_;
-        if (parts.empty())
-            throw Error("--machine: names no file; give one, such as configs/machines/tiny.toml");
         settings.insert(settings.end(), parts.begin() + 1, parts.end());
-        Machine m{"", parts.front(), sim::describe_machine(parts.front(), settings)};
+        Machine m{"", parts.front(), {}};
+        try {
+            m.description = sim::describe_machine(parts.front(), settings);
+        } catch (const sim::ConfigError& e) { // which takes all for those of -g
+            const std::string_view what = e.what();
+            for (std::size_t i = 1; i < parts.size(); ++i)
+                if (const std::string place = fmt::format("-g {}: ", parts[i]); what.starts_with(place))
+                    throw Error(fmt::format("--machine {}: {}", text, what.substr(place.size())));
+            throw;
+        }
         m.label = m.description.name;
         for (std::size_t i = 1; i < parts.size(); ++i)
             m.label += " " + parts[i];
@@ -276,6 +275,10 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
         const std::unique_ptr<Source> source = open_source(against_);
         while (const std::size_t n = source->read(text.data(), text.size()))
             report.append(text, 0, n);
+        if (!json::accept(report))
+            throw Error(fmt::format(
+                "{}: is no report of a run, as it is no JSON; give what razor-sim run --json wrote",
+                against_));
         compared.push_back(sim::compare_with_run(results.front(), report, against_));
     }
     std::vector<OutputFile> files;
@@ -337,6 +340,11 @@ void ReplayCommand::give(const Input& input, const std::vector<Machine>& machine
         if (!compared.empty())
             compare(compared.front());
     }
+    if (d.level.empty())
+        fmt::print(stderr,
+                   "razor-trace: {}: does not say where references were seen; they pass for those of "
+                   "cores\n",
+                   file_);
     if (!note.empty())
         fmt::print(stderr, "razor-trace: {}\n", note);
 }

@@ -45,7 +45,8 @@ public:
             }
         });
         if (summary.references() == 0)
-            throw Error(fmt::format("{}: holds no references", options_.file()));
+            throw Error(fmt::format("{}: holds no references; record some, or give its format by --from",
+                                    options_.file()));
         options_.reopen();
         Report report(caches_.shapes()[0], first, last, over_.empty() ? 0 : picture.tiles());
         analysis::Touches touches = options_.touches();
