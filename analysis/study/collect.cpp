@@ -310,6 +310,8 @@ std::vector<std::string> write_collection(const Collection& collection, const St
         write_whole(store.folder() / name, text);
         written.push_back((store.folder() / name).string());
     };
+    std::error_code ignored; // writing says what is wrong
+    std::filesystem::create_directories(store.folder(), ignored);
     const auto draw = [&](const std::string& name, const Svg& drawing) {
         write(name + ".svg", drawing.file());
         write(name + ".png", png_bytes(rasterised(drawing, 2)));

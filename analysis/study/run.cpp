@@ -12,12 +12,12 @@
 namespace analysis {
 namespace {
 
-constexpr int stopped_code = 130, unwritten_code = 3;
+constexpr int stopped_code = 130, unwritten_code = 3, changed_code = 4;
 constexpr int look_ms = 50; // at whether it is to stop, and at what others have done
 
 /// In the point's own process.
 int measure_and_write(const Point& point, const Store& store, const Measure& measure,
-                      std::string_view program) {
+                      const RunOptions& options) {
     Result result;
     try {
         result = measure(point);
@@ -30,11 +30,13 @@ int measure_and_write(const Point& point, const Store& store, const Measure& mea
         result = {};
         result.failed = error.what();
     }
+    // What failed may have failed for that.
+    if (options.changed && !options.changed(point).empty())
+        return changed_code;
     try {
-        store.write_result(point, result, program);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return unwritten_code;
+        store.write_result(point, result, options.program);
+    } catch (const std::exception&) {
+        return unwritten_code; // whoever waits for this process says so
     }
     return 0;
 }
@@ -51,6 +53,7 @@ public:
     Queue(const std::vector<Point>& points, const Store& store, const Measure& measure,
           const RunOptions& options)
         : points_(points), store_(store), measure_(measure), options_(options), claims_(store) {
+        store.make_folders(); // before work is begun for nothing
         for (std::size_t i = 0; i < points.size(); ++i)
             if (i % static_cast<std::size_t>(options.parts) + 1 == static_cast<std::size_t>(options.part))
                 waiting_.push_back(i);
@@ -129,7 +132,7 @@ private:
             return;
         }
         running_.push_back(
-            {i, Isolated([&] { return measure_and_write(point, store_, measure_, options_.program); })});
+            {i, Isolated([&] { return measure_and_write(point, store_, measure_, options_); })});
     }
 
     void finish(std::size_t i) {
@@ -137,6 +140,13 @@ private:
         ++out_.measured;
         if (!store_.read_result(points_[i])->failed.empty())
             ++out_.failed;
+    }
+
+    [[noreturn]] void fail_changed(const Point& point) const {
+        const std::string file = options_.changed(point);
+        throw StudyError(fmt::format("{}: was changed while the study ran, and what was measured of it is "
+                                     "not kept; run the same command again",
+                                     file.empty() ? "a file of " + point.name : file));
     }
 
     void collect_ended() {
@@ -164,9 +174,11 @@ private:
             if (!ended.signal.empty())
                 store_.write_result(points_[i], failure(fmt::format("ended by a signal: {}", ended.signal)),
                                     options_.program);
+            else if (ended.code == changed_code)
+                fail_changed(points_[i]);
             else if (ended.code != 0)
-                throw StudyError(
-                    fmt::format("the result of {} cannot be written; check the disk", points_[i].name));
+                throw StudyError(fmt::format("{}: cannot be written; check the disk and the folder's rights",
+                                             store_.result_file(points_[i]).string()));
             finish(i);
         }
     }

@@ -25,6 +25,9 @@ struct RunOptions {
     /// Before each point that is measured: how many are begun or done of how many, and the point.
     std::function<void(std::size_t done, std::size_t of, const Point& next)> progress{};
     int jobs = 1; // points measured at a time, each in a process
+    /// Which of the files that a point is measured from is no more what it was when the point was named, or
+    /// nothing: asked of each that is measured, in its process, before its result is written.
+    std::function<std::string(const Point& point)> changed{};
 };
 
 struct RunSummary {
@@ -33,7 +36,8 @@ struct RunSummary {
 };
 
 /// In a process for each point, so that one that crashes, or takes all memory, is a result that says so.
-/// Where others measure points of the same folder at the same time (Claims), waits for these.
+/// Where others measure points of the same folder at the same time (Claims), waits for these. Throws
+/// StudyError where a result cannot be written, or is of files that changed: it is not written then.
 RunSummary run_points(const std::vector<Point>& points, const Store& store, const Measure& measure,
                       const RunOptions& options);
 

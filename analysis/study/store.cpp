@@ -49,7 +49,9 @@ void write_whole(const fs::path& file, std::string_view text) {
     }
 }
 
-Store::Store(fs::path folder) : folder_(std::move(folder)) {
+Store::Store(fs::path folder) : folder_(std::move(folder)) {}
+
+void Store::make_folders() const {
     std::error_code error;
     for (const char* part : {"points", "results"}) {
         fs::create_directories(folder_ / part, error);
@@ -69,6 +71,7 @@ bool Store::is_done(const Point& point) const {
 }
 
 void Store::write_point(const Point& point) const {
+    make_folders();
     const fs::path file = folder_ / "points" / (point.name + ".toml");
     std::error_code ignored;
     if (!fs::exists(file, ignored))
@@ -76,6 +79,7 @@ void Store::write_point(const Point& point) const {
 }
 
 void Store::write_result(const Point& point, const Result& result, std::string_view program) const {
+    make_folders();
     json out{{"program", program}, {"point", point.body}};
     if (!result.failed.empty()) {
         out["failed"] = result.failed;
@@ -107,10 +111,9 @@ std::optional<Result> Store::read_result(const Point& point) const {
         result.values = read_samples(from.at("values"));
         result.details = from.value("details", json());
         return result;
-    } catch (const json::exception& error) {
+    } catch (const json::exception&) {
         throw StudyError(
-            fmt::format("{}: is no result of a study ({}); remove it, and the point is measured again",
-                        file.string(), error.what()));
+            fmt::format("{0}: is damaged; remove {0}, and its point is measured again", file.string()));
     }
 }
 

@@ -31,10 +31,12 @@ void write_whole(const std::filesystem::path& file, std::string_view text);
 
 class Store {
 public:
-    /// Makes the folders. Throws StudyError.
+    /// Makes nothing, so that reading from a folder that is not there leaves none.
     explicit Store(std::filesystem::path folder);
 
     const std::filesystem::path& folder() const { return folder_; }
+    /// Makes the folders. Throws StudyError.
+    void make_folders() const;
     bool is_done(const Point& point) const;
     /// Throws StudyError.
     void write_point(const Point& point) const;
@@ -44,9 +46,9 @@ public:
     std::optional<Result> read_result(const Point& point) const;
     void forget_result(const Point& point) const;
 
-private:
     std::filesystem::path result_file(const Point& point) const;
 
+private:
     std::filesystem::path folder_;
 };
 

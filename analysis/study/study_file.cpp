@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 
 namespace analysis {
@@ -39,9 +40,13 @@ bool Condition::holds(const Settings& settings) const {
     return number && (!least || *number >= *least) && (!most || *number <= *most);
 }
 
+/// Tables of [[exclude]] by where they stand, and whether they leave out a point in either size.
+using Excludes = std::map<std::pair<std::uint32_t, std::uint32_t>, bool>;
+
 class Reader {
 public:
-    Reader(std::string_view file, const Vocabulary& vocabulary) : file_(file), vocabulary_(vocabulary) {}
+    Reader(std::string_view file, const Vocabulary& vocabulary, Excludes& excludes)
+        : file_(file), vocabulary_(vocabulary), excludes_(excludes) {}
 
     Study read(const toml::table& root) {
         TomlSection top(root, "", file_);
@@ -64,47 +69,71 @@ public:
         const std::vector<const toml::table*> points = top.tables("points");
         const std::vector<const toml::table*> exclude = top.tables("exclude");
         const std::vector<std::string> where = top.texts("where");
-        for (const toml::table* const plot : top.tables("plot"))
+        has_reference_ = root.contains("reference");
+        const std::vector<const toml::table*> plots = top.tables("plot");
+        for (const toml::table* const plot : plots)
             read_plot(*plot);
         const std::vector<const toml::table*> curves = top.tables("curve");
         for (const toml::table* const curve : curves)
             read_curve(*curve);
         study_.rank = top.texts("rank");
-        for (const std::string& figure : study_.rank)
-            if (const std::string wrong = wrong_figure(figure); !wrong.empty())
-                top.fail("rank", wrong);
+        read_rank(top);
         const std::vector<const toml::table*> rivals = top.tables("rival");
         top.table("full");
         top.finish();
-        for (const toml::table* const one : exclude)
-            exclude_.push_back(conditions(*one));
+        for (const toml::table* const one : exclude) {
+            bool& used = excludes_[{one->source().begin.line, one->source().begin.column}];
+            exclude_.push_back({conditions(*one), &used});
+        }
         read_constraints(where, top);
         if (knobs != nullptr)
             add_points(*knobs, "knobs");
         for (const toml::table* const one : points)
             add_points(*one, "points");
+        if (study_.points.empty() && given_ != 0 && !where_.empty())
+            top.fail("where", "all points are left out; mend where or [[exclude]]");
         if (study_.points.empty())
-            fail_at(file_, root.source(),
-                    given_ == 0      ? "there are no points; list values of some settings under [knobs]"
-                    : where_.empty() ? "all points are left out; mend [[exclude]]"
-                                     : "all points are left out; mend where or [[exclude]]");
+            fail_at(file_, given_ == 0 ? root.source() : exclude.front()->source(),
+                    given_ == 0 ? "there are no points; list values of some settings under [knobs]"
+                                : "all points are left out; mend [[exclude]]");
         for (const toml::table* const rival : rivals)
             read_rival(*rival);
-        for (const PlotRequest& plot : study_.plots)
-            for (const std::string& line : plot.lines)
-                if (std::find(study_.knobs.begin(), study_.knobs.end(), line) == study_.knobs.end())
-                    fail_at(file_, root.source(),
-                            fmt::format("a plot has lines by {}, in which no points differ; there are {}",
-                                        line, fmt::join(study_.knobs, ", ")));
+        for (std::size_t i = 0; i < study_.plots.size(); ++i)
+            check_lines(study_.plots[i], *plots[i]);
         for (std::size_t i = 0; i < study_.curves.size(); ++i)
             check_curve(study_.curves[i], *curves[i]);
         return std::move(study_);
     }
 
 private:
+    void read_rank(TomlSection& top) {
+        study_.rank = top.texts("rank");
+        if (study_.rank.empty() && top.all().contains("rank"))
+            top.fail("rank", "rank names no figures; name some, or leave it out");
+        std::set<std::string> known;
+        for (const std::string& figure : study_.rank) {
+            if (const std::string wrong = wrong_figure(figure); !wrong.empty())
+                top.fail("rank", wrong);
+            if (!known.insert(figure).second)
+                top.fail("rank", fmt::format("rank names {} twice; leave one out", figure));
+        }
+    }
+
+    void check_lines(const PlotRequest& plot, const toml::table& table) const {
+        for (const std::string& line : plot.lines)
+            if (std::find(study_.knobs.begin(), study_.knobs.end(), line) == study_.knobs.end())
+                TomlSection(table, "plot", file_)
+                    .fail("lines", fmt::format("a plot has lines by {}, in which no points differ; there are "
+                                               "{}",
+                                               line, fmt::join(study_.knobs, ", ")));
+    }
+
     /// Why a plot cannot show it, or nothing.
     std::string wrong_figure(const std::string& name) const {
-        const std::vector<std::string>& known = vocabulary_.figures;
+        const std::vector<std::string>&known = vocabulary_.figures, &beside = vocabulary_.of_references;
+        if (!has_reference_ && std::find(beside.begin(), beside.end(), name) != beside.end())
+            return fmt::format("{} is measured beside a reference, and there is none; write [reference]",
+                               name);
         return std::find(known.begin(), known.end(), name) != known.end()
                    ? ""
                    : fmt::format("there is no figure {}; there are {}", name, fmt::join(known, ", "));
@@ -133,6 +162,16 @@ private:
                                          curve.x, toml_text(found->second)));
     }
 
+    std::string wrong_file(const std::string& key, const Value& value) const {
+        const std::filesystem::path file = std::filesystem::path(file_).parent_path() / plain_text(value);
+        std::error_code ignored;
+        return std::filesystem::exists(file, ignored)
+                   ? ""
+                   : fmt::format(
+                         "{} = {}: there is no file {}; mend its name, which is from the study's folder", key,
+                         toml_text(value), file.string());
+    }
+
     Value checked(const std::string& key, const toml::node& node) const {
         Value value;
         if (node.is_boolean())
@@ -147,7 +186,10 @@ private:
             fail_at(file_, node.source(),
                     fmt::format("{} is no single value; write a number, true or false, or a text in quotes",
                                 key));
-        const std::string wrong = vocabulary_.wrong(key, value);
+        std::string wrong = vocabulary_.wrong(key, value);
+        if (wrong.empty() &&
+            std::find(vocabulary_.files.begin(), vocabulary_.files.end(), key) != vocabulary_.files.end())
+            wrong = wrong_file(key, value);
         if (!wrong.empty())
             fail_at(file_, node.source(), wrong);
         return value;
@@ -271,6 +313,11 @@ private:
     }
 
     bool excluded(const Settings& point) const {
+        bool left_out = false;
+        for (const auto& [all, used] : exclude_)
+            if (!all.empty() &&
+                std::all_of(all.begin(), all.end(), [&](const Condition& one) { return one.holds(point); }))
+                *used = left_out = true;
         for (const Constraint& one : where_)
             try {
                 if (!one.holds([&](std::string_view key) { return number_at(point, key); }))
@@ -278,10 +325,7 @@ private:
             } catch (const std::exception& error) {
                 top_->fail("where", error.what());
             }
-        return std::any_of(exclude_.begin(), exclude_.end(), [&](const std::vector<Condition>& all) {
-            return !all.empty() && std::all_of(all.begin(), all.end(),
-                                               [&](const Condition& one) { return one.holds(point); });
-        });
+        return left_out;
     }
 
     /// visit(settings) of each combination, the last list's values in turn first.
@@ -357,8 +401,9 @@ private:
         Lists values;
         // A rival's own words, which no program checks.
         if (const toml::table* const knobs = section.table("knobs"))
-            values = Reader(file_, {vocabulary_.kind, [](std::string_view, Value&) { return ""; }, {}})
-                         .lists(*knobs);
+            values =
+                Reader(file_, {vocabulary_.kind, [](std::string_view, Value&) { return ""; }, {}}, excludes_)
+                    .lists(*knobs);
         section.finish();
         rival.points = combinations(table, values);
         const auto same_name = [&](const Rival& other) { return other.name == rival.name; };
@@ -371,28 +416,38 @@ private:
     std::string file_;
     const Vocabulary& vocabulary_;
     Study study_;
-    std::vector<std::vector<Condition>> exclude_;
+    Excludes& excludes_;
+    std::vector<std::pair<std::vector<Condition>, bool*>> exclude_; // and whether it leaves out any
+    bool has_reference_ = false;
     std::vector<Constraint> where_;
     const TomlSection* top_ = nullptr; // the document, while it is read
     std::set<std::string> known_;      // points' texts
     std::size_t given_ = 0;
 };
 
-Study read_size(std::string_view text, std::string_view name, const Vocabulary& vocabulary, bool full) {
+Study read_size(std::string_view text, std::string_view name, const Vocabulary& vocabulary, bool full,
+                Excludes& excludes) {
     toml::table root = parse_toml(text, name);
     if (toml::table* const over = root.get_as<toml::table>("full"); over != nullptr && full) {
         toml::table taken = std::move(*over);
         root.erase("full");
         lay_over(root, taken);
     }
-    return Reader(name, vocabulary).read(root);
+    return Reader(name, vocabulary, excludes).read(root);
 }
 
 } // namespace
 
 Study parse_study(std::string_view text, std::string_view name, const Vocabulary& vocabulary, bool full) {
-    read_size(text, name, vocabulary, !full); // its mistakes are said at once, not when its size is asked for
-    return read_size(text, name, vocabulary, full);
+    Excludes excludes;
+    // Its mistakes are said at once, not when its size is asked for.
+    read_size(text, name, vocabulary, !full, excludes);
+    Study study = read_size(text, name, vocabulary, full, excludes);
+    for (const auto& [place, used] : excludes)
+        if (!used)
+            throw StudyError(fmt::format("{}:{}:{}: leaves out no point; mend what it says, or remove it",
+                                         name, place.first, place.second));
+    return study;
 }
 
 Study read_study(const std::string& file, const Vocabulary& vocabulary, bool full) {

@@ -54,6 +54,8 @@ struct Vocabulary {
     /// What a setting of a point of `file` is where the study does not say, as of a machine's file; none: it
     /// must say. Throws std::exception (cause; mend) for what is no number, or no setting.
     std::function<double(const Settings& point, std::string_view key, const std::string& file)> preset{};
+    std::vector<std::string> files{};         // settings that name a file, from the study's folder
+    std::vector<std::string> of_references{}; // those of the figures that only studies with a reference have
 };
 
 /// Another program: a command is run for each point, with words in braces replaced: settings of the point

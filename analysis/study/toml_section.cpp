@@ -81,8 +81,8 @@ int TomlSection::whole(std::string_view key, int preset, int least, int most) {
         return preset;
     const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
     if (!value || *value < least || *value > most)
-        fail(key,
-             fmt::format("{} is out of range; write a whole number from {} to {}", full(key), least, most));
+        fail(key, fmt::format("{} is {}; write a whole number from {} to {}", full(key),
+                              value ? "out of range" : "no whole number", least, most));
     return static_cast<int>(*value);
 }
 

@@ -25,6 +25,7 @@ protected:
         const Study study =
             test_study("kind = \"test\"\n[knobs]\nsamples = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\n");
         points_ = resolve_points(study, [](const Point& p) { return toml_text(p.settings); });
+        store_.make_folders();
     }
     /// Notes each measuring in a file.
     Measure slow(std::chrono::milliseconds time) const {

@@ -84,6 +84,12 @@ constexpr std::string_view two_sizes = R"(
     edge = [1, 2, 3]
 )";
 
+TEST(StudyFile, LeavesOutPointsOfEitherSize) {
+    const std::string text = "kind = \"test\"\n[knobs]\nedge = [1]\n[[exclude]]\nedge = 2\n[full.knobs]\n";
+    EXPECT_EQ(test_study(text + "edge = [1, 2]\n").points.size(), 1U);
+    EXPECT_THROW(test_study(text + "edge = [1, 3]\n"), StudyError);
+}
+
 TEST(StudyFile, HasAFullSize) {
     EXPECT_EQ(texts(test_study(two_sizes)),
               (std::vector<std::string>{"edge = 1.0\nsamples = 1\nscene = \"a\"\n"}));
@@ -151,6 +157,17 @@ TEST(StudyFile, SaysWhereMistakesAreAndTheMend) {
          "test.toml:5:5: there is no figure secs; there are"},
         {good + "[[plot]]\nx = \"seconds\"\ny = \"error\"\nlines = [\"lod\"]\n", "lines by lod"},
         {good + "[[plot]]\nx = \"seconds\"\n", "there is no plot.y"},
+        {good + "[[plot]]\nx = \"seconds\"\ny = \"error\"\nlines = [\"lod\"]\n", "test.toml:7:9: a plot has"},
+        {good + "[[exclude]]\nedge = 1\n", "test.toml:4:1: all points are left out"},
+        {good + "[[exclude]]\n", "test.toml:4:1: leaves out no point"},
+        {good + "[[exclude]]\nedge = 7\n", "test.toml:4:1: leaves out no point"},
+        {good + "[[exclude]]\nlod = \"x\"\n", "test.toml:4:1: leaves out no point"},
+        {begin + "rank = []\n[knobs]\nedge = [1]\n", "test.toml:2:8: rank names no figures"},
+        {begin + "rank = [\"error\", \"error\"]\n[knobs]\nedge = [1]\n",
+         "test.toml:2:8: rank names error twice"},
+        {good + "[[plot]]\nx = \"seconds\"\ny = \"off\"\n",
+         "test.toml:6:5: off is measured beside a reference, and there is none"},
+        {good + "[settings]\nmesh = \"none.obj\"\n", "test.toml:5:8: mesh = \"none.obj\": there is no file"},
         {good + "[[rival]]\nname = \"a\"\n", "there is no rival.command"},
         {good + "[[rival]]\nname = \"a\"\ncommand = [1]\n", "rival.command is no list of texts"},
         {good + "[[rival]]\nname = \"a\"\ncommand = [\"b\"]\nfigures = { seconds = \"x\" }\n",

@@ -10,13 +10,16 @@
 
 namespace analysis {
 
-/// Settings `scene` and `lod` (texts), `samples` (whole, 1 to 100), `edge` and `l2.size` (numbers above 0).
+/// Settings `scene`, `lod` (texts) and `mesh` (a file), `samples` (whole, 1 to 100), `edge` and `l2.size`
+/// (numbers above 0).
 inline Vocabulary test_vocabulary() {
     Vocabulary out;
     out.kind = "test";
-    out.figures = {"seconds", "error"};
+    out.figures = {"seconds", "error", "off"};
+    out.of_references = {"off"};
+    out.files = {"mesh"};
     out.wrong = [](std::string_view key, Value& value) -> std::string {
-        if (key == "scene" || key == "lod")
+        if (key == "scene" || key == "lod" || key == "mesh")
             return std::holds_alternative<std::string>(value) ? ""
                                                               : fmt::format("{} is no text; quote it", key);
         if (key == "samples") {

@@ -150,7 +150,50 @@ TEST_F(StudyRun, DamagedResultsAreSaidToBe) {
         StudyError);
     std::ofstream(file) << text(folder_ / "s" / "results" / (points_[1].name + ".json"));
     EXPECT_THROW(store_.read_result(points_[0]), StudyError);
-    EXPECT_THROW(Store(file / "under"), StudyError);
+    EXPECT_THROW(Store(file / "under").make_folders(), StudyError);
+    std::ofstream(file) << "{";
+    try {
+        store_.read_result(points_[0]);
+    } catch (const StudyError& error) {
+        const std::string what = error.what();
+        EXPECT_NE(what.find(": is damaged; remove " + file.string()), std::string::npos) << what;
+        EXPECT_EQ(what.find("json.exception"), std::string::npos) << what;
+    }
+}
+
+TEST_F(StudyRun, KeepsNothingOfFilesThatChanged) {
+    options_.changed = [this](const Point& point) {
+        return samples(point) == 1 ? std::string() : std::string("machine.toml");
+    };
+    const Measure measure = [this](const Point& point) {
+        if (samples(point) == 3)
+            throw std::runtime_error("its reference is gone"); // as for a change
+        return measured(point);
+    };
+    const auto message = [&] {
+        try {
+            run_points(points_, store_, measure, options_);
+        } catch (const StudyError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_TRUE(message().starts_with("machine.toml: was changed while the study ran")) << message();
+    EXPECT_EQ(files("results"), 1U);
+    std::swap(points_[1], points_[2]);
+    EXPECT_TRUE(message().starts_with("machine.toml: was changed while the study ran")) << message();
+    EXPECT_EQ(files("results"), 1U);
+}
+
+TEST_F(StudyRun, SaysOnceWhatCannotBeWritten) {
+    const Measure measure = [this](const Point& point) {
+        std::filesystem::remove_all(folder_ / "s" / "results");
+        std::ofstream(folder_ / "s" / "results") << "no folder";
+        return measured(point);
+    };
+    testing::internal::CaptureStderr();
+    EXPECT_THROW(run_points(points_, store_, measure, options_), StudyError);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 // Waiting ends with the child, neither before nor long after.
