@@ -24,17 +24,18 @@ void StudyCommand::add_to(CLI::App& app) {
         figures += fmt::format("  {:<24} {}\n", figure.name, figure.label);
     command_->footer(fmt::format(
         "Settings in a study's file: {}, as of razor render (samples: --spp); {}.\n\nFigures:\n{}\n"
-        "The form of the file: analysis/study/study_file.h; examples: configs/studies.",
-        keys, fmt::join(host_keys(), ", "), figures));
+        "The form of the file: analysis/study/study_file.h; examples: configs/studies.\n\n{}",
+        keys, fmt::join(host_keys(), ", "), figures, study_exit_codes));
 }
 
 int StudyCommand::run() const {
     try {
-        const StudyProgram program = image_study_program();
+        StudyProgram program = image_study_program();
         const analysis::Study study = options_.read(program);
         const ImageStudy images(study, options_.base(), watch_interrupts());
         const auto points =
             analysis::resolve_points(study, [&](const analysis::Point& point) { return images.body(point); });
+        program.changed = [&](const analysis::Point& point) { return images.changed(point); };
         const analysis::Store store(options_.folder());
         return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>& missing) {
             return std::vector<StudyStage>{

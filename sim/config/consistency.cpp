@@ -29,7 +29,8 @@ void check_cache(const std::string& what, const char* name, const CacheConfig& c
         const auto set = static_cast<std::uint64_t>(ways * line);
         const std::uint64_t above = std::bit_ceil(sets_below + 1) * set;
         fail(what,
-             fmt::format("{}.size_bytes is {}, which {} ways of {}-byte lines do not divide; make it {}",
+             fmt::format("{0}.size_bytes is {1}, which {0}.ways ({2}) of {3}-byte lines do not divide; make "
+                         "it {4}",
                          name, size, ways, line,
                          sets_below == 0 ? fmt::format("{}", above)
                                          : fmt::format("{} or {}", std::bit_floor(sets_below) * set, above)));

@@ -73,7 +73,10 @@ std::string set(const Parameter& p, Config& config, const toml::node& value) {
         return set_real(p, config, *d);
     if (auto s = value.value_exact<std::string>())
         return set_text(p, config, *s);
-    return fmt::format("{} must be a number or a word in quotes", p.key);
+    return fmt::format("{} must be {}", p.key,
+                       std::holds_alternative<ChoiceKind>(p.kind) || std::holds_alternative<TextKind>(p.kind)
+                           ? "a word in quotes"
+                           : "a number");
 }
 
 /// What is wrong with a key that stands where sections stand.

@@ -59,7 +59,9 @@ bool is_number(const std::string& text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// "2 MiB" as bytes, or 0 where the text is not of that form.
+constexpr integer too_large = integer{1} << 62; // for any parameter
+
+/// "2 MiB" as bytes, too_large for more than can be counted, or 0 where the text is not of that form.
 integer binary_size(const std::string& text) {
     integer number = 0;
     const char* const end = text.data() + text.size();
@@ -70,9 +72,9 @@ integer binary_size(const std::string& text) {
                            : unit == "MiB" ? kibi * kibi
                            : unit == "GiB" ? kibi * kibi * kibi
                                            : 0;
-    const bool fits =
-        error == std::errc{} && number > 0 && factor > 0 && number <= (integer{1} << 62) / factor;
-    return fits ? number * factor : 0;
+    if (error == std::errc::result_out_of_range || (factor > 0 && number > too_large / factor))
+        return too_large;
+    return error == std::errc{} && number > 0 && factor > 0 ? number * factor : 0;
 }
 
 std::string with_unit(const Parameter& p) {
@@ -233,6 +235,8 @@ std::string set_text(const Parameter& p, Config& config, const std::string& valu
         if (p.unit != "bytes")
             return fmt::format("{} is \"{}\"; it must be a number", p.key, value);
         const integer size = binary_size(value);
+        if (size == too_large)
+            return fmt::format("{} is \"{}\"; it must be from {}", p.key, value, print_bounds(p));
         return size > 0
                    ? set_integer(p, config, size)
                    : fmt::format("{} is \"{}\"; it must be a number, or one of KiB, MiB or GiB, as in \"64 "

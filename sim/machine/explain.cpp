@@ -170,6 +170,30 @@ std::string plain(std::string_view path) {
     return out;
 }
 
+/// Whether the path begins with the words. An element of an array has any names of its own, or a number.
+bool names_within(std::string_view path, std::string_view words, bool literal) {
+    if (words.empty())
+        return literal;
+    if (path.empty())
+        return false;
+    std::string_view name = cut_name(path);
+    const bool array = name.ends_with("[]");
+    if (array)
+        name.remove_suffix(2);
+    const std::string_view word = cut_name(words);
+    if (name != "*" && name != word)
+        return false;
+    literal = literal || name == word;
+    if (names_within(path, words, literal))
+        return true;
+    while (array && !words.empty()) {
+        cut_name(words);
+        if (names_within(path, words, literal))
+            return true;
+    }
+    return false;
+}
+
 } // namespace
 
 const std::vector<Explanation>& explanations() {
@@ -191,6 +215,13 @@ bool explains(const Explanation& e, std::string_view path) {
 
 bool is_named(const Explanation& e, std::string_view words) {
     return fmt::format(".{}.", plain(e.path)).find(fmt::format(".{}.", plain(words))) != std::string::npos;
+}
+
+bool is_named_within(const Explanation& e, std::string_view words) {
+    for (std::string_view path = e.path; !path.empty(); cut_name(path))
+        if (names_within(path, words, false))
+            return true;
+    return false;
 }
 
 std::vector<const Explanation*> find_explanations(std::string_view words) {

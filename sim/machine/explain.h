@@ -23,6 +23,9 @@ bool explains(const Explanation& e, std::string_view path);
 /// Whether `words` are in its path; they may leave out names on the left ("l1.hits", "hits") or on the right
 /// ("stack").
 bool is_named(const Explanation& e, std::string_view words);
+/// The same of words that name elements, as comparisons of reports do, or other names where the path has *:
+/// "cores.0.stack.idle", "bandwidth.L1.utilisation". A name of the path's own must be among them.
+bool is_named_within(const Explanation& e, std::string_view words);
 /// Those of which that is true.
 std::vector<const Explanation*> find_explanations(std::string_view words);
 

@@ -5,6 +5,7 @@
 #include "razor/scene/error.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
+#include "sim/config/parameters.h"
 #include "sim/memory/dram_bounds.h"
 #include "sim/memory/dram_load.h"
 
@@ -78,8 +79,12 @@ json to_json(const Row& r, const Units& unit) {
 /// The memory that is asked for, behind lines of 64 bytes unless a machine says otherwise.
 Config configuration(const std::string& machine, const std::string& preset,
                      std::vector<std::string> settings) {
-    if (!preset.empty())
+    if (!preset.empty()) {
+        Config any;
+        if (const std::string wrong = set_text(*find_parameter("memory.preset"), any, preset); !wrong.empty())
+            throw ConfigError("--preset: " + wrong);
         settings.insert(settings.begin(), "memory.preset=" + preset);
+    }
     return machine.empty() ? describe_machine_text("", "the default machine", settings).config
                            : describe_machine(machine, settings).config;
 }

@@ -28,13 +28,13 @@ void StudyCommand::add_to(CLI::App& app) {
         fmt::format("Settings in a study's file: {}, as of razor-sim run (samples: --spp); {}as of razor "
                     "render; and every "
                     "key of machine files (razor-sim print-config).\n\nFigures:\n{}\n"
-                    "The form of the file: analysis/study/study_file.h; examples: configs/studies.",
-                    fmt::join(run_keys(), ", "), keys, figures));
+                    "The form of the file: analysis/study/study_file.h; examples: configs/studies.\n\n{}",
+                    fmt::join(run_keys(), ", "), keys, figures, razor::study_exit_codes));
 }
 
 int StudyCommand::run() const {
     try {
-        const razor::StudyProgram program = machine_study_program();
+        razor::StudyProgram program = machine_study_program();
         const analysis::Study study = options_.read(program);
         if (!study.rivals.empty())
             throw razor::UserError(
@@ -44,6 +44,7 @@ int StudyCommand::run() const {
                                     razor::watch_interrupts());
         const auto points = analysis::resolve_points(
             study, [&](const analysis::Point& point) { return machines.body(point); });
+        program.changed = [&](const analysis::Point& point) { return machines.changed(point); };
         const analysis::Store store(options_.folder());
         return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>& missing) {
             return std::vector<razor::StudyStage>{

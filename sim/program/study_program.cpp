@@ -146,7 +146,11 @@ razor::StudyProgram machine_study_program() {
                    {"l1_miss_rate_error", "error of the L1s' miss rate, absolute"},
                    {"l2_miss_rate_error", "error of the L2s' miss rate, absolute"}};
     out.figures.insert(out.figures.end(), report_figures().begin(), report_figures().end());
+    for (const analysis::Figure& figure : out.figures)
+        if (figure.name.ends_with("_error") || figure.name.ends_with("_deviation"))
+            out.vocabulary.of_references.push_back(figure.name);
     out.vocabulary.kind = "machine";
+    out.vocabulary.files = {"machine", "scene"};
     out.vocabulary.wrong = wrong_setting;
     out.vocabulary.preset = machine_number;
     out.name_figures();
@@ -167,6 +171,7 @@ razor::StudyProgram sweep_program() {
     out.figures.push_back(
         {"seed_processor_seconds", "host, processor seconds of the tile's seed, made before"});
     out.vocabulary.kind = "sweep";
+    out.vocabulary.files = {"machine", "scene"};
     out.vocabulary.wrong = wrong_setting;
     out.vocabulary.preset = machine_number;
     out.name_figures();

@@ -4,6 +4,8 @@
 #include "razor/program/study/command.h"
 #include "razor/program/study/scene_knobs.h"
 #include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
+#include "sim/config/error.h"
 #include "sim/config/machine_file.h"
 #include "sim/config/parameters.h"
 #include "sim/estimate/seed.h"
@@ -119,6 +121,20 @@ const MachineStudy::Described& MachineStudy::described(const Settings& settings)
         .first->second;
 }
 
+std::string MachineStudy::changed(const Point& point) const {
+    if (const std::string scene = razor::changed_scene(point.settings, folder_, point.body); !scene.empty())
+        return scene;
+    std::string config;
+    try {
+        config = print_machine(machine_of(point.settings).config);
+    } catch (const std::exception&) {
+        // It cannot be read any more.
+    }
+    return !config.empty() && point.body.find(config) != std::string::npos
+               ? ""
+               : (folder_ / plain_text(point.settings.at("machine"))).string();
+}
+
 MachineDescription MachineStudy::machine_of(const Settings& settings) const {
     std::vector<std::string> overrides;
     const auto machine = settings.find("machine");
@@ -127,7 +143,15 @@ MachineDescription MachineStudy::machine_of(const Settings& settings) const {
     for (const auto& [key, value] : settings)
         if (find_parameter(key) != nullptr)
             overrides.push_back(fmt::format("{}={}", key, plain_text(value)));
-    return describe_machine((folder_ / plain_text(machine->second)).string(), overrides);
+    try {
+        return describe_machine((folder_ / plain_text(machine->second)).string(), overrides);
+    } catch (const ConfigError& error) {
+        // What overrides the machine's file here is the study's.
+        std::string what = error.what();
+        for (std::size_t at = 0; (at = what.find(" from -g", at)) != std::string::npos;)
+            what.replace(at, std::string_view(" from -g").size(), " from " + study_.file);
+        throw ConfigError(what);
+    }
 }
 
 std::string MachineStudy::own_body(const Settings& settings, int seeds, bool of_tile) const {
@@ -168,7 +192,11 @@ std::string MachineStudy::body(const Point& point) const {
     if (in_closed_form(point.settings))
         out += fmt::format("\n# computed from {}\n", tile_seed_of(point.settings, study_.seeds).name);
     if (!study_.reference.empty())
-        out += fmt::format("\n# compared with {}\n", reference_of(point).name);
+        try {
+            out += fmt::format("\n# compared with {}\n", reference_of(point).name);
+        } catch (const std::exception& error) {
+            throw razor::UserError(fmt::format("its reference, by [reference]: {}", error.what()));
+        }
     return out;
 }
 
@@ -245,7 +273,11 @@ std::string MachineStudy::kept_tile_seed(const Point& tile, int seed, const anal
     const std::string file = (folder / fmt::format("{}-{}.json", tile.name, seed)).string();
     if (!std::filesystem::exists(file)) {
         const razor::ScratchFolder scratch;
-        run(command(tile.settings, seed, (scratch / "report.json").string(), file), scratch / "log");
+        const std::string made = (scratch / "seed.json").string();
+        run(command(tile.settings, seed, (scratch / "report.json").string(), made), scratch / "log");
+        if (const std::string other = changed(tile); !other.empty())
+            throw razor::UserError(fmt::format("{}: was changed while the study ran", other));
+        analysis::write_whole(file, razor::read_text_file(made, "a seed"));
     }
     return file;
 }

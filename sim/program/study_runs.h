@@ -33,6 +33,8 @@ public:
     analysis::Result measure_reference(const analysis::Point& reference, const analysis::Store& store) const;
     /// ... beside its reference's, which has been measured.
     analysis::Result measure(const analysis::Point& point, const analysis::Store& store) const;
+    /// The file of a point's machine or scene that is no more what the point's body says, or nothing.
+    std::string changed(const analysis::Point& point) const;
 
 private:
     /// What is known of a scene of these settings.

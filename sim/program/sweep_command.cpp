@@ -40,13 +40,13 @@ void SweepCommand::add_to(CLI::App& app) {
         "folder, "
         "on one host or many. A design that fails has a result that says why, and stops no other.\n"
         "The form of the file: analysis/study/study_file.h; examples: configs/studies; on clusters: "
-        "analysis/sweep/Snakefile.",
-        fmt::join(run_keys(), ", "), keys, figures));
+        "analysis/sweep/Snakefile.\n\n{}",
+        fmt::join(run_keys(), ", "), keys, figures, razor::study_exit_codes));
 }
 
 int SweepCommand::run() const {
     try {
-        const razor::StudyProgram program = sweep_program();
+        razor::StudyProgram program = sweep_program();
         const analysis::Study study = options_.read(program);
         if (!study.rivals.empty() || !study.reference.empty())
             throw razor::UserError(
@@ -58,6 +58,7 @@ int SweepCommand::run() const {
                                     razor::watch_interrupts());
         const auto points = analysis::resolve_points(
             study, [&](const analysis::Point& point) { return machines.body(point); });
+        program.changed = [&](const analysis::Point& point) { return machines.changed(point); };
         const analysis::Store store(options_.folder());
         return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>& missing) {
             return std::vector<razor::StudyStage>{

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <set>
@@ -181,6 +182,9 @@ bool FigureChange::beyond_spread() const {
 }
 
 ReportFile read_report(const std::string& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+        throw ConfigError(fmt::format("{}: is a folder; give a report of razor-sim run --json", file));
     std::ifstream in(file);
     if (!in)
         throw ConfigError(fmt::format("{}: cannot be read; give a report of razor-sim run --json", file));

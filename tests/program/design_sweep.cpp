@@ -258,6 +258,13 @@ TEST_F(DesignSweep, RefusesMistakesWithOneLine) {
          "bad.toml:7:5: kdtree.share = \"chip\" is no number"},
         {"rank = [\"cycle\"]\n" + begin + "core.lanes = [4]\n",
          "bad.toml:1:8: there is no figure cycle; there are"},
+        {begin + "spp = [1]\n", "bad.toml:5:8: spp is samples among the settings of studies"},
+        {begin + "zzzzzzz = [1]\n", "unknown setting zzzzzzz; there are machine, workers"},
+        {begin + "size = [\"16x8\", \"0x0\"]\n", "bad.toml:5:17: the width of size '0' is not possible"},
+        {begin + "scene = [\"box.toml\", \"none.toml\"]\n",
+         "bad.toml:5:22: scene = \"none.toml\": there is no file none.toml"},
+        {begin + "l1.ways = [3]\n", "which l1.ways (3) of 64-byte lines do not divide"},
+        {begin + "l1.ways = [3]\n", "l1.ways from bad.toml"},
         {begin + "core.lanes = [4]\n[reference]\nsim.mode = \"reference\"\n", "leave out [reference]"},
         {"kind = \"machine\"\n[knobs]\ncore.lanes = [4]\n", "razor-sim sweep: sweep"},
     };
@@ -286,6 +293,42 @@ TEST_F(DesignSweep, RefusesMistakesWithOneLine) {
         EXPECT_EQ(result.error_lines(), 1) << result.err;
         EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
     }
+}
+
+// What changes while it is measured is no result of what was planned; nor is anything kept of it.
+TEST_F(DesignSweep, KeepsNothingOfFilesThatChange) {
+    const std::pair<const char*, const char*> edits[] = {{"tiny.toml", "[core]\nlanes = 16\n"},
+                                                         {"box.toml", "[[mesh]]\nshape = \"sphere\"\n"}};
+    for (const auto& [file, change] : edits) {
+        SCOPED_TRACE(file);
+        const std::string before = text(file);
+        ASSERT_EQ(sweep("sweep.toml plan -o s").code, 0);
+        std::thread editor([&, name = std::string(file), text = std::string(change)] {
+            while (!fs::exists(folder_ / "s/claims"))
+                std::this_thread::sleep_for(1ms);
+            folder_.file(name, text);
+        });
+        const Outcome result = sweep("sweep.toml run -o s --jobs 1");
+        editor.join();
+        EXPECT_EQ(result.code, 2) << result.out;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find(std::string(file) + ": was changed while the study ran"), std::string::npos)
+            << result.err;
+        folder_.file(file, before);
+        fs::remove_all(folder_ / "s/claims");
+        // What is there is right, and the rest is measured now.
+        ASSERT_EQ(sweep("sweep.toml run -o s").code, 0);
+        ASSERT_EQ(sweep("sweep.toml run -o t").code, 0);
+        EXPECT_EQ(results("s"), results("t"));
+        fs::remove_all(folder_ / "s");
+    }
+}
+
+TEST_F(DesignSweep, CollectsNothingWhereNothingIs) {
+    const Outcome result = sweep("sweep.toml collect -o nothere");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.err, "razor-sim: nothere: nothing measured there; run the step run first, or mend -o\n");
+    EXPECT_FALSE(fs::exists(folder_ / "nothere"));
 }
 
 // As they are shipped: their designs are possible.

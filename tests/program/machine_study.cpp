@@ -199,6 +199,16 @@ TEST_F(MachineStudy, LetsRunsChooseTheirFidelity) {
     EXPECT_EQ(text("plain/study.csv").find("fidelity"), std::string::npos);
 }
 
+TEST_F(MachineStudy, SaysWhyAFrontIsEmpty) {
+    std::string content = text("study.toml");
+    folder_.file("plain.toml", content.substr(0, content.find("[reference]")));
+    const Outcome plan = simulator("study plain.toml -o s --plan");
+    EXPECT_EQ(plan.code, 0) << plan.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "s"));
+    const Outcome all = simulator("study plain.toml -o s");
+    EXPECT_NE(all.out.find("(no point has cycles_error)"), std::string::npos) << all.out;
+}
+
 TEST_F(MachineStudy, SaysWhatIsImpossible) {
     std::string content = text("study.toml");
     content.replace(content.find("[8192, 16384]"), 13, "[8192, 500]");
@@ -215,6 +225,12 @@ TEST_F(MachineStudy, SaysWhatIsImpossible) {
         {"kind = \"machine\"\n[knobs]\nsim.quantum = [-1]\n", "bad.toml:3:16: "},
         {"kind = \"machine\"\n[knobs]\nworker = [1]\n", "unknown setting worker; did you mean workers?"},
         {"kind = \"machine\"\n[knobs]\nestimate = [\"half\"]\n", "sample:FRACTION"},
+        {"kind = \"machine\"\n[settings]\nmachine = \"tiny.toml\"\n[knobs]\nworkers = [1]\n[[plot]]\nx = "
+         "\"cycles\"\ny = \"cycles_error\"\n",
+         "bad.toml:8:5: cycles_error is measured beside a reference"},
+        {"kind = \"machine\"\n[settings]\nmachine = \"tiny.toml\"\n[knobs]\nworkers = [1]\n"
+         "[reference]\nl1.ways = 3\n",
+         "its reference, by [reference]: "},
         {"kind = \"image\"\n[knobs]\nsamples = [1]\n", "use the program that measures others"},
     };
     for (const auto& [bad, says] : cases) {

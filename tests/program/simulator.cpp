@@ -407,7 +407,7 @@ TEST_F(Simulator, TriesMemories) {
     ASSERT_EQ(simulator("dram --requests 1000 --controller immediate --machine " + tiny).code, 0);
 
     const std::size_t before = folder_.count();
-    for (const auto& [options, says] : {std::pair{"--preset ddr9", "memory.preset is \"ddr9\""},
+    for (const auto& [options, says] : {std::pair{"--preset ddr9", "--preset: memory.preset is \"ddr9\""},
                                         {"--stream zigzag", "zigzag"},
                                         {"--load 0", "--load '0'"},
                                         {"--load 1.1", "--load '1.1'"},
@@ -483,6 +483,13 @@ TEST_F(Simulator, RefusesBadMachinesAndOptions) {
         {"--machine good.toml -g sim.jitter=x", "-g sim.jitter=x"},
         {"--machin good.toml", "did you mean --machine?"},
         {"", "--machine is required"},
+        {"--machine good.toml --report \"\"", "--report: the name is empty; give a file"},
+        {"--machine good.toml --intervals \"\"", "--intervals: the name is empty; give a file"},
+        {"--machine good.toml --trace \"\"", "--trace: the name is empty; give a file"},
+        {"--machine good.toml -o \"\"", "--output: the name is empty; give a file"},
+        {"--machine good.toml --workers \"\"", "--workers: the value is empty; give one"},
+        {"--machine good.toml --trace -", "--trace: - stands for no file here; give its name"},
+        {"--machine good.toml --report -", "--report: - stands for no file here; give its name"},
     };
     const std::size_t before = folder_.count();
     for (const auto& [options, says] : cases) {

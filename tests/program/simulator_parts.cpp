@@ -55,6 +55,13 @@ TEST_F(Simulator, WritesATimeSeries) {
         EXPECT_EQ(sums["stack_" + cause], cycles) << cause;
     for (const std::string& name : names)
         EXPECT_EQ(simulator("explain intervals." + name).code, 0) << name;
+    for (const char* name : {"bandwidth.L1.utilisation", "cores.0.stack.idle", "dram_bytes", "l1_miss_rate",
+                             "binding_share", "built_megabytes", "cycles_error", "estimate.confidence",
+                             "estimate.figures.cycles.low", "fidelity.ways.0.state"})
+        EXPECT_EQ(simulator(std::string("explain ") + name).code, 0) << name;
+    EXPECT_NE(simulator("explain l1.hit").err.find("did you mean 'l1.hits'?"), std::string::npos);
+    for (const char* name : {"nothing", "nothing.idle.l1", "L1"})
+        EXPECT_EQ(simulator(std::string("explain ") + name).code, 2) << name;
 
     std::filesystem::remove(folder_ / "i.csv");
     std::filesystem::remove(folder_ / "a.json");

@@ -113,6 +113,7 @@ TEST(CompareReports, InventNothing) {
 TEST(CompareReports, AreOfReports) {
     EXPECT_THROW(read_report("/nowhere/report.json"), ConfigError);
     EXPECT_THROW(read_report(RAZOR_SOURCE_DIR "/README.md"), ConfigError);
+    EXPECT_THROW(read_report(RAZOR_SOURCE_DIR), ConfigError);
 }
 
 TEST(CompareReports, NamePartsThatNoRunWrites) {

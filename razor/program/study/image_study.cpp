@@ -114,6 +114,7 @@ StudyProgram image_study_program() {
                    {"built_megabytes", "what the frame built, MB"},
                    {"process_megabytes", "the process at most, MiB"}};
     out.vocabulary.kind = "image";
+    out.vocabulary.files = {"scene"};
     out.vocabulary.wrong = wrong_image_setting;
     out.name_figures();
     out.views.plots = {{"seconds", "rmse", {}}, {"seconds", "flip", {}}};
@@ -229,6 +230,10 @@ std::vector<Point> ImageStudy::references(const std::vector<Point>& points) cons
                 if (known.insert(one.name).second)
                     out.push_back(one);
     return out;
+}
+
+std::string ImageStudy::changed(const Point& point) const {
+    return changed_scene(known_only(point.settings), folder_, point.body);
 }
 
 Result ImageStudy::make_reference(const Point& reference, const analysis::Store& store) const {

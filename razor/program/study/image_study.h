@@ -31,6 +31,8 @@ public:
     analysis::Result make_reference(const analysis::Point& reference, const analysis::Store& store) const;
     /// Renders a point by all seeds, in this process, and compares it. Throws UserError, analysis::Stopped.
     analysis::Result measure(const analysis::Point& point, const analysis::Store& store) const;
+    /// The file of a point's scene that is no more what the point's body says, or nothing.
+    std::string changed(const analysis::Point& point) const;
 
 private:
     /// What is known of a scene of these settings.

@@ -1,6 +1,7 @@
 #include "razor/program/study/scene_knobs.h"
 
 #include "analysis/study/point.h"
+#include "razor/program/arguments.h"
 #include "razor/program/scene_options.h"
 #include "razor/scene/error.h"
 #include "razor/scene/nearest.h"
@@ -66,6 +67,22 @@ const SceneKnob* find_knob(std::string_view key) {
     return found == all.end() ? nullptr : &*found;
 }
 
+/// Of a picture's size.
+std::string wrong_size(const std::string& text) {
+    try {
+        parse_size("size", text, size_range);
+    } catch (const UserError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// Whether a word is so like another that it may be it, mistyped.
+bool is_near(std::string_view word, std::string_view other) {
+    const std::size_t shorter = std::min(word.size(), other.size());
+    return other.starts_with(word) || 2 * static_cast<std::size_t>(edit_distance(word, other)) <= shorter;
+}
+
 /// Of files that name nothing else.
 std::string bytes_digest(const fs::path& file) {
     std::error_code ignored;
@@ -96,14 +113,24 @@ std::optional<std::string> wrong_scene_setting(std::string_view key, Value& valu
     case SceneKnob::text:
         break;
     }
-    return wrong_word(key, value, knob->words);
+    std::string wrong = wrong_word(key, value, knob->words);
+    if (wrong.empty() && key == "size")
+        wrong = wrong_size(std::get<std::string>(value));
+    return wrong;
 }
 
 std::string unknown_setting(std::string_view key, const std::vector<std::string_view>& others) {
     std::vector<std::string_view> known = others;
-    for (const SceneKnob& knob : scene_knobs())
+    for (const SceneKnob& knob : scene_knobs()) {
+        if (knob.option == fmt::format("--{}", key))
+            return fmt::format("{} is {} among the settings of studies; write that", printable(key),
+                               knob.key);
         known.push_back(knob.key);
-    return fmt::format("unknown setting {}; did you mean {}?", printable(key), nearest(key, known));
+    }
+    const std::string_view other = nearest(key, known);
+    return is_near(key, other)
+               ? fmt::format("unknown setting {}; did you mean {}?", printable(key), other)
+               : fmt::format("unknown setting {}; there are {}", printable(key), fmt::join(known, ", "));
 }
 
 SceneDescription describe_scene(const analysis::Settings& settings, const fs::path& folder) {
@@ -170,6 +197,18 @@ std::string scene_digest(const analysis::Settings& settings, const fs::path& fol
     for (const std::string& one : contents)
         all += "\n" + one;
     return analysis::point_name(all);
+}
+
+std::string changed_scene(const analysis::Settings& settings, const fs::path& folder,
+                          const std::string& body) {
+    try {
+        if (body.find(scene_digest(settings, folder, describe_scene(settings, folder))) != std::string::npos)
+            return "";
+    } catch (const std::exception&) {
+        // It cannot be read any more.
+    }
+    const auto scene = settings.find("scene");
+    return scene == settings.end() ? "the scene" : (folder / plain_text(scene->second)).string();
 }
 
 } // namespace razor

@@ -42,6 +42,17 @@ private:
     bool shown_;
 };
 
+constexpr const char* again_hint = " (--again measures what failed anew)";
+
+/// Of a plot that shows no point.
+std::string why_empty(const analysis::Collection& all, const analysis::PlotRequest& plot) {
+    for (const std::string& figure : {plot.y, plot.x})
+        if (std::all_of(all.points.begin(), all.points.end(),
+                        [&](const analysis::CollectedPoint& point) { return point.samples(figure).empty(); }))
+            return "no point has " + figure;
+    return "no point has both above zero";
+}
+
 /// Why the first point that failed did.
 std::string first_failure(const std::vector<analysis::Point>& points, const analysis::Store& store) {
     for (const analysis::Point& point : points)
@@ -161,6 +172,12 @@ int StudyOptions::run(
                                         [&](const analysis::Point& point) { return point.name == point_; }))
         throw UserError(fmt::format("{}: there is no point {}; the step plan lists them", study.file,
                                     printable(point_, 100)));
+    const bool collects_alone = collect_ || step_ == "collect";
+    if (collects_alone && std::none_of(points.begin(), points.end(),
+                                       [&](const analysis::Point& point) { return store.is_done(point); }))
+        throw UserError(fmt::format("{}: nothing measured there; {}, or mend -o",
+                                    printable(store.folder().string(), 300),
+                                    timed_ ? "measure first, without --collect" : "run the step run first"));
     analysis::RunSummary all;
     if (!collect_ && wants("run")) {
         analysis::RunOptions options;
@@ -168,6 +185,7 @@ int StudyOptions::run(
         options.stop = &watch_interrupts();
         options.again_failed = again_;
         options.jobs = timed_ ? 1 : jobs();
+        options.changed = program.changed;
         const auto [part, parts] = this->part();
         std::vector<analysis::Point> missing;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -208,15 +226,17 @@ int StudyOptions::run(
             ++failed_before;
     failed_before -= std::min(failed_before, all.failed);
     if (!quiet_)
-        fmt::print("{} measured, {} of them failed; {} were there{}\n", all.measured, all.failed, all.kept,
-                   failed_before == 0 ? "" : fmt::format(", {} of them failed", failed_before));
+        fmt::print("{} measured, {} of them failed; {} were there{}{}\n", all.measured, all.failed, all.kept,
+                   failed_before == 0 ? "" : fmt::format(", {} of them failed", failed_before),
+                   all.failed + failed_before == 0 ? "" : again_hint);
     return 0;
 }
 
 void StudyOptions::print_plan(const analysis::Study& study, const std::vector<analysis::Point>& points,
                               const analysis::Store& store) const {
     for (const analysis::Point& point : points) {
-        store.write_point(point);
+        if (!plan_)
+            store.write_point(point);
         if (!quiet_)
             fmt::print("{} {}{}\n", point.name, analysis::settings_text(point, study.knobs),
                        point.impossible.empty() ? store.is_done(point) ? " (done)" : ""
@@ -235,10 +255,13 @@ int StudyOptions::collect(const StudyProgram& program, const analysis::Study& st
                    program.name.substr(0, program.name.find(' ')), study.file, first_failure(points, store));
     if (quiet_)
         return code;
-    fmt::print("{} points: {} measured, {} failed, {} missing\n", points.size(),
-               points.size() - all.failed - all.missing, all.failed, all.missing);
+    fmt::print("{} points: {} measured, {} failed, {} missing{}\n", points.size(),
+               points.size() - all.failed - all.missing, all.failed, all.missing,
+               all.failed == 0 ? "" : again_hint);
     for (const analysis::CollectedPlot& plot : all.plots) {
         fmt::print("\n{} over {}: the Pareto front\n", plot.request.y, plot.request.x);
+        if (plot.chart.empty())
+            fmt::print("  ({})\n", why_empty(all, plot.request));
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (plot.standing[i] != analysis::Standing::front && plot.standing[i] != analysis::Standing::tied)
                 continue;

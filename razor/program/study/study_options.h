@@ -22,6 +22,8 @@ struct StudyProgram {
     std::vector<analysis::Figure> figures;
     analysis::Views views;            // of studies that ask for none
     std::vector<std::string> remarks; // for the page: what figures mean
+    /// As analysis::RunOptions has it, of points and of what they are compared with.
+    std::function<std::string(const analysis::Point& point)> changed{};
 
     /// The vocabulary's figures are these.
     void name_figures() {
@@ -36,6 +38,11 @@ struct StudyStage {
     analysis::Measure measure;
     bool shared = false; // by all parts of a study
 };
+
+/// What --help says at its end.
+inline constexpr const char* study_exit_codes =
+    "Exit codes: 0 where anything was measured, even if some points failed (the summary says how many); 1 "
+    "where all failed; 2 for a mistake in the command or its files; 130 where it was interrupted.";
 
 /// What the program's figures allow.
 enum class StudyKind {

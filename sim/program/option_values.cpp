@@ -1,0 +1,36 @@
+#include "sim/program/option_values.h"
+
+#include "razor/scene/error.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace sim {
+namespace {
+
+void check_option(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const bool folder = type.starts_with("FOLDER"), named = folder || type.starts_with("FILE");
+    for (const std::string& value : option.results()) {
+        if (value.empty())
+            throw razor::UserError(fmt::format("{}: the {} is empty; give {}", option.get_name(),
+                                               named ? "name" : "value",
+                                               folder  ? "a folder"
+                                               : named ? "a file"
+                                                       : "one"));
+        if (named && value == "-")
+            throw razor::UserError(fmt::format("{}: - stands for no {} here; give its name",
+                                               option.get_name(), folder ? "folder" : "file"));
+    }
+}
+
+} // namespace
+
+void check_values(const CLI::App& app) {
+    for (const CLI::App* const command : app.get_subcommands())
+        for (const CLI::Option* const option : command->get_options())
+            check_option(*option);
+}
+
+} // namespace sim

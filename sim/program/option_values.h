@@ -1,0 +1,12 @@
+// What options may not have as their values, whatever they mean.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace sim {
+
+/// Throws razor::UserError where an option of the subcommand that was given has an empty value, or - in the
+/// place of a file or a folder.
+void check_values(const CLI::App& app);
+
+} // namespace sim
