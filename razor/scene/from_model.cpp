@@ -18,7 +18,7 @@ namespace razor {
 namespace {
 
 bool is_called(const auto& carried, const std::string& name) {
-    return name.empty() || carried.node_name == name || carried.name == name;
+    return name.empty() || carried.node_name == name || carried.name == name || carried.called() == name;
 }
 
 /// Null: there is none.

@@ -20,7 +20,7 @@ std::string message_of(const std::string& bytes, const char* name = "m.gltf") {
     try {
         read_gltf(folder.file(name, bytes), "", 0);
     } catch (const UserError& error) {
-        const std::string message = error.what(), prefix = (folder / name).string() + ": ";
+        const std::string message = error.what(), prefix = (folder / name).string() + ":";
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
         EXPECT_NE(message.find(';'), std::string::npos) << message;
         EXPECT_TRUE(message.starts_with(prefix)) << message;
@@ -202,7 +202,32 @@ TEST(GltfReader, RefusesClearly) {
         {[](GltfWriter& w) { w.json["nodes"][0]["weights"] = {1}; }, "1 numbers, not 0"},
         {[](GltfWriter& w) { w.json["scene"] = 4; }, "scene 4"},
         {[](GltfWriter& w) { w.json["scenes"][0]["nodes"] = {7}; }, "node 7"},
-        {[](GltfWriter& w) { w.json["nodes"][0]["skin"] = 0; }, "skin 0, but the file has 0"},
+        {[](GltfWriter& w) { w.json["nodes"][0]["skin"] = 0; }, "node 0 names skin 0, but the file has 0"},
+        {[](GltfWriter& w) {
+             w.json["nodes"][0]["skin"] = w.add("skins", {{"joints", GltfWriter::Json::array()}});
+         },
+         "skin 0 has no joints"},
+        {[](GltfWriter& w) {
+             w.json["skins"] = {{{"name", "s"}}};
+         },
+         "skin 0 has no joints"},
+        {[](GltfWriter& w) { w.json["nodes"][0]["translation"] = "x"; },
+         "node 0 has translation \"x\", which is no list of numbers"},
+        {[](GltfWriter& w) {
+             w.json["nodes"][0]["rotation"] = {{"x", 1}};
+         },
+         "node 0 has rotation {"},
+        {[](GltfWriter& w) { w.json["nodes"][0]["scale"] = true; }, "node 0 has scale true"},
+        {[](GltfWriter& w) { w.json["nodes"][0]["matrix"] = nullptr; }, "node 0 has matrix null"},
+        {[](GltfWriter& w) {
+             w.json["nodes"][0]["scale"] = {1, 1, GltfWriter::Json::array({1})};
+         },
+         "node 0 has scale [1,1,[1]]"},
+        {[](GltfWriter& w) { w.json["bufferViews"][0]["byteOffset"] = -4; },
+         "buffer view 0 has byteOffset -4, which is no number of bytes"},
+        {[](GltfWriter& w) { w.json["bufferViews"][0]["byteStride"] = 12.5; }, "has byteStride 12.5"},
+        {[](GltfWriter& w) { w.json["accessors"][0]["byteOffset"] = "0"; },
+         "accessor 0 has byteOffset \"0\""},
         {[](GltfWriter& w) {
              w.json["nodes"][0]["skin"] = w.add("skins", {{"joints", {9}}});
          },
@@ -245,6 +270,7 @@ TEST(GltfReader, RefusesClearly) {
               std::string::npos);
     EXPECT_NE(message_of(std::string(100000, '[')).find("brackets"), std::string::npos);
     EXPECT_NE(message_of("v 0 0 0\n").find("is no glTF file"), std::string::npos);
+    EXPECT_TRUE(message_of("{\n  \"asset\": ,\n}\n").starts_with("2:12: is no glTF file, or broken;"));
 }
 
 // No shell expansion, and nothing from the working folder.

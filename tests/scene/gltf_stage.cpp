@@ -207,6 +207,7 @@ TEST_F(GltfStageTest, CamerasAreChosenByName) {
     EXPECT_NE(message("[[light]]\nfrom = \"m.glb\"\nname = \"x\"\n")
                   .find("no light is named 'x'; there are: Sun, Lamp, light of node 4"),
               std::string::npos);
+    EXPECT_EQ(message("[[light]]\nfrom = \"m.glb\"\nname = \"light of node 4\"\n"), "") << "as it is called";
 }
 
 /// What the camera shows is seen in pictures of any shape.

@@ -52,6 +52,69 @@ void append_chunk(std::string& bytes, std::uint32_t type, std::string_view conte
     bytes.append(padded - content.size(), padding);
 }
 
+/// The parser passes over members of wrong types: those that would draw something else are found before.
+class TypeCheck {
+public:
+    TypeCheck(const nlohmann::json& text, std::string_view file) : text_(text), file_(file) {}
+
+    void run() {
+        each(text_, "nodes", "node", [&](const nlohmann::json& node, const std::string& what) {
+            for (const char* const key : {"translation", "rotation", "scale", "matrix"})
+                numbers(node, key, what);
+        });
+        each(text_, "bufferViews", "buffer view", [&](const nlohmann::json& view, const std::string& what) {
+            for (const char* const key : {"byteOffset", "byteLength", "byteStride"})
+                bytes(view, key, what);
+        });
+        each(text_, "accessors", "accessor", [&](const nlohmann::json& accessor, const std::string& what) {
+            bytes(accessor, "byteOffset", what);
+            const auto sparse = accessor.find("sparse");
+            if (sparse == accessor.end() || !sparse->is_object())
+                return;
+            for (const char* const part : {"indices", "values"})
+                if (const auto found = sparse->find(part); found != sparse->end() && found->is_object())
+                    bytes(*found, "byteOffset", what + " sparse " + part);
+        });
+        each(text_, "skins", "skin", [&](const nlohmann::json& skin, const std::string& what) {
+            const auto joints = skin.find("joints");
+            if (joints == skin.end() || !joints->is_array() || joints->empty())
+                fail(file_, what + " has no joints; export it anew");
+        });
+    }
+
+private:
+    template <class Check>
+    static void each(const nlohmann::json& text, const char* list, const char* kind, const Check& check) {
+        const auto found = text.find(list);
+        if (found == text.end() || !found->is_array())
+            return;
+        for (std::size_t i = 0; i < found->size(); ++i)
+            if ((*found)[i].is_object())
+                check((*found)[i], fmt::format("{} {}", kind, i));
+    }
+    void numbers(const nlohmann::json& object, const char* key, const std::string& what) const {
+        const auto found = object.find(key);
+        if (found != object.end() &&
+            !(found->is_array() && std::all_of(found->begin(), found->end(),
+                                               [](const nlohmann::json& x) { return x.is_number(); })))
+            refuse(*found, key, what, "is no list of numbers");
+    }
+    void bytes(const nlohmann::json& object, const char* key, const std::string& what) const {
+        const auto found = object.find(key);
+        if (found != object.end() && !found->is_number_unsigned())
+            refuse(*found, key, what, "is no number of bytes");
+    }
+    [[noreturn]] void refuse(const nlohmann::json& value, const char* key, const std::string& what,
+                             std::string_view is) const {
+        fail(file_, fmt::format(
+                        "{} has {} {}, which {}; export it anew", what, key,
+                        printable(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)), is));
+    }
+
+    const nlohmann::json& text_;
+    std::string_view file_;
+};
+
 /// What the text is asked for before anything else reads it.
 void summarise(const nlohmann::json& text, Container& container) {
     const auto list = [](const nlohmann::json& object, const char* key) {
@@ -118,6 +181,7 @@ void sift(std::string_view text, std::string_view file, Container& container) {
         json sifted = json::parse(text, keep);
         if (!sifted.is_object())
             fail(file, "holds no JSON object; give a glTF file");
+        TypeCheck(sifted, file).run();
         summarise(sifted, container);
         json apart = json::object();
         for (const std::string_view list : of_appearance)
@@ -128,6 +192,16 @@ void sift(std::string_view text, std::string_view file, Container& container) {
         container.stage = stage_of(sifted);
         container.json = sifted.dump(-1, ' ', false, json::error_handler_t::replace);
         container.appearance = apart.dump(-1, ' ', false, json::error_handler_t::replace);
+    } catch (const json::parse_error& error) {
+        const std::string_view read =
+            text.substr(0, std::min(text.size(), std::max<std::size_t>(error.byte, 1) - 1));
+        const std::size_t line_begin = read.rfind('\n') + 1; // 0 where there is none
+        const std::string place = fmt::format("{}:{}", 1 + std::count(read.begin(), read.end(), '\n'),
+                                              read.size() - line_begin + 1);
+        if (container.is_binary)
+            fail(file, fmt::format("its JSON is broken at {}; export it anew", place));
+        throw UserError(
+            fmt::format("{}:{}: is no glTF file, or broken; export it anew", printable(file, 1000), place));
     } catch (const json::exception& error) {
         fail(file, fmt::format("is no glTF file ({}); export it anew", printable(error.what(), 200)));
     }

@@ -43,7 +43,8 @@ public:
 private:
     void read_joints() {
         const std::string what = fmt::format("skin {}", node_.skin);
-        const SkinEntry& listed = entry(document_, document_.skins, node_.skin, "skin", what);
+        const SkinEntry& listed = entry(document_, document_.skins, node_.skin, "skin",
+                                        fmt::format("node {}", vertices_.skin.node));
         Skin& skin = vertices_.skin;
         skin.joints = listed.joints;
         if (skin.joints.empty())
