@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
@@ -52,14 +53,14 @@ std::string without_number(std::string_view name) {
     return rest;
 }
 
-std::optional<std::pair<int, int>> numbers_there(const std::string& name) {
+std::vector<int> numbers_there(const std::string& name) {
     const std::filesystem::path path(name);
     const std::string leaf = path.filename().string();
     const Place at = find_number(leaf);
     if (at.length == 0) {
-        return std::nullopt;
+        return {};
     }
-    std::optional<int> least;
+    std::vector<int> numbers;
     std::error_code error;
     const auto folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
     for (auto entry = std::filesystem::directory_iterator(folder, error);
@@ -71,16 +72,10 @@ std::optional<std::pair<int, int>> numbers_there(const std::string& name) {
             number < 0 || numbered(leaf, number) != file) {
             continue;
         }
-        least = std::min(least.value_or(number), number);
+        numbers.push_back(number);
     }
-    if (!least) {
-        return std::nullopt;
-    }
-    int last = *least;
-    while (std::filesystem::exists(numbered(name, last + 1), error)) {
-        ++last;
-    }
-    return std::pair(*least, last);
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
 }
 
 } // namespace razor

@@ -1,10 +1,9 @@
 // File names with the place of a number in them: picture_%d.png, walk_%03d.obj.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <vector>
 
 namespace razor {
 
@@ -18,8 +17,8 @@ std::string numbered(std::string_view name, int number);
 /// The name without the place of a number, and without `_`, `-` or `.` left at its end.
 std::string without_number(std::string_view name);
 
-/// The least number for which there is such a file, and the last one from there without a gap. The number's
-/// place must be in the name, not in its folder's.
-std::optional<std::pair<int, int>> numbers_there(const std::string& name);
+/// All numbers for which there is such a file, in order. The number's place must be in the name, not in its
+/// folder's.
+std::vector<int> numbers_there(const std::string& name);
 
 } // namespace razor

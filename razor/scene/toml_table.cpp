@@ -301,7 +301,12 @@ void TomlTable::finish() const {
     if (table_ == nullptr) {
         return;
     }
-    const std::vector<std::string_view> known(asked_.begin(), asked_.end());
+    std::vector<std::string_view> known; // each once, as asked for
+    for (const std::string& key : asked_) {
+        if (std::find(known.begin(), known.end(), key) == known.end()) {
+            known.emplace_back(key);
+        }
+    }
     const toml::key* first = nullptr; // in the order of the file, not of the alphabet
     for (auto&& [key, value] : *table_) {
         if (std::find(known.begin(), known.end(), key.str()) == known.end() &&

@@ -90,7 +90,7 @@ TEST_F(ObjFrames, AllThereAreUnlessSomeAreNamed) {
     folder_.file("w_08.obj", square(1));
     folder_.file("w_008.obj", square(1));
     folder_.file("w_2.obj", square(1));
-    EXPECT_EQ(scene("").meshes[0].playback.frames, std::pair(3, 6)) << "up to the first gap";
+    EXPECT_EQ(scene("frames = [3, 6]\n").meshes[0].playback.frames, std::pair(3, 6)) << "up to the gap";
     EXPECT_EQ(scene("frames = [8, 8]\n").meshes[0].playback.frames, std::pair(8, 8));
     EXPECT_NE(message("frames = [5, 8]\n").find("w_07.obj: no such file, of frames 5 to 8"),
               std::string::npos)
@@ -149,6 +149,23 @@ TEST_F(ObjFrames, MistakesAreNamed) {
         EXPECT_NE(cause.find("s.toml:3:"), std::string::npos) << cause << key;
     }
     EXPECT_THROW(describe(folder_ / "none_%d.obj", {}), UserError);
+}
+
+TEST_F(ObjFrames, KnownKeysAreListedOnce) {
+    const std::string said = message("nosuch = 1\n");
+    EXPECT_EQ(said.find("moment"), said.rfind("moment")) << said;
+    EXPECT_NE(said.find("moment"), std::string::npos) << said;
+}
+
+TEST_F(ObjFrames, AGapIsSaid) {
+    folder_.file("w_08.obj", square(1));
+    EXPECT_NE(message("").find("w_07.obj: no such file, but there are some up to number 8; add it"),
+              std::string::npos)
+        << message("");
+    EXPECT_NE(message("").find("frames = [3, 6]"), std::string::npos) << message("");
+    EXPECT_EQ(message("frames = [3, 6]\n"), "");
+    folder_.file("w_07.obj", square(1));
+    EXPECT_EQ(message(""), "");
 }
 
 /// The points of one deformer at work on these.

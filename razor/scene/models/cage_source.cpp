@@ -17,11 +17,18 @@ namespace razor {
 namespace {
 
 std::pair<int, int> all_frames(const std::string& file) {
-    const auto numbers = numbers_there(file);
-    if (!numbers)
+    const std::vector<int> numbers = numbers_there(file);
+    if (numbers.empty())
         throw UserError(
             fmt::format("{}: there is no such file of any number; check the path", printable(file, 1000)));
-    return *numbers;
+    const auto gap = std::adjacent_find(numbers.begin(), numbers.end(),
+                                        [](int number, int next) { return next != number + 1; });
+    if (gap == numbers.end())
+        return {numbers.front(), numbers.back()};
+    throw UserError(
+        fmt::format("{}: no such file, but there are some up to number {}; add it, or write which "
+                    "to read into a scene file's [[mesh]]: frames = [{}, {}]",
+                    printable(numbered(file, *gap + 1), 1000), numbers.back(), numbers.front(), *gap));
 }
 
 /// All that what is read depends on.
