@@ -237,9 +237,11 @@ TEST_F(Mtl, FacesHaveTheirMaterials) {
     for (const char* const text : {"mtllib none.mtl\nusemtl blue\nf 1 2 3\n", "mtllib l.mtl\nf 1 2 3\n",
                                    "usemtl blue\nf 1 2 3\n", "mtllib l.mtl\nusemtl x\nf 1 2 3\n"}) {
         const Mesh none = obj(text);
-        EXPECT_EQ(none.own_materials, nullptr) << text;
+        const bool noted = none.own_materials != nullptr; // for its notes alone
+        EXPECT_TRUE(!noted || (none.own_materials->materials.empty() && !none.own_materials->notes.empty()))
+            << text;
         EXPECT_TRUE(none.face_materials.empty()) << text;
-        EXPECT_EQ(none.material, 0) << text;
+        EXPECT_EQ(none.material, noted ? -1 : 0) << text;
     }
 }
 
@@ -296,6 +298,25 @@ TEST_F(Mtl, OwnMaterialsComeBehindTheScenes) {
     const SceneDescription again = parse_scene_file(printed, "s.toml", "/nowhere");
     expect_same(build_scene(again), scene);
     EXPECT_EQ(to_toml(again), printed);
+}
+
+TEST_F(Mtl, WhatNoLibraryHasIsNoted) {
+    folder_.file("l.mtl", "newmtl red\nKd 1 0 0\n");
+    const auto notes = [&](const std::string& lines) {
+        folder_.file("o.obj", points + lines + "f 1 2 3\n");
+        return notes_of(parse_scene_file("[[mesh]]\nfile = \"o.obj\"\n", "s.toml", folder_.path()));
+    };
+    const std::string file = (folder_ / "o.obj").string();
+    EXPECT_EQ(notes("mtllib l.mtl\nusemtl red\n"), std::vector<std::string>{});
+    EXPECT_EQ(notes("usemtl red\n"), std::vector<std::string>{}) << "it names none";
+    EXPECT_EQ(notes("mtllib none.mtl\nusemtl red\n"),
+              std::vector{file + ": no material library 'none.mtl'; put it beside the model"});
+    EXPECT_EQ(notes("mtllib l.mtl none.mtl\nusemtl red\n"),
+              std::vector{file + ": no material library 'none.mtl'; put it beside the model"});
+    EXPECT_EQ(notes("mtllib l.mtl\nusemtl red\nf 1 2 3\nusemtl blue\n"),
+              std::vector{file + ": its libraries have no material 'blue'; add it to one"});
+    EXPECT_EQ(notes("mtllib l.mtl\nusemtl blue\n"),
+              std::vector{file + ": its libraries have no material 'blue'; add it to one"});
 }
 
 TEST_F(Mtl, FramesOfASequenceHaveTheFirstOnesMaterials) {

@@ -4,6 +4,8 @@
 #include "razor/scene/models/own_materials.h"
 #include "razor/scene/text_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -12,22 +14,45 @@ namespace {
 
 constexpr std::string_view an_obj_file = "an OBJ file";
 
-/// Files that an mtllib line names: all of it one, or each word one.
+/// Files that an mtllib line names: all of it one, or each word one; and the names of those that are not
+/// there.
 std::vector<std::filesystem::path> libraries_there(const std::filesystem::path& folder,
-                                                   const std::string& named) {
+                                                   const std::string& named,
+                                                   std::vector<std::string>& missing) {
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::string& name) {
         const std::filesystem::path file = find_beside(folder, name);
         if (!file.empty())
             files.push_back(file);
+        return !file.empty();
     };
-    add(named);
-    if (files.empty()) {
-        std::istringstream words(named);
-        for (std::string word; words >> word;)
-            add(word);
-    }
+    if (add(named))
+        return files;
+    std::istringstream words(named);
+    for (std::string word; words >> word;)
+        if (!add(word))
+            missing.push_back(word);
     return files;
+}
+
+std::string quoted(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 8;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+        list += fmt::format("{}'{}'", i == 0 ? "" : ", ", printable(names[i]));
+    return names.size() > most ? fmt::format("{} and {} more", list, names.size() - most) : list;
+}
+
+/// Of materials that faces name and no library has.
+void note_unknown(ModelMaterials& own, const std::vector<std::string>& names, const std::string& file) {
+    std::vector<std::string> unknown;
+    for (const std::string& name : names)
+        if (std::none_of(own.materials.begin(), own.materials.end(),
+                         [&](const Material& m) { return m.name == name; }))
+            unknown.push_back(name);
+    if (!unknown.empty())
+        own.notes.push_back(fmt::format("{}: its libraries have no material {}; add it to one",
+                                        printable(file, 1000), quoted(unknown)));
 }
 
 /// Indices into names become those into own materials.
@@ -52,10 +77,16 @@ Mesh read_obj(const std::filesystem::path& path, TextureCache& textures) {
     ModelMaterials own;
     if (!stated.names.empty()) {
         MtlReader reader(stated.names, textures);
+        std::vector<std::string> missing;
         for (const std::string& library : stated.libraries)
-            for (const std::filesystem::path& file : libraries_there(path.parent_path(), library))
+            for (const std::filesystem::path& file : libraries_there(path.parent_path(), library, missing))
                 reader.read(file);
         own = reader.finish();
+        if (!missing.empty())
+            own.notes.push_back(fmt::format("{}: no material library {}; put it beside the model",
+                                            printable(path.string(), 1000), quoted(missing)));
+        else if (!stated.libraries.empty())
+            note_unknown(own, stated.names, path.string());
     }
     use(mesh, stated.names, std::make_shared<const ModelMaterials>(std::move(own)));
     return mesh;

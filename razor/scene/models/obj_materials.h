@@ -1,7 +1,8 @@
 // OBJ cages with the materials of their libraries.
 //
 // Libraries are files beside the model. Of those that are not there nothing is known, and faces whose
-// material no library has are of none; where that goes for all, the cage has no materials of its own.
+// material no library has are of none; where that goes for all, the cage has no materials of its own. Both
+// are noted where the model names libraries.
 #pragma once
 
 #include "razor/scene/models/obj_reader.h"

@@ -8,7 +8,8 @@ namespace razor {
 void set_own_materials(Mesh& mesh, std::shared_ptr<const ModelMaterials> own) {
     if (own->materials.empty()) {
         mesh.face_materials.clear();
-        return;
+        if (own->notes.empty())
+            return;
     }
     std::vector<int>& of_faces = mesh.face_materials;
     if (of_faces.empty()) {

@@ -6,7 +6,8 @@
 namespace razor {
 
 /// `mesh.face_materials`: indices into `own`, -1 standing for none, or empty: none. Where all faces are of
-/// one, Mesh::material alone says so. If `own` is empty, the cage has none of its own.
+/// one, Mesh::material alone says so. If `own` has none, the cage has none of its own, and
+/// keeps it for its notes alone.
 void set_own_materials(Mesh& mesh, std::shared_ptr<const ModelMaterials> own);
 
 } // namespace razor
