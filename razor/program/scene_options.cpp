@@ -113,7 +113,16 @@ int SceneOptions::frame() const {
     return frame_.empty() ? 0 : parse_whole("--frame", frame_, frame_range);
 }
 
+SceneDescription SceneOptions::describe_alone() const {
+    const int asked = frame();
+    return pose_of_frame(describe_moving(false), asked);
+}
+
 SceneDescription SceneOptions::describe_moving() const {
+    return describe_moving(!no_floor_);
+}
+
+SceneDescription SceneOptions::describe_moving(bool floor) const {
     // Wrong values are found before any file is read.
     const auto override_settings = [this](Settings& settings) {
         if (!size_.empty()) {
@@ -170,7 +179,7 @@ SceneDescription SceneOptions::describe_moving() const {
     override_settings(framing.settings);
     constexpr std::array<std::string_view, 2> axes{"y", "z"};
     framing.up = parse_choice("--up", up_, axes) == 0 ? Up::y : Up::z;
-    framing.floor = !no_floor_;
+    framing.floor = floor;
     const bool bare = !scene_.empty() && !scene_.ends_with(".toml");
     if (!bare && framing.up != Up::y) {
         throw UserError(
@@ -194,7 +203,8 @@ SceneDescription SceneOptions::describe_moving() const {
     SceneDescription scene = built_in ? default_scene() : razor::describe(scene_, framing);
     override_settings(scene.settings);
     // Of either the file or the options, the other may have changed what it must lie in.
-    const std::string wrong = mistake_of_crop(scene.settings);
+    const std::string wrong =
+        mistake_of_crop(crop_.empty() ? shown_part(scene.settings) : scene.settings.crop, scene.settings);
     if (!wrong.empty()) {
         throw UserError(fmt::format("{}: {}", crop_.empty() ? scene_ : "--crop", wrong));
     }

@@ -18,6 +18,8 @@ public:
     /// The scene that the parsed options ask for, in the frame that they ask for; the built-in one where none
     /// is named. Throws UserError.
     SceneDescription describe() const;
+    /// ... a bare model without the floor that pictures give it.
+    SceneDescription describe_alone() const;
     /// ... with all that moves.
     SceneDescription describe_moving() const;
     /// Of --frame, and whether it was given.
@@ -29,6 +31,8 @@ public:
     bool edge_pixels_given() const { return !edge_pixels_.empty(); }
 
 private:
+    SceneDescription describe_moving(bool floor) const;
+
     std::string scene_, size_, crop_, samples_, noise_threshold_, filter_, filter_radius_, light_samples_,
         light_choices_, sky_samples_, bounces_, diffuse_bounces_, seed_, edge_pixels_, lod_, shading_,
         scheme_, frame_, crease_angle_, up_ = "y";

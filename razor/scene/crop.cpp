@@ -4,8 +4,7 @@
 
 namespace razor {
 
-std::string mistake_of_crop(const Settings& s) {
-    const Crop part = shown_part(s);
+std::string mistake_of_crop(const Crop& part, const Settings& s) {
     if (part.width > 0 && part.height > 0 && part.x + part.width <= s.width &&
         part.y + part.height <= s.height) {
         return {};

@@ -7,7 +7,8 @@
 
 namespace razor {
 
-/// What is wrong with a crop that was set and how to mend it; empty where nothing is.
-std::string mistake_of_crop(const Settings& settings);
+/// What is wrong with a crop that was set, in pictures of these settings, and how to mend it; empty where
+/// nothing is.
+std::string mistake_of_crop(const Crop& part, const Settings& settings);
 
 } // namespace razor

@@ -42,7 +42,7 @@ Settings read_settings(TomlTable table) {
     settings.height = height;
     if (const auto crop = table.four_whole("crop", crop_range)) {
         settings.crop = {(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
-        const std::string wrong = mistake_of_crop(settings);
+        const std::string wrong = mistake_of_crop(settings.crop, settings);
         if (!wrong.empty()) {
             table.fail("crop", wrong);
         }

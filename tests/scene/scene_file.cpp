@@ -218,6 +218,7 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
         {"[settings]\nsize = [512, true]\n" + mesh, "settings.size is true or false"},
         {"[settings]\ncrop = [0, 0, 9]\n" + mesh,
          "s.toml:2:8: settings.crop is an array of 3; write four whole numbers [a, b, c, d]"},
+        {"[settings]\ncrop = [0, 0, 0, 0]\n" + mesh, "the crop of 0 x 0 pixels at (0, 0) is not a part"},
         {"[settings]\ncrop = [-1, 0, 9, 9]\n" + mesh, "settings.crop = -1 is out of range"},
         {"[settings]\nsize = [64, 32]\ncrop = [32, 30, 32, 3]\n" + mesh,
          "s.toml:3:8: the crop of 32 x 3 pixels at (32, 30) is not a part of a picture of 64 x 32; give"},
