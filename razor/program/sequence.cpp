@@ -20,6 +20,10 @@ FrameRange parse_frames(std::string_view text) {
 }
 
 void check_numbered(std::string_view option, std::string_view name, const FrameRange& frames) {
+    if (has_number(numbered(name, 0))) {
+        throw UserError(fmt::format("{} {}: has more than one place for a number; keep one", option,
+                                    printable(name, 1000)));
+    }
     if (frames.count() == 1 || has_number(name)) {
         return;
     }

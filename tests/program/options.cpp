@@ -64,6 +64,8 @@ TEST(Sequence, FramesAndTheirFiles) {
     EXPECT_EQ(numbered("%s%0d%.png", 1), "%s%0d%.png") << "no number";
     EXPECT_NO_THROW(check_numbered("-o", "one.png", {4, 4}));
     EXPECT_NO_THROW(check_numbered("-o", "%d.png", {4, 9}));
+    EXPECT_THROW(check_numbered("-o", "%d_%04d.png", {4, 9}), UserError);
+    EXPECT_THROW(check_numbered("-o", "%d_%d.png", {4, 4}), UserError);
     try {
         check_numbered("-o", "a/one.png", {4, 9});
         FAIL();
@@ -140,6 +142,7 @@ TEST(SceneOptions, CropAPartOfThePicture) {
                   "Y, WIDTH and HEIGHT of one that is");
     EXPECT_TRUE(complaint({file, "--crop", "60,0,5,5"}).starts_with("--crop: the crop of 5 x 5 pixels"));
     EXPECT_TRUE(complaint({file, "--crop", "0,0,0,5"}).starts_with("--crop: the crop of 0 x 5 pixels"));
+    EXPECT_TRUE(complaint({file, "--crop", "0,0,0,0"}).starts_with("--crop: the crop of 0 x 0 pixels"));
     for (const char* wrong : {"1,2,3", "1,2,3,4,5", "1,2,3,", "a,2,3,4", "1,2,-3,4"})
         EXPECT_TRUE(complaint({file, "--crop", wrong}).starts_with("--crop")) << wrong;
 }
