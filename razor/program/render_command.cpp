@@ -1,5 +1,6 @@
 #include "razor/program/render_command.h"
 
+#include "analysis/images/image_file.h"
 #include "razor/image/output.h"
 #include "razor/image/output_file.h"
 #include "razor/program/arguments.h"
@@ -20,6 +21,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <sstream>
 #include <thread>
@@ -66,6 +68,28 @@ void check_readable(const std::string& scene) {
     }
 }
 
+bool is_file(const std::string& name) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(name, error);
+}
+
+/// Whether it can be read to its end, and has this size: not what another program or a crash left.
+bool is_whole_picture(const std::string& name, int width, int height) {
+    if (!is_file(name))
+        return false;
+    try {
+        const analysis::ImageFile picture = analysis::read_image(name);
+        return picture.width == width && picture.height == height;
+    } catch (const analysis::ImageError&) {
+        return false;
+    }
+}
+
+bool is_whole_json(const std::string& name) {
+    std::ifstream file(name, std::ios::binary);
+    return is_file(name) && nlohmann::json::accept(file);
+}
+
 } // namespace
 
 void RenderCommand::add_to(CLI::App& app) {
@@ -96,7 +120,8 @@ void RenderCommand::add_to(CLI::App& app) {
                     "render a sequence: these frames of what moves, each to its own files, whose names have "
                     "%d or %04d where the number comes; with a line of figures for each")
         ->type_name("FIRST:LAST");
-    render.add_flag("--resume", resume_, "of --frames, leave out those whose files are there");
+    render.add_flag("--resume", resume_,
+                    "of --frames, leave out those whose files are there, whole and of the size asked for");
     render
         .add_option("--repeat", repeat_,
                     "render the frame N times and tell the time of each; all but the first find the topology "
@@ -260,12 +285,13 @@ int RenderCommand::run() const {
     }
 
     Progress progress(!quiet_);
-    const auto is_there = [this](int frame) {
-        const auto exists = [&](const std::string& name) {
-            return std::filesystem::exists(numbered(name, frame));
-        };
-        return std::all_of(outputs_.begin(), outputs_.end(), exists) &&
-               (statistics_.empty() || exists(statistics_));
+    const Crop part = shown_part(scene.description().settings);
+    const auto is_there = [this, part](int frame) {
+        return std::all_of(outputs_.begin(), outputs_.end(),
+                           [&](const std::string& name) {
+                               return is_whole_picture(numbered(name, frame), part.width, part.height);
+                           }) &&
+               (statistics_.empty() || is_whole_json(numbered(statistics_, frame)));
     };
     api::Renderer renderer(std::move(scene), options, sequence);
     double written = 0;

@@ -201,16 +201,36 @@ TEST_F(Sequence, GoesOnWhereItStopped) {
     ASSERT_EQ(razor("--frames 0:3 -o a%d.exr -o a%d.png").code, 0);
     std::filesystem::remove(folder_ / "a1.png");
     std::filesystem::remove(folder_ / "a3.exr");
-    folder_.file("a0.exr", "stays");
+    const auto before = std::filesystem::last_write_time(folder_ / "a0.exr");
     const Outcome rest = razor("--frames 0:4 --resume -o a%d.exr -o a%d.png");
     ASSERT_EQ(rest.code, 0) << rest.err;
     std::string frames;
     for (std::size_t at = 0; (at = rest.out.find("frame ", at)) != std::string::npos; at += 6)
         frames += rest.out[at + 6];
     EXPECT_EQ(frames, "134") << rest.out;
-    EXPECT_EQ(std::filesystem::file_size(folder_ / "a0.exr"), 5U);
+    EXPECT_EQ(std::filesystem::last_write_time(folder_ / "a0.exr"), before);
     for (const char* name : {"a1.png", "a3.exr", "a4.exr", "a4.png"})
         EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+}
+
+TEST_F(Sequence, OnlyWholePicturesOfTheSizeAreDone) {
+    ASSERT_EQ(razor("--frames 0:6 -o a%d.exr -o a%d.png --stats a%d.json").code, 0);
+    folder_.file("a0.exr", "");
+    std::filesystem::resize_file(folder_ / "a1.exr", std::filesystem::file_size(folder_ / "a1.exr") / 2);
+    std::filesystem::resize_file(folder_ / "a2.png", std::filesystem::file_size(folder_ / "a2.png") / 2);
+    folder_.file("a3.json", "{\"statistics\": ");
+    ASSERT_EQ(razor("--frame 4 --size 16x16 -o a4.png").code, 0);
+    folder_.file("a5.png", "no picture");
+    const Outcome rest = razor("--frames 0:6 --resume -o a%d.exr -o a%d.png --stats a%d.json");
+    ASSERT_EQ(rest.code, 0) << rest.err;
+    std::string frames;
+    for (std::size_t at = 0; (at = rest.out.find("frame ", at)) != std::string::npos; at += 6)
+        frames += rest.out[at + 6];
+    EXPECT_EQ(frames, "012345") << rest.out;
+    EXPECT_EQ(razor("--frames 0:6 --resume -o a%d.exr -o a%d.png --stats a%d.json").out, "");
+    std::filesystem::create_directory(folder_ / "b1.exr");
+    const Outcome folder = razor("--frames 0:1 --resume -o b%d.exr");
+    EXPECT_EQ(folder.code, 2) << "a directory is no finished frame";
 }
 
 TEST_F(Sequence, MistakesAreOneLineAndNoFile) {
