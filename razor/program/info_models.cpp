@@ -1,5 +1,6 @@
 #include "razor/program/info_models.h"
 
+#include "razor/scene/models/md3_reader.h"
 #include "razor/scene/models/model_file.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/words.h"
@@ -123,6 +124,38 @@ nlohmann::ordered_json json_of(const std::vector<GltfContents>& files) {
             json["nodes"].push_back({{"name", node.name}, {"joint", node.joint}});
         list.push_back(std::move(json));
     }
+    return list;
+}
+
+std::vector<Md3Contents> md3_contents_of(const SceneDescription& description) {
+    std::vector<Md3Contents> files;
+    for (const MeshDescription& mesh : description.meshes) {
+        const bool known = std::any_of(files.begin(), files.end(),
+                                       [&](const Md3Contents& there) { return there.file == mesh.file; });
+        if (known || model_file(mesh.file) != ModelFile::md3)
+            continue;
+        Md3Model model = read_md3(mesh.file);
+        files.push_back({mesh.file, model.frames.size(), std::move(model.surfaces)});
+    }
+    return files;
+}
+
+std::string text_of(const std::vector<Md3Contents>& files) {
+    std::string text;
+    for (const Md3Contents& file : files) {
+        std::string surfaces;
+        for (const std::string& name : file.surfaces)
+            surfaces += fmt::format("{}{}", surfaces.empty() ? "" : ", ", printable(name, 100));
+        text += fmt::format("{}: {} frame{}; surfaces: {}\n", printable(file.file, 1000), file.frames,
+                            file.frames == 1 ? "" : fmt::format("s, 0 to {}", file.frames - 1), surfaces);
+    }
+    return text;
+}
+
+nlohmann::ordered_json json_of(const std::vector<Md3Contents>& files) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Md3Contents& file : files)
+        list.push_back({{"file", file.file}, {"frames", file.frames}, {"surfaces", file.surfaces}});
     return list;
 }
 

@@ -1,5 +1,5 @@
 // What the models of a scene hold that scene files may choose by name: cameras, lights, animations and nodes
-// of glTF files, tags of MD3 files.
+// of glTF files; frames, surfaces and tags of MD3 files.
 #pragma once
 
 #include "razor/scene/description.h"
@@ -18,6 +18,18 @@ std::vector<GltfContents> contents_of(const SceneDescription& description);
 /// Nothing where there are none.
 std::string text_of(const std::vector<GltfContents>& files);
 nlohmann::ordered_json json_of(const std::vector<GltfContents>& files);
+
+/// Frames and surfaces of the MD3 files that meshes are from, each file once. Throws UserError.
+struct Md3Contents {
+    std::string file;
+    std::size_t frames = 0;
+    std::vector<std::string> surfaces;
+};
+std::vector<Md3Contents> md3_contents_of(const SceneDescription& description);
+
+/// Nothing where there are none.
+std::string text_of(const std::vector<Md3Contents>& files);
+nlohmann::ordered_json json_of(const std::vector<Md3Contents>& files);
 
 /// Tags of the meshes that have some. Nothing where there are none.
 std::string text_of_tags(const SceneDescription& description);

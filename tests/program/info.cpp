@@ -121,6 +121,23 @@ TEST_F(Info, ListsTags) {
     EXPECT_EQ(info("o.obj").out.find("tags of"), std::string::npos);
 }
 
+TEST_F(Info, ListsFramesAndSurfacesOfMd3Files) {
+    const auto surfaces = two_surfaces();
+    folder_.file("m.md3", write_md3(surfaces, 2));
+    const Outcome result = info("m.md3 --json i.json");
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find((folder_ / "m.md3").string() + ": 2 frames, 0 to 1; surfaces: " +
+                              surfaces[0].name + ", " + surfaces[1].name + "\n"),
+              std::string::npos)
+        << result.out;
+    std::ifstream file(folder_ / "i.json");
+    const auto json = nlohmann::json::parse(file)["md3_files"];
+    ASSERT_EQ(json.size(), 1U);
+    EXPECT_EQ(json[0]["frames"], 2);
+    EXPECT_EQ(json[0]["surfaces"], nlohmann::json::array({surfaces[0].name, surfaces[1].name}));
+    EXPECT_EQ(info("o.obj").out.find("frames"), std::string::npos);
+}
+
 TEST_F(Info, ListsEveryShippedScene) {
     int patterns = 0, heights = 0;
     for (const auto& entry : std::filesystem::directory_iterator(RAZOR_SOURCE_DIR "/configs/scenes")) {

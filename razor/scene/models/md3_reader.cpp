@@ -61,6 +61,7 @@ public:
                 all_.corners.size() / 3));
         }
         model.cage.name = name_;
+        model.surfaces = std::move(surfaces_);
         model.tags = read_tags();
         return model;
     }
@@ -165,6 +166,7 @@ private:
         s.label =
             fmt::format("surface {} of {} ('{}', at byte {})", number + 1, surface_count_,
                         printable(text(at + surface::name, surface::name_bytes), surface::name_bytes), at);
+        surfaces_.push_back(text(at + surface::name, surface::name_bytes));
         s.bytes = field(s, "size", surface::end);
         if (s.bytes < surface::bytes || s.bytes > bytes_.size() - at) {
             fail(fmt::format("{}: states a size of {} bytes, where {} to {} are possible; {}", s.label,
@@ -293,6 +295,7 @@ private:
 
     std::string_view bytes_;
     std::string file_name_, name_;
+    std::vector<std::string> surfaces_;
     double crease_degrees_;
     std::uint64_t surface_count_ = 0, surfaces_at_ = 0;
     Md3Triangles all_;

@@ -24,6 +24,7 @@
 #include "razor/scene/scene.h"
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct Md3Model {
     Mesh cage;
     std::vector<std::vector<glm::dvec3>> frames; // one or more, each as long as cage.points
     std::vector<TagFrames> tags;                 // of as many frames, in the order of the file
+    std::vector<std::string> surfaces{};         // their names, likewise
 };
 
 /// Reads `path`; the cage is named by the file's stem. `crease_degrees`: see hard_edges(). Throws UserError:
