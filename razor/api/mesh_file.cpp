@@ -10,6 +10,7 @@
 
 #include <iterator>
 #include <map>
+#include <vector>
 
 namespace razor::api {
 namespace {
@@ -23,10 +24,15 @@ std::string word(const std::string& name) {
     return text;
 }
 
+void stop_if(const std::atomic<bool>* cancel) {
+    if (cancel != nullptr && cancel->load())
+        throw Cancelled();
+}
+
 /// Texts are written as they grow, so that a mesh is in memory once.
 class Writer {
 public:
-    explicit Writer(const std::string& path) : file_(path) {}
+    Writer(const std::string& path, const std::atomic<bool>* cancel) : cancel_(cancel), file_(path) {}
     template <class... Values> void line(fmt::format_string<Values...> form, Values&&... values) {
         fmt::format_to(std::back_inserter(text_), form, std::forward<Values>(values)...);
         text_.push_back('\n');
@@ -40,9 +46,11 @@ public:
 
 private:
     void flush() {
+        stop_if(cancel_);
         file_.write(text_.data(), text_.size());
         text_.clear();
     }
+    const std::atomic<bool>* cancel_;
     OutputFile file_;
     fmt::memory_buffer text_;
 };
@@ -50,16 +58,19 @@ private:
 } // namespace
 
 MeshFigures write_mesh_file(const std::filesystem::path& file, const razor::Scene& scene,
-                            const std::string& isa) {
+                            const std::string& isa, const std::atomic<bool>* cancel) {
     Frame frame(scene, {});
+    stop_if(cancel);
     frame.dice_all(native_target(isa));
+    stop_if(cancel);
+    const std::vector<DicedInstance> objects = diced_mesh(frame);
 
-    Writer out(file.string());
+    Writer out(file.string(), cancel);
     out.line("# razor {}: {}, as its camera sees it", version(), word(scene.name));
     std::map<std::string, int> used;
     MeshFigures written;
     long long normals = 0;
-    for (const DicedInstance& object : diced_mesh(frame)) {
+    for (const DicedInstance& object : objects) {
         const std::string name = word(scene.meshes[static_cast<std::size_t>(object.mesh)].name);
         const int number = ++used[name];
         out.line("o {}", number == 1 ? name : fmt::format("{}.{}", name, number));

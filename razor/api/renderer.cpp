@@ -7,6 +7,7 @@
 #include "razor/native/render.h"
 #include "razor/native/targets.h"
 #include "razor/scene/animation/moving_scene.h"
+#include "razor/scene/mesh_error.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
 #include "razor/survey/layers.h"
@@ -78,7 +79,9 @@ struct Renderer::State {
                 native.reset(); // its memory goes before the next one's comes
                 moving = std::make_unique<MovingScene>(scene.description());
                 moving->go_to(seconds);
-                native = std::make_unique<NativeRenderer>(moving->scene(), options, again);
+                native = naming_files(scene.description(), [&] {
+                    return std::make_unique<NativeRenderer>(moving->scene(), options, again);
+                });
             } else {
                 if (edits.any())
                     moving->take_over(scene.description(), edits.objects);
@@ -129,7 +132,9 @@ MeshFigures Renderer::write_mesh(const std::filesystem::path& file) const {
     check_writable(file.string());
     MovingScene moving(state_->scene.description());
     moving.go_to(state_->seconds);
-    return write_mesh_file(file, moving.scene(), state_->options.isa);
+    return naming_files(state_->scene.description(), [&] {
+        return write_mesh_file(file, moving.scene(), state_->options.isa, state_->options.cancel);
+    });
 }
 
 std::string Renderer::scene_text() const {

@@ -9,6 +9,7 @@
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
 #include "razor/scene/error.h"
+#include "razor/scene/mesh_error.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/words.h"
 #include "razor/surface/topology.h"
@@ -80,7 +81,7 @@ void CheckCommand::add_to(CLI::App& app) {
         "warning or "
         "note, kind, object, what, means, mend), precision (by mesh, lengths in world units), features (by "
         "name, "
-        "whether in use), memory (bytes, and estimated_from).");
+        "whether in use), memory (bytes, and estimated_from), notes (of what was not read).");
 }
 
 int CheckCommand::run() const {
@@ -113,8 +114,9 @@ int CheckCommand::run() const {
     if (!scene_.lod_given()) {
         description.settings.lod = Lod::recursive;
     }
+    const std::vector<std::string> notes = notes_of(description);
     Scene scene = build_scene(description);
-    const std::vector<check::MeshReport> meshes = examine(scene);
+    const std::vector<check::MeshReport> meshes = naming_files(description, [&] { return examine(scene); });
     const std::vector<check::SceneFinding> findings = check::findings_of(scene);
     const std::vector<check::PrecisionBudget> precision = check::precision_of(scene);
     const check::MemoryEstimate memory = check::estimate_memory(scene, kernels);
@@ -166,6 +168,7 @@ int CheckCommand::run() const {
             report["features"][feature] = used;
         }
         report["memory"] = check::json_of(memory);
+        report["notes"] = notes;
         if (escapes) {
             report["escape"] = {{"lod", word_of(lod_words, description.settings.lod)},
                                 {"isa", kernels.name},
@@ -180,6 +183,9 @@ int CheckCommand::run() const {
     }
     fmt::print("{}{}{}{}{}", check::text_of(meshes), check::text_of(findings),
                check::text_of(scene, precision), features_text(scene, memory.frame), check::text_of(memory));
+    for (const std::string& note : notes) {
+        fmt::print("not read: {}\n", note);
+    }
     if (convergence) {
         fmt::print("{}", check::text_of(*convergence));
     }

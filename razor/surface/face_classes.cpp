@@ -1,6 +1,6 @@
 #include "razor/surface/face_classes.h"
 
-#include "razor/scene/error.h"
+#include "razor/scene/mesh_error.h"
 #include "razor/surface/limits.h"
 #include "razor/surface/neighbourhood.h"
 
@@ -53,10 +53,12 @@ void assign_face_classes(const Mesh& mesh, const Adjacency& adjacency, const std
         }
         const Neighbourhood& n = walker.visit(f, largest_control_count);
         if (static_cast<int>(n.controls.size()) > largest_control_count) {
-            throw UserError(fmt::format(
-                "mesh '{}', face {} (counted from 0): its limit surface depends on more than {} points; "
-                "split the large faces or the high valences around it",
-                mesh.name, f, largest_control_count));
+            throw MeshError(
+                mesh.name,
+                fmt::format("mesh '{}', face {} (counted from 0): its limit surface depends on more than {} "
+                            "points; split the large faces or the high valences around it, or render the "
+                            "mesh as bilinear",
+                            mesh.name, f, largest_control_count));
         }
         if (topology.controls.size() + n.controls.size() >
             static_cast<std::size_t>(std::numeric_limits<int>::max())) {

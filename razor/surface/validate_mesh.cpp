@@ -1,6 +1,6 @@
 // What a cage must satisfy before anything else looks at it. OpenSubdiv 3.5 crashes on bad indices and
 // accepts repeated corners silently, so everything is checked here.
-#include "razor/scene/error.h"
+#include "razor/scene/mesh_error.h"
 #include "razor/surface/adjacency.h"
 #include "razor/surface/limits.h"
 #include "razor/surface/topology.h"
@@ -15,7 +15,8 @@ namespace {
 
 template <class... Args>
 [[noreturn]] void fail(const Mesh& mesh, fmt::format_string<Args...> text, Args&&... args) {
-    throw UserError(fmt::format("mesh '{}': {}", mesh.name, fmt::format(text, std::forward<Args>(args)...)));
+    throw MeshError(mesh.name,
+                    fmt::format("mesh '{}': {}", mesh.name, fmt::format(text, std::forward<Args>(args)...)));
 }
 
 bool in_range(int index, std::size_t count) {
@@ -52,8 +53,10 @@ void check_sizes(const Mesh& mesh) {
             fail(mesh, "face {} (counted from 0) has {} corners; it needs 3 or more", f, size);
         }
         if (size > cap) {
-            fail(mesh, "face {} (counted from 0) has {} corners; a {} face may have at most {}, so split it",
-                 f, size, smooth ? "subdivision" : "bilinear", cap);
+            fail(mesh,
+                 "face {} (counted from 0) has {} corners; a {} face may have at most {}, so split it{}", f,
+                 size, smooth ? "subdivision" : "bilinear", cap,
+                 smooth && size <= largest_bilinear_face ? ", or render the mesh as bilinear" : "");
         }
         corners += static_cast<std::size_t>(size);
     }
