@@ -31,19 +31,32 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
+/// With the nearest word that is known, where one is near; else where all are listed.
+std::string unknown(std::string_view kind, const std::string& typed, std::span<const std::string_view> known,
+                    std::string_view help) {
+    const std::string_view meant = nearest(typed, known);
+    const auto letters =
+        static_cast<int>(typed.size() - std::min(typed.find_first_not_of('-'), typed.size()));
+    return edit_distance(typed, meant) <= std::max(1, letters / 3)
+               ? fmt::format("unknown {} {}; did you mean {}?", kind, printable(typed), meant)
+               : fmt::format("unknown {} {}; see {}", kind, printable(typed), help);
+}
+
 /// CLI11's complaint as one line, with the nearest option for one that does not exist.
 std::string mend(const CLI::App& app, const CLI::ParseError& error) {
     std::string message = error.what();
     std::replace(message.begin(), message.end(), '\n', ' ');
     message = printable(message.substr(0, message.find_last_not_of(". ") + 1), 300);
     const std::vector<std::string> extras = app.remaining(true);
+    const auto chosen = app.get_subcommands();
+    const std::string help =
+        fmt::format("{}{} --help", app.get_name(), chosen.empty() ? "" : " " + chosen.front()->get_name());
     if (!extras.empty() && extras.front().starts_with("--")) {
         const std::vector<std::string> names = option_names(app);
         const std::vector<std::string_view> known(names.begin(), names.end());
         const std::string typed = extras.front().substr(0, extras.front().find('='));
-        return fmt::format("unknown option {}; did you mean {}?", printable(typed), nearest(typed, known));
+        return unknown("option", typed, known, help);
     }
-    const auto chosen = app.get_subcommands();
     if (chosen.empty() && !extras.empty()) {
         std::vector<std::string> names;
         for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -51,12 +64,44 @@ std::string mend(const CLI::App& app, const CLI::ParseError& error) {
         }
         const std::vector<std::string_view> known(names.begin(), names.end());
         if (!known.empty()) {
-            return fmt::format("unknown command {}; did you mean {}?", printable(extras.front()),
-                               nearest(extras.front(), known));
+            return unknown("command", extras.front(), known, help);
         }
     }
-    return fmt::format("{}; see {}{} --help", message, app.get_name(),
-                       chosen.empty() ? "" : " " + chosen.front()->get_name());
+    return fmt::format("{}; see {}", message, help);
+}
+
+/// An unset variable of a shell is an empty value: what would be done then is not what was meant.
+void check_values(const CLI::App& app) {
+    for (const CLI::Option* const option : app.get_options()) {
+        const std::vector<std::string>& values = option->results();
+        if (std::find(values.begin(), values.end(), "") != values.end())
+            throw UserError(fmt::format("{} '' is empty; give {}{}", option->get_name(),
+                                        option->get_type_name(),
+                                        option->get_required() ? "" : ", or leave it out"));
+    }
+    for (const CLI::App* const command : app.get_subcommands())
+        check_values(*command);
+}
+
+/// What the program has said is written, or UserError.
+void finish_output() {
+    std::cout.flush();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
+        throw UserError(
+            fmt::format("standard output: cannot be written ({}); check who reads it", std::strerror(errno)));
+}
+
+/// Parses, and says what --help and --version ask for; whether there is anything to do.
+bool parse(CLI::App& app, int argc, const char* const* argv) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        app.exit(help, std::cout, std::cerr);
+        finish_output();
+        return false;
+    }
+    check_values(app);
+    return true;
 }
 
 int complain(const CLI::App& app, std::string_view message, int code) {
@@ -211,14 +256,11 @@ int parse_share(std::string_view text) {
 
 int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action) {
     try {
-        app.parse(argc, argv);
+        if (!parse(app, argc, argv))
+            return 0;
         const int done = action();
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            throw UserError(fmt::format("standard output: cannot be written ({}); check who reads it",
-                                        std::strerror(errno)));
+        finish_output();
         return done;
-    } catch (const CLI::Success& help) {
-        return app.exit(help, std::cout, std::cerr);
     } catch (const CLI::ParseError& error) {
         return complain(app, mend(app, error), 2);
     } catch (const UserError& error) {

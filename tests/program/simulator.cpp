@@ -449,7 +449,7 @@ TEST_F(Simulator, RefusesBadMachinesAndOptions) {
     std::filesystem::create_directory(folder_ / "folder.toml");
     const std::pair<const char*, const char*> cases[] = {
         {"--machine none.toml", "none.toml: cannot be read"},
-        {"--machine ''", "cannot be read"},
+        {"--machine ''", "--machine '' is empty; give "},
         {"--machine folder.toml", "folder.toml: is a folder"},
         {"--machine empty.toml", "empty.toml: is empty"},
         {"--machine noise.toml", "noise.toml:1:1: not TOML"},
