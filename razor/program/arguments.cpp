@@ -93,6 +93,12 @@ void finish_output() {
 
 /// Parses, and says what --help and --version ask for; whether there is anything to do.
 bool parse(CLI::App& app, int argc, const char* const* argv) {
+    for (int i = 1; i < argc; ++i) { // the next argument would be the value
+        const std::string_view argument = argv[i];
+        if (argument.starts_with("--") && argument.ends_with('='))
+            throw UserError(
+                fmt::format("{} is empty; give it a value, or leave it out", printable(argument)));
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

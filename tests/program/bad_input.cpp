@@ -193,6 +193,7 @@ TEST_F(Razor, RefusesEmptyValues) {
                                "--output"})
         expect_refused(std::string("render good.obj -o picture.exr ") + option + " ''",
                        std::string(option) + " '' is empty; give ");
+    expect_refused("render good.obj -o picture.exr --stats= --quiet", "--stats= is empty; give it a value");
     expect_refused("render -o ''", "--output '' is empty; give FILE, or leave it out");
     expect_refused("export-mesh good.obj -o ''", "--output '' is empty; give FILE.obj");
     expect_refused("info good.obj --json ''", "--json '' is empty");
