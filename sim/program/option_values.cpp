@@ -11,18 +11,13 @@ namespace {
 
 void check_option(const CLI::Option& option) {
     const std::string type = option.get_type_name();
-    const bool folder = type.starts_with("FOLDER"), named = folder || type.starts_with("FILE");
-    for (const std::string& value : option.results()) {
-        if (value.empty())
-            throw razor::UserError(fmt::format("{}: the {} is empty; give {}", option.get_name(),
-                                               named ? "name" : "value",
-                                               folder  ? "a folder"
-                                               : named ? "a file"
-                                                       : "one"));
-        if (named && value == "-")
+    const bool folder = type.starts_with("FOLDER");
+    if (!folder && !type.starts_with("FILE"))
+        return;
+    for (const std::string& value : option.results())
+        if (value == "-")
             throw razor::UserError(fmt::format("{}: - stands for no {} here; give its name",
                                                option.get_name(), folder ? "folder" : "file"));
-    }
 }
 
 } // namespace

@@ -5,8 +5,8 @@
 
 namespace sim {
 
-/// Throws razor::UserError where an option of the subcommand that was given has an empty value, or - in the
-/// place of a file or a folder.
+/// Throws razor::UserError where an option of the subcommand that was given has - in the place of a file or a
+/// folder.
 void check_values(const CLI::App& app);
 
 } // namespace sim
