@@ -54,7 +54,7 @@ void check_settings(std::string_view scene, const Settings& s) {
         throw UserError(fmt::format("{}: settings.lod is none that scene files can state; `coarser` is at "
                                     "most 8, and 0 but for `object` and `fixed`",
                                     scene));
-    if (const std::string wrong = s.crop == Crop{} ? "" : mistake_of_crop(s); !wrong.empty())
+    if (const std::string wrong = s.crop == Crop{} ? "" : mistake_of_crop(s.crop, s); !wrong.empty())
         throw UserError(fmt::format("{}: settings.crop: {}", scene, wrong));
 }
 
