@@ -166,9 +166,11 @@ TEST_F(DesignSweep, FailingDesignsStopNoOther) {
         << odd.out;
     EXPECT_NE(text("s/study.csv").find("failed: "), std::string::npos);
     // They stay so until it is asked for.
-    EXPECT_EQ(sweep("odd.toml run -o s").out,
-              "0 measured, 0 of them failed; 4 were there, 3 of them failed\n");
-    EXPECT_EQ(sweep("odd.toml run -o s --again").out, "3 measured, 3 of them failed; 1 were there\n");
+    EXPECT_EQ(
+        sweep("odd.toml run -o s").out,
+        "0 measured, 0 of them failed; 4 were there, 3 of them failed (--again measures what failed anew)\n");
+    EXPECT_EQ(sweep("odd.toml run -o s --again").out,
+              "3 measured, 3 of them failed; 1 were there (--again measures what failed anew)\n");
 }
 
 TEST_F(DesignSweep, TwoAtOnceAndAKillAreSafe) {
