@@ -162,7 +162,7 @@ TEST_F(StudyRun, DamagedResultsAreSaidToBe) {
 }
 
 TEST_F(StudyRun, KeepsNothingOfFilesThatChanged) {
-    options_.changed = [this](const Point& point) {
+    options_.changed = [](const Point& point) {
         return samples(point) == 1 ? std::string() : std::string("machine.toml");
     };
     const Measure measure = [this](const Point& point) {
