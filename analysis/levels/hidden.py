@@ -9,7 +9,6 @@ an instance of one mesh, two more at its ends. Seconds of one thread: to load (t
 --most-eager objects. Both pictures must be the same, bit for bit.
 """
 import argparse
-import json
 import os
 import shutil
 import statistics
@@ -111,13 +110,10 @@ def main():
             rows.append({"hidden": count, "lazy": lazy, "eager": eager})
             rest = f"{eager['seconds']:9.3f} {eager['megabytes']:8.1f}" if eager else f"{'-':>9} {'-':>8}"
             print(f"{count:8} {lazy['opened']:7} {lazy['load']:8.4f} {lazy['seconds']:8.3f} {lazy['megabytes']:8.1f} {rest}", flush=True)
-    if options.json:
-        for row in rows:
-            for made in filter(None, (row["lazy"], row["eager"])):
-                del made["picture"]
-        with open(options.json, "w") as file:
-            json.dump(rows, file, indent=1)
-            file.write("\n")
+    for row in rows:
+        for made in filter(None, (row["lazy"], row["eager"])):
+            del made["picture"]
+    view.write_rows(rows, options.json)
 
 
 if __name__ == "__main__":

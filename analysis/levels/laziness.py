@@ -10,7 +10,6 @@ until the first packet of camera rays is shaded, both the medians of --repeat ru
 most that the process held. Both pictures must be the same.
 """
 import argparse
-import json
 import shutil
 import statistics
 import tempfile
@@ -51,10 +50,7 @@ def main():
                 "most_bytes": max(m[2].ru_maxrss for m in made) * 1024,
             }
     show(rows["lazy"], rows["eager"])
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(rows, file, indent=1)
-            file.write("\n")
+    view.write_rows(rows, options.json)
 
 
 def show(lazy, eager):

@@ -107,10 +107,7 @@ def main():
         return view.write_scene(options, options.write_scene)
     rows = measure(options)
     show(rows)
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(rows, file, indent=1)
-            file.write("\n")
+    view.write_rows(rows, options.json)
 
 
 def frame_seconds(figures):

@@ -120,10 +120,7 @@ def main():
             rows.append(row)
             print(f"{count:8} {row['first']:9.2f} {row['one']:8.3f} {row['camera']:9.3f} {row['all']:8.2f} "
                   f"{row['instances']:9} {row['nodes']:6.0f}", flush=True)
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(rows, file, indent=1)
-            file.write("\n")
+    view.write_rows(rows, options.json)
 
 
 if __name__ == "__main__":

@@ -79,10 +79,7 @@ def main():
         early, half, late = row["megabytes"]
         print(f"{row['scene']:16} {row['first_ms']:9.1f} {row['last_ms']:9.1f} {over:>20} {early:10.1f} {half:8.1f} {late:8.1f} "
               f"{row['fresh_megabytes']:8.1f}", flush=True)
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(rows, file, indent=1)
-            file.write("\n")
+    view.write_rows(rows, options.json)
 
 
 if __name__ == "__main__":

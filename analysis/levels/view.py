@@ -33,6 +33,18 @@ def run_program(main):
         sys.exit(130)
 
 
+def write_rows(rows, path):
+    """As JSON, if there is a path to write to."""
+    if not path:
+        return
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(rows, file, indent=1)
+            file.write("\n")
+    except OSError as error:
+        fail(f"{path}: {error.strerror}; give a file in a folder that is there")
+
+
 def run(command):
     """What a command prints, and the rusage of it."""
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

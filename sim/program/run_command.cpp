@@ -12,6 +12,7 @@
 #include "razor/scene/text_file.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
+#include "sim/config/machine_files.h"
 #include "sim/config/parameters.h"
 #include "sim/config/placement.h"
 #include "sim/machine/intervals.h"
@@ -182,7 +183,9 @@ int RunCommand::run() const {
         settings.push_back(
             fmt::format("sim.jitter={}", razor::parse_whole("--jitter", jitter_, {0, 2147483647})));
     const MachineDescription machine_description = describe_machine(machine_.file, settings);
-    razor::note_input(machine_.file);
+    for (const std::string& file : machine_files(machine_.file, machine_description))
+        if (!file.empty())
+            razor::note_input(file);
     const std::optional<Calibration> calibration =
         no_calibration_ ? std::nullopt : read_calibration(machine_description);
     const Config& config = machine_description.config;

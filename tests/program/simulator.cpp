@@ -435,6 +435,19 @@ TEST_F(Simulator, TriesMemories) {
     }
 }
 
+TEST_F(Simulator, WritesOverNoFileThatItsMachineInherits) {
+    const std::string base = "[chip]\ncores = 2\n";
+    folder_.file("base.toml", base);
+    folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+    folder_.file("own.toml", "inherit = \"base.toml\"\n[chip]\nthreads = 1\n");
+    const Outcome result =
+        simulator("run --machine own.toml --scene box.toml --size 8x8 --spp 1 --json base.toml");
+    EXPECT_EQ(result.code, 2) << result.out;
+    EXPECT_NE(result.err.find("base.toml: is one of the files that this is made of"), std::string::npos)
+        << result.err;
+    EXPECT_EQ(text("base.toml"), base);
+}
+
 TEST_F(Simulator, RefusesBadMachinesAndOptions) {
     folder_.file("good.toml", "[chip]\ncores = 2\n");
     folder_.file("empty.toml", "");

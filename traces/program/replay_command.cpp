@@ -1,11 +1,11 @@
 #include "traces/program/replay_command.h"
 
 #include "sim/config/error.h"
+#include "sim/config/machine_files.h"
 #include "sim/replay/timed_replay.h"
 #include "traces/error.h"
 #include "traces/io/interrupt.h"
 #include "traces/program/analysis_options.h"
-#include "traces/program/machine_files.h"
 #include "traces/program/progress.h"
 
 #include <fmt/format.h>
@@ -358,7 +358,7 @@ void ReplayCommand::run() {
         const std::vector<Machine> all = machines();
         std::vector<std::string> inputs{file_, against_};
         for (const Machine& m : all)
-            for (std::string& file : machine_files(m.file, m.description))
+            for (std::string& file : sim::machine_files(m.file, m.description))
                 inputs.push_back(std::move(file));
         check_apart({csv_, json_}, inputs);
         auto source = open_source(file_);

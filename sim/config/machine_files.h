@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-namespace traces {
+namespace sim {
 
-inline std::vector<std::string> machine_files(const std::string& file, const sim::MachineDescription& about) {
+inline std::vector<std::string> machine_files(const std::string& file, const MachineDescription& about) {
     std::vector<std::string> out{file, about.calibration};
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-    for (const sim::Origin& origin : about.origins)
-        if (origin.layer == sim::Origin::file)
+    for (const Origin& origin : about.origins)
+        if (origin.layer == Origin::file)
             out.push_back((folder / origin.file_name).string());
     return out;
 }
 
-} // namespace traces
+} // namespace sim
