@@ -142,10 +142,11 @@ inline vfloat growth_of_bounce(const Context& c, const Surface& s, const Beyond&
     return mirrored + apart;
 }
 
-/// As leave_surface(), but each ray's targets grow about as fast as it asks for, one of a few rates: lobes of
-/// one packet may be as wide as all directions, or mirrors.
-/// They leave from a point of the ray that came, `toward` where it came from: above all of the block if that
-/// is steep.
+inline constexpr float growth_steps = 8.0F; // from 0 to the cap
+
+/// As leave_surface(), but each ray's targets grow about as fast as it asks for, by a step less at most:
+/// lobes of one packet may be as wide as all directions, or mirrors. They leave from a point of the ray that
+/// came, `toward` where it came from: above all of the block if that is steep.
 inline void leave_apart(const Context& c, const Surface& s, const vvec& toward, const vfloat& growth,
                         Rays& r) {
     Surface leaving = s;

@@ -10,7 +10,9 @@ inline namespace light_kernel {
 /// be blended for each of them: hits no further from the first one, in target edge lengths, and whose target
 /// edge lengths differ by no more than this factor.
 inline constexpr float shared_reach = 16.0F;
-inline constexpr float growth_steps = 8.0F; // from 0 to the cap
+/// A field's own growth lacks this part of what the ray asked for that it was made for; of others up to twice
+/// as much. Growths are not rounded: what rays see moves with what they ask for.
+inline constexpr float growth_slack = 0.125F;
 
 inline void forget_fields(const Context& c) {
     for (int i = 0; i < left_fields; ++i)
@@ -61,21 +63,16 @@ inline void share_field(pointer<float> f, const Surface& s, vmask& left, Rays& r
     r.field_origin = select(same, origin, r.field_origin);
     r.radius = select(same, load_broadcast(f + left_radius), r.radius);
     r.base = select(same, load_broadcast(f + left_base), r.base);
+    r.growth = select(same, load_broadcast(f + left_growth), r.growth);
     r.number = select(same, load_broadcast(as<std::int32_t>(f) + left_number), r.number);
 }
 
-/// The growth that all rays of a packet go on with: the slowest that one of them asks for, rounded down to
-/// one of a few, so that packets agree.
-inline vfloat common_growth(const vmask& active, const vfloat& growth) {
-    constexpr float steps = growth_steps / gradation_cap;
+/// The growth that one of a packet's rays asks for, the slowest.
+inline vfloat slowest_growth(const vmask& active, const vfloat& growth) {
     vfloat cap(gradation_cap);
     vfloat slowest = vfloat(reduce_min(select(active, growth, cap)));
     slowest = min(slowest, gradation_cap); // which no lane stands for where all are active
-    slowest = max(slowest, -cap);
-    vfloat shifted = fma(slowest, vfloat(steps), vfloat(growth_steps));
-    vint step = to_int(shifted);
-    vfloat whole = to_float(step) * vfloat(1.0F / steps);
-    return whole - cap;
+    return max(slowest, -cap);
 }
 
 /// Rays that leave surfaces go on with the target edge lengths that they begin with. Within the ball that
@@ -87,7 +84,7 @@ inline void leave_surface(const Context& c, const Surface& s, const vfloat& want
     r.field_origin = s.position;
     r.radius = vfloat(0.0F);
     r.base = s.target;
-    r.growth = common_growth(r.active, wanted);
+    r.growth = slowest_growth(r.active, wanted);
     vmask steep = dot(s.chord_normal, r.direction) > s.chord_slope;
     steep = steep & (r.growth <= s.chord_growth);
     r.left = select(steep, s.block, vint(-1));
@@ -105,15 +102,20 @@ inline void leave_surface(const Context& c, const Surface& s, const vfloat& want
         return;
     }
     sfloat growth = extract(r.growth, 0);
+    sfloat slack = abs(growth) * growth_slack;
+    sfloat least = growth - (slack + slack);
     vmask left = s.hit;
     for (int i = 0; i < left_fields; ++i) {
         pointer<float> f = c.packets + (packet_left + i * left_floats);
         sbool fits = load(as<std::int32_t>(f) + left_number) >= 0;
-        fits = fits & (load(f + left_growth) == growth);
+        sfloat kept = load(f + left_growth);
+        fits = fits & (kept <= growth);
+        fits = fits & (kept >= least);
         fits = fits & any(left);
         if (branch(fits))
             share_field(f, s, left, r);
     }
+    growth = max(growth - slack, -gradation_cap);
     while (branch(any(left))) {
         sint lane = first(left);
         pointer<float> f = make_field(c, s, growth, lane);

@@ -28,7 +28,7 @@ inline vvec blend(const vvec& a, const vvec& b, const vvec& c, const Hits& h) {
 struct Corners {
     vvec a, b, c;
     vvec at_a, at_b, at_c, normal; // normals: of the corners, and between them
-    vfloat sway, sway_above;       // of the block's finest vertices; of those of the next coarser level
+    vfloat sway, sway_above;       // of the block's finest vertices; with those of the next coarser level
     vmask has_chords;              // the block is not flat, or is shaded at vertices: see chords.h
     vvec chord_normal;
     vfloat chord_slope, chord_most;

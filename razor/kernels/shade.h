@@ -112,6 +112,15 @@ inline vint face_material(const Context& c, const Hits& h, const vint& record, c
     return gather(materials, face, m);
 }
 
+/// Rays by what they ask for, of the length at which the finest vertices of their blocks are gone
+/// (gone_from()): from a half, where those of the level before are, to 1.
+inline vfloat part_gone(const Context& c, const vint& block, const vfloat& target, const vmask& m) {
+    constexpr int absolute_word = offsetof(BlockHeader, absolute) / 4;
+    vint absolute = gather(as<std::int32_t>(c.grids) + absolute_word, block, m);
+    vfloat gone = as_float((absolute + vint(128)) << 23);
+    return min(max(target / gone, 0.5F), 1.0F);
+}
+
 /// Of what is shaded at vertices and what at hits: all of the first where rays ask for edges as long as the
 /// block's or longer, as they do of levels that are chosen for them; where a block is as fine as its mesh
 /// gets, or one level serves all, less of it the finer they ask.
@@ -242,9 +251,13 @@ template <Look L>
     s.position = madd(error, s.geometric, p);
     if constexpr (glossy) {
         // Bounces, behind whose hits others follow, leave as far off as vertices of the next coarser level
-        // can move, which begin to where the others end; and not along the normal but back along the ray:
-        // beside the surface others may be nearer than that, as in sharp folds, along the ray none is.
-        vfloat sway = max(k.sway, k.sway_above);
+        // can move, which begin to where the others end, the more of that the nearer they are to it; and not
+        // along the normal but back along the ray: beside the surface others may be nearer than that, as in
+        // sharp folds, along the ray none is.
+        vfloat part = part_gone(c, block, s.target, s.hit);
+        vfloat above = k.sway_above - k.sway;
+        above = above * (part * part);
+        vfloat sway = max(k.sway, above + above);
         vfloat off = select(morphs, sway + rounding, rounding);
         vfloat facing_ray = max(dot(s.geometric, toward), 1.0e-3F);
         vfloat half_way = h.t * 0.5F;

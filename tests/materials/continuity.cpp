@@ -107,15 +107,17 @@ TEST(BounceLevels, ThatJumpHaveHoles) {
     EXPECT_GT(light * scene.settings.samples, 40 * few * static_cast<double>(bounces));
 }
 
-/// Largest root mean square difference of pictures that follow each other while footprints grow by three
-/// octaves, the camera standing still, over their mean one. Of those planes.
+/// Root mean square differences of pictures that follow each other while footprints grow by three octaves,
+/// the camera standing still: the largest and the mean one, and by how much one exceeds both beside it. Of
+/// those planes.
 struct Jumps {
-    double largest = 0, mean = 0;
+    double largest = 0, mean = 0, spike = 0;
 };
 Jumps zoom(Scene s, Lod lod, const std::vector<const char*>& planes) {
     constexpr int frames = 72;
     s.settings.lod = lod;
     std::vector<float> before;
+    std::vector<double> differences;
     Jumps jumps;
     for (int f = 0; f <= frames; ++f) {
         s.settings.edge_pixels = 2 * std::exp2(3.0 * f / frames);
@@ -133,8 +135,13 @@ Jumps zoom(Scene s, Lod lod, const std::vector<const char*>& planes) {
         const double difference = std::sqrt(square / static_cast<double>(now.size()));
         jumps.largest = std::max(jumps.largest, difference);
         jumps.mean += difference / frames;
+        if (f > 0)
+            differences.push_back(difference);
         before = now;
     }
+    for (std::size_t i = 1; i + 1 < differences.size(); ++i)
+        jumps.spike =
+            std::max(jumps.spike, differences[i] - std::max(differences[i - 1], differences[i + 1]));
     return jumps;
 }
 
@@ -177,6 +184,74 @@ void expect_fewer_jumps(const char* what, const Scene& scene, const std::vector<
 
 TEST(TextureLevels, DoNotJump) {
     expect_fewer_jumps("a textured torus", textured_scene(), {"albedo.R", "albedo.G"});
+}
+
+/// In a convex shell that shines by a picture, without a jump anywhere, before a board or a blob of that
+/// material, of which the camera sees nothing but the middle.
+Scene within_shell(const Material& of, bool blob) {
+    Scene s;
+    Mesh shell = cube_cage();
+    for (dvec3& p : shell.points)
+        p *= 10.0;
+    shell.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (std::size_t f = 0; f < shell.face_sizes.size(); ++f)
+        shell.face_texcoords.insert(shell.face_texcoords.end(), {0, 1, 2, 3});
+    shell.edge_length = 0.1;
+    Mesh before;
+    if (blob) {
+        before = cube_cage();
+        for (dvec3& p : before.points)
+            p = 1.5 * p - dvec3(0, 0, 3);
+    } else {
+        before.points = {{-9, -9, -2}, {9, -9, -2}, {9, 9, -2}, {-9, 9, -2}};
+        before.face_sizes = {4};
+        before.face_vertices = {0, 1, 2, 3};
+        before.scheme = Scheme::bilinear;
+    }
+    before.name = "before";
+    before.edge_length = 0.02;
+    before.material = 1;
+    s.meshes = {shell, before};
+    Material shining{.name = "shining", .albedo = glm::vec3(0), .emission = glm::vec3(1)};
+    shining.emission_map.texture = 0;
+    s.textures = {sky_texture(64, 64, [](double u, double v) {
+        const auto hills = [&](double n) { return std::pow(std::sin(n * pi * u) * std::sin(n * pi * v), 2); };
+        return glm::vec3(0.05 + 0.9 * hills(1), 0.05 + 0.9 * hills(4), 0.5);
+    })};
+    s.materials = {shining, of};
+    s.lights.clear();
+    s.sky = glm::vec3(0);
+    s.camera.position = {0.3, 0.2, 1};
+    s.camera.target = {0.1, 0, -2};
+    s.camera.fov_degrees = 25;
+    s.settings = {
+        .lod = Lod::recursive, .width = 32, .height = 32, .samples = 4, .light_samples = 0, .sky_samples = 0};
+    s.settings.bounces = 4;
+    return s;
+}
+
+TEST(BounceLevels, DoNotJump) {
+    Material glass{.name = "glass"};
+    glass.specular = 1;
+    glass.transmission = 1;
+    glass.roughness = 0;
+    // A blob's coarsest levels are far apart: rays leave it as far off as their vertices move, which is not
+    // always four times as far a level.
+    for (const auto& [name, material, blob, bound] : {std::tuple{"mirror", metal(0), false, 0.001},
+                                                      {"blob of metal", metal(0), true, 0.012},
+                                                      {"rough metal", metal(0.5F), false, 0.001},
+                                                      {"rough blob", metal(0.5F), true, 0.006},
+                                                      {"glass", glass, false, 0.0005},
+                                                      {"matte", Material{.name = "matte"}, false, 0.0005}}) {
+        Scene s = within_shell(material, blob);
+        if (is_matte(material))
+            s.settings.diffuse_bounces = 1;
+        const Jumps jumps = zoom(s, Lod::recursive, {"R", "G"});
+        fmt::print("  {}: largest and mean difference {:.5f} {:.5f}, alone {:.5f}\n", name, jumps.largest,
+                   jumps.mean, jumps.spike);
+        EXPECT_GT(jumps.mean, 1e-5) << name;
+        EXPECT_LT(jumps.spike, bound) << name;
+    }
 }
 
 // A texture that goes on where it ends has no seam where the faces' coordinates have one, nor at edges of
