@@ -86,7 +86,7 @@ struct Renderer::State {
                 if (edits.any())
                     moving->take_over(scene.description(), edits.objects);
                 moving->go_to(seconds);
-                native->pose(moving->scene(), moving->changes());
+                naming_files(scene.description(), [&] { native->pose(moving->scene(), moving->changes()); });
             }
         } catch (...) {
             scene.state_->edits.more = true;

@@ -6,7 +6,7 @@
 #include "razor/frame/scratch.h"
 #include "razor/frame/sky_distribution.h"
 #include "razor/frame/sky_record.h"
-#include "razor/scene/error.h"
+#include "razor/scene/mesh_error.h"
 #include "razor/scene/textures/shared_exponent.h"
 #include "razor/surface/texture_cage.h"
 
@@ -126,10 +126,11 @@ void Frame::Impl::take_materials(const Scene& scene) {
         if (textured == used.size() || texture_cage_of[mesh] >= 0)
             continue;
         if (own.face_texcoords.empty())
-            throw UserError(fmt::format(
-                "{}: mesh '{}' has no texture coordinates, but its material '{}'{} has a "
-                "texture; give it another material or a mesh with coordinates",
-                scene.name, own.name, scene.materials[textured].name, faces_of(own, i, textured)));
+            throw MeshError(
+                own.name,
+                fmt::format("mesh '{}': it has no texture coordinates, but its material '{}'{} has a "
+                            "texture; give it another material or a mesh with coordinates",
+                            own.name, scene.materials[textured].name, faces_of(own, i, textured)));
         texture_cage_of[mesh] = static_cast<int>(meshes.size());
         meshes.push_back(texture_cage(own));
         const bool displaced = geometry.displacements[mesh] > 0;

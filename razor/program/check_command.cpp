@@ -119,7 +119,8 @@ int CheckCommand::run() const {
     const std::vector<check::MeshReport> meshes = naming_files(description, [&] { return examine(scene); });
     const std::vector<check::SceneFinding> findings = check::findings_of(scene);
     const std::vector<check::PrecisionBudget> precision = check::precision_of(scene);
-    const check::MemoryEstimate memory = check::estimate_memory(scene, kernels);
+    const check::MemoryEstimate memory =
+        naming_files(description, [&] { return check::estimate_memory(scene, kernels); });
     std::optional<check::EscapeReport> escapes;
     if (shoots) {
         Scene closed = check::closed_part(scene, meshes);

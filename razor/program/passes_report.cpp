@@ -1,6 +1,7 @@
 #include "razor/program/passes_report.h"
 
 #include "razor/scene/animation/pose.h"
+#include "razor/scene/mesh_error.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,8 +54,10 @@ std::optional<EdgeChoice> choose_edges(SceneDescription& description, int frame,
                                        bool given) {
     EdgeChoice choice;
     try {
-        choice = choose_edge(build_scene(pose_of_frame(description, frame)), options,
-                             options.passes.target_error, given);
+        choice = naming_files(description, [&] {
+            return choose_edge(build_scene(pose_of_frame(description, frame)), options,
+                               options.passes.target_error, given);
+        });
     } catch (const Cancelled&) {
         return std::nullopt;
     }

@@ -1,5 +1,6 @@
 #include "razor/scene/mesh_error.h"
 
+#include "razor/scene/description.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>

@@ -1,12 +1,14 @@
 // A mistake in a mesh, found where only its name is known.
 #pragma once
 
-#include "razor/scene/description.h"
 #include "razor/scene/error.h"
 
+#include <string>
 #include <utility>
 
 namespace razor {
+
+struct SceneDescription;
 
 /// what(): as of a UserError, beginning with the mesh's name.
 class MeshError : public UserError {

@@ -8,7 +8,7 @@
 #include "razor/program/arguments.h"
 #include "razor/program/interrupt.h"
 #include "razor/program/progress.h"
-#include "razor/scene/error.h"
+#include "razor/scene/mesh_error.h"
 #include "razor/scene/text_file.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
@@ -245,13 +245,15 @@ int RunCommand::run() const {
 
     const std::atomic<bool>& interrupted = razor::watch_interrupts();
     const razor::Scene built = razor::build_scene(description);
-    razor::Frame frame(built, {.workers = workers,
-                               .tree_of_worker = trees,
-                               .place_of_worker = Placement(config.chip).places(workers),
-                               .tiles_in_rows = tiles_in_rows_,
-                               .memory_bytes = memory,
-                               .apart = true,
-                               .discards = config.renderer.discard == "on"});
+    razor::Frame frame = razor::naming_files(description, [&] {
+        return razor::Frame(built, {.workers = workers,
+                                    .tree_of_worker = trees,
+                                    .place_of_worker = Placement(config.chip).places(workers),
+                                    .tiles_in_rows = tiles_in_rows_,
+                                    .memory_bytes = memory,
+                                    .apart = true,
+                                    .discards = config.renderer.discard == "on"});
+    });
     const Labels labels{{std::begin(razor::phase_names), std::end(razor::phase_names)},
                         {std::begin(razor::kind_names), std::end(razor::kind_names)}};
     run_options.stop = &interrupted;

@@ -215,6 +215,20 @@ TEST_F(Razor, NamesTheFileOfAMesh) {
                                     ": mesh 'many': face 0 (counted from 0) has 300 corners; a subdivision "
                                     "face may have at most 256, so split it, or render the mesh as bilinear");
     expect_refused("render scene.toml -o p.exr", file + ": mesh 'm': face 0");
+    folder_.file("bare.toml", "[[texture]]\nname = \"t\"\npattern = \"checker\"\nspace = \"texture\"\n"
+                              "[[material]]\nname = \"squares\"\nalbedo_map = \"t\"\n"
+                              "[[mesh]]\nfile = \"good.obj\"\n");
+    for (const char* command :
+         {"render bare.toml -o p.exr", "check bare.toml", "export-mesh bare.toml -o o.obj",
+          "render bare.toml --target-error 0.1 -o p.exr"})
+        expect_refused(command,
+                       (folder_ / "good.obj").string() +
+                           ": mesh 'good': it has no texture coordinates, but its material 'squares' has "
+                           "a texture; give it another material or a mesh with coordinates");
+    std::filesystem::create_directory(folder_ / "pictures");
+    folder_.file("textures.toml", "[[texture]]\nname = \"t\"\nfile = \"pictures\"\n");
+    expect_refused("render textures.toml -o p.exr", "textures.toml:3:8: " + (folder_ / "pictures").string() +
+                                                        ": is a directory; give a picture");
 }
 
 TEST_F(Razor, SaysWhichLibraryIsNotThere) {

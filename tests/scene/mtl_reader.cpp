@@ -204,6 +204,10 @@ TEST_F(Mtl, MistakesNameTheLine) {
     EXPECT_NE(message("Kd 1 1 1\nmap_Kd none.png")
                   .find("l.mtl:3: the texture 'none.png' is not there; put it beside the library"),
               std::string::npos);
+    std::filesystem::create_directory(folder_ / "pictures");
+    EXPECT_NE(
+        message("map_Kd pictures").find("l.mtl:2: the texture 'pictures' is a directory; name a picture"),
+        std::string::npos);
     folder_.file("x.tga", "nothing");
     EXPECT_NE(message("map_Kd x.tga").find("l.mtl:2: "), std::string::npos);
     EXPECT_NE(message("map_Kd x.tga").find("x.tga: is no picture that is read"), std::string::npos);

@@ -5,7 +5,7 @@
 #include "analysis/study/run.h"
 #include "razor/program/arguments.h"
 #include "razor/program/study/scene_knobs.h"
-#include "razor/scene/error.h"
+#include "razor/scene/mesh_error.h"
 
 #include <algorithm>
 #include <bit>
@@ -125,7 +125,8 @@ StudyPicture render_study_picture(const analysis::Settings& settings, const std:
     SceneDescription description = describe_scene(settings, folder);
     description.settings.seed = seed;
     try {
-        RenderResult result = render_native(build_scene(description), options);
+        RenderResult result =
+            naming_files(description, [&] { return render_native(build_scene(description), options); });
         return {std::move(result.film), std::move(result.statistics)};
     } catch (const Cancelled&) {
         throw analysis::Stopped{};

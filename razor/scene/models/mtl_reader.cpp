@@ -250,9 +250,12 @@ private:
             passed_over_.push_back(fmt::format("{} (line {})", printable(option), map.line));
         Texture texture;
         const std::filesystem::path file = find_beside(folder_, map.file);
+        std::error_code error;
         if (file.empty())
-            library_.fail_at(map.line, fmt::format("the texture '{}' is not there; put it beside the library",
-                                                   printable(map.file, 200)));
+            library_.fail_at(map.line, fmt::format("the texture '{}' is {}", printable(map.file, 200),
+                                                   std::filesystem::is_directory(folder_ / map.file, error)
+                                                       ? "a directory; name a picture"
+                                                       : "not there; put it beside the library"));
         texture.name = file.stem().string();
         texture.file = std::filesystem::absolute(file).lexically_normal().string();
         texture.linear = linear;
