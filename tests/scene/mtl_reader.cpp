@@ -210,7 +210,7 @@ TEST_F(Mtl, MistakesNameTheLine) {
         std::string::npos);
     folder_.file("x.tga", "nothing");
     EXPECT_NE(message("map_Kd x.tga").find("l.mtl:2: "), std::string::npos);
-    EXPECT_NE(message("map_Kd x.tga").find("x.tga: is no picture that is read"), std::string::npos);
+    EXPECT_NE(message("map_Kd x.tga").find("x.tga: not a readable TGA picture"), std::string::npos);
 }
 
 TEST_F(Mtl, OnlyWhatIsUsedIsRead) {

@@ -355,9 +355,9 @@ TEST(Pictures, WhatIsNotReadIsNamed) {
     const auto message = [](std::string_view bytes) {
         return message_of([&] { decode_picture(bytes, "x", false); });
     };
-    EXPECT_EQ(message(""), "x: is empty; give PNG, JPEG, OpenEXR or Radiance");
-    EXPECT_EQ(message("hello"), "x: is no picture that is read; give PNG, JPEG, OpenEXR or Radiance");
-    EXPECT_EQ(message("GIF89a"), "x: is a GIF picture; convert it to PNG, JPEG, OpenEXR or Radiance");
+    EXPECT_EQ(message(""), "x: is empty; give PNG, JPEG, TGA, OpenEXR or Radiance");
+    EXPECT_EQ(message("hello"), "x: is no picture that is read; give PNG, JPEG, TGA, OpenEXR or Radiance");
+    EXPECT_EQ(message("GIF89a"), "x: is a GIF picture; convert it to PNG, JPEG, TGA, OpenEXR or Radiance");
     EXPECT_NE(message("version https://git-lfs.github.com/spec/v1\n").find("Git LFS"), std::string::npos);
     const TemporaryFolder folder;
     EXPECT_NE(message_of([&] { read_picture(folder / "none.png", false); }).find("none.png: no such file"),

@@ -1,6 +1,7 @@
 #include "razor/scene/textures/picture.h"
 
 #include "razor/scene/error.h"
+#include "razor/scene/models/model_file.h"
 #include "razor/scene/text_file.h"
 
 #include <fmt/format.h>
@@ -46,6 +47,10 @@ void check_picture_size(std::string_view name, std::int64_t width, std::int64_t 
 }
 
 TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear, Texels kind) {
+    const auto refusal = [&](std::string_view cause) {
+        return UserError(
+            fmt::format("{}: {} PNG, JPEG, TGA, OpenEXR or Radiance", printable(name, 1000), cause));
+    };
     try {
         if (bytes.starts_with(png_magic))
             return decode_png(bytes, name, linear, kind);
@@ -55,16 +60,18 @@ TexturePyramid decode_picture(std::string_view bytes, std::string_view name, boo
             return decode_exr(bytes, name, kind);
         if (bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE"))
             return decode_radiance(bytes, name, kind);
+        if (bytes.empty())
+            throw refusal("is empty; give");
+        for (const auto& [magic, what] : not_read) // none of which could be TGA: a second byte above 1
+            if (bytes.starts_with(magic))
+                throw refusal(fmt::format("is {}; convert it to", what));
+        if (lower_extension(name) == ".tga" || may_be_tga(bytes))
+            return decode_tga(bytes, name, linear, kind);
     } catch (const std::bad_alloc&) {
         throw UserError(
             fmt::format("{}: the picture does not fit in memory; give a smaller one", printable(name, 1000)));
     }
-    for (const auto& [magic, what] : not_read)
-        if (bytes.starts_with(magic))
-            throw UserError(fmt::format("{}: is {}; convert it to PNG, JPEG, OpenEXR or Radiance",
-                                        printable(name, 1000), what));
-    throw UserError(fmt::format("{}: is {}; give PNG, JPEG, OpenEXR or Radiance", printable(name, 1000),
-                                bytes.empty() ? "empty" : "no picture that is read"));
+    throw refusal("is no picture that is read; give");
 }
 
 TexturePyramid read_picture(const std::filesystem::path& path, bool linear, Texels kind) {

@@ -1,7 +1,8 @@
-// Pictures as textures: PNG (every kind), JPEG (grey and YCbCr or RGB), OpenEXR (red, green, blue or
-// luminance, and opacity), Radiance (RGBE). By their first bytes, whatever their names. What metadata say of
-// gamma, primaries or turns is passed over; Radiance's EXPOSURE and COLORCORR, which its pixels were
-// multiplied by, are divided out.
+// Pictures as textures: PNG (every kind), JPEG (grey and YCbCr or RGB), TGA (every kind), OpenEXR (red,
+// green, blue or luminance, and opacity), Radiance (RGBE). By their first bytes, whatever their names, but
+// for TGA, whose files begin with nothing of their own: what ends in .tga and is none of the others, and what
+// else has a header that could be one. What metadata say of gamma, primaries or turns is passed over;
+// Radiance's EXPOSURE and COLORCORR, which its pixels were multiplied by, are divided out.
 #pragma once
 
 #include "razor/scene/texture.h"
@@ -29,8 +30,13 @@ TexturePyramid decode_png(std::string_view bytes, std::string_view name, bool li
                           Texels kind = Texels::colours);
 TexturePyramid decode_jpeg(std::string_view bytes, std::string_view name, bool linear,
                            Texels kind = Texels::colours);
+TexturePyramid decode_tga(std::string_view bytes, std::string_view name, bool linear,
+                          Texels kind = Texels::colours);
 TexturePyramid decode_exr(std::string_view bytes, std::string_view name, Texels kind = Texels::colours);
 TexturePyramid decode_radiance(std::string_view bytes, std::string_view name, Texels kind = Texels::colours);
+
+/// Whether these bytes begin as a TGA picture could.
+bool may_be_tga(std::string_view bytes);
 
 /// Whichever of these it is. `name`: of the file or the part of one, for messages.
 TexturePyramid decode_picture(std::string_view bytes, std::string_view name, bool linear,
