@@ -1,6 +1,5 @@
 #include "razor/program/info_models.h"
 
-#include "razor/scene/models/md3_reader.h"
 #include "razor/scene/models/model_file.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/words.h"
@@ -135,7 +134,9 @@ std::vector<Md3Contents> md3_contents_of(const SceneDescription& description) {
         if (known || model_file(mesh.file) != ModelFile::md3)
             continue;
         Md3Model model = read_md3(mesh.file);
-        files.push_back({mesh.file, model.frames.size(), std::move(model.surfaces)});
+        std::vector<std::string> notes; // told of the scene
+        std::vector<Md3Paint> paints = find_md3_paints(mesh.file, model, notes);
+        files.push_back({mesh.file, model.frames.size(), std::move(model.surfaces), std::move(paints)});
     }
     return files;
 }
@@ -144,18 +145,39 @@ std::string text_of(const std::vector<Md3Contents>& files) {
     std::string text;
     for (const Md3Contents& file : files) {
         std::string surfaces;
-        for (const std::string& name : file.surfaces)
-            surfaces += fmt::format("{}{}", surfaces.empty() ? "" : ", ", printable(name, 100));
+        for (const Md3Surface& surface : file.surfaces)
+            surfaces += fmt::format("{}{}", surfaces.empty() ? "" : ", ", printable(surface.name, 100));
         text += fmt::format("{}: {} frame{}; surfaces: {}\n", printable(file.file, 1000), file.frames,
                             file.frames == 1 ? "" : fmt::format("s, 0 to {}", file.frames - 1), surfaces);
+        for (std::size_t s = 0; s < file.surfaces.size(); ++s) {
+            const Md3Paint& paint = file.paints[s];
+            text +=
+                fmt::format("  {}: {}, {}\n", printable(file.surfaces[s].name, 100),
+                            paint.shader.empty() ? "no shader" : printable(paint.shader, 100),
+                            paint.picture.empty() ? "no picture" : printable(paint.picture.string(), 1000));
+        }
     }
     return text;
 }
 
 nlohmann::ordered_json json_of(const std::vector<Md3Contents>& files) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Md3Contents& file : files)
-        list.push_back({{"file", file.file}, {"frames", file.frames}, {"surfaces", file.surfaces}});
+    using Json = nlohmann::ordered_json;
+    Json list = Json::array();
+    for (const Md3Contents& file : files) {
+        Json names = Json::array(), shaders = Json::array(), pictures = Json::array();
+        const auto stated = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
+        for (const Md3Surface& surface : file.surfaces)
+            names.push_back(surface.name);
+        for (const Md3Paint& paint : file.paints) {
+            shaders.push_back(stated(paint.shader));
+            pictures.push_back(stated(paint.picture.string()));
+        }
+        list.push_back({{"file", file.file},
+                        {"frames", file.frames},
+                        {"surfaces", std::move(names)},
+                        {"shaders", std::move(shaders)},
+                        {"pictures", std::move(pictures)}});
+    }
     return list;
 }
 

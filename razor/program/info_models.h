@@ -1,9 +1,10 @@
 // What the models of a scene hold that scene files may choose by name: cameras, lights, animations and nodes
-// of glTF files; frames, surfaces and tags of MD3 files.
+// of glTF files; frames, surfaces with what they are painted with, and tags of MD3 files.
 #pragma once
 
 #include "razor/scene/description.h"
 #include "razor/scene/models/gltf_contents.h"
+#include "razor/scene/models/md3_materials.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -23,7 +24,8 @@ nlohmann::ordered_json json_of(const std::vector<GltfContents>& files);
 struct Md3Contents {
     std::string file;
     std::size_t frames = 0;
-    std::vector<std::string> surfaces;
+    std::vector<Md3Surface> surfaces;
+    std::vector<Md3Paint> paints; // of each
 };
 std::vector<Md3Contents> md3_contents_of(const SceneDescription& description);
 

@@ -36,13 +36,21 @@ int material_index(const SceneDescription& description, std::string_view name) {
 
 /// For each material of the mesh's file what replaces it, -1: nothing; or none at all.
 std::vector<int> replaced_materials(const SceneDescription& description, const MeshDescription& mesh) {
-    std::vector<int> result;
-    for (const auto& [name, replacement] : mesh.materials) {
-        const std::vector<Material>& own = mesh.source->own_materials->materials;
-        result.resize(own.size(), -1);
-        for (std::size_t m = 0; m < own.size(); ++m) {
-            if (own[m].name == name) {
-                result[m] = material_index(description, replacement);
+    if (mesh.materials.empty()) {
+        return {};
+    }
+    const ModelMaterials& own = *mesh.source->own_materials;
+    std::vector<std::string> names;
+    for (const Material& material : own.materials) {
+        names.push_back(material.name);
+    }
+    std::vector<int> result(names.size(), -1);
+    for (const std::vector<std::string>& called : {names, own.parts}) { // a part is only its own material's
+        for (const auto& [name, replacement] : mesh.materials) {
+            for (std::size_t m = 0; m < called.size(); ++m) {
+                if (called[m] == name) {
+                    result[m] = material_index(description, replacement);
+                }
             }
         }
     }

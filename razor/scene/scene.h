@@ -57,6 +57,8 @@ struct ModelMaterials {
     std::vector<Texture> textures;
     /// What of their files was not read though it would be seen: a line each, for users.
     std::vector<std::string> notes{};
+    /// Of each material what else users may call it by: the surface of an MD3 model that it is of. Or empty.
+    std::vector<std::string> parts{};
 };
 
 /// A cage: polygons over shared points. Invariants (checked by validate_mesh): at least one face; every face

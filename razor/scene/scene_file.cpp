@@ -210,8 +210,16 @@ TomlTable read_materials(TomlTable& table, std::span<const std::string_view> nam
 void check_materials(const TomlTable& pairs, const MeshDescription& mesh) {
     std::vector<std::string_view> known;
     if (mesh.source->own_materials) {
+        const auto add = [&](std::string_view name) {
+            if (std::find(known.begin(), known.end(), name) == known.end()) {
+                known.push_back(name);
+            }
+        };
         for (const Material& material : mesh.source->own_materials->materials) {
-            known.push_back(material.name);
+            add(material.name);
+        }
+        for (const std::string& part : mesh.source->own_materials->parts) {
+            add(part);
         }
     }
     for (const auto& [name, replacement] : mesh.materials) {

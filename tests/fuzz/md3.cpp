@@ -20,6 +20,9 @@ bool fuzz::try_bytes(std::string_view bytes) {
         const razor::Md3Model model = razor::parse_md3(bytes, "fuzz", crease);
         require(razor::sound(model));
         require_sound(model.cage);
+        for (const razor::Md3Surface& surface : model.surfaces)
+            for (const std::string& shader : surface.shaders)
+                require(shader.size() <= 64);
         const std::size_t frames = model.frames.size();
         for (const razor::TagFrames& tag : model.tags)
             require(tag.frames.size() == frames);

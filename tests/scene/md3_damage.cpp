@@ -115,9 +115,11 @@ TEST(Md3Damage, DamagedSurfacesAreNamed) {
                             first_surface));
     expect_part(message(72, 1), label + "has 1 frames, but the model 2; ");
     for (const auto& [field, what] : std::map<std::size_t, std::string>{{72, "frames"},
+                                                                        {76, "shaders"},
                                                                         {80, "vertices"},
                                                                         {84, "triangles"},
                                                                         {88, "triangles"},
+                                                                        {92, "shaders"},
                                                                         {96, "texture coordinates"},
                                                                         {100, "points"},
                                                                         {104, "size"}}) {
@@ -135,6 +137,7 @@ TEST(Md3Damage, DamagedSurfacesAreNamed) {
     expect_part(message(84, 1 << 28),
                 label + "268435456 triangles of 12 bytes from its byte 108 on do not fit");
     expect_part(message(80, largest_int), label + "2147483647 texture coordinates");
+    expect_part(message(76, 1 << 25), label + "33554432 shaders of 68 bytes from its byte 144 on do not fit");
     expect_part(message(104, 107), label + "states a size of 107 bytes, where 108 to ");
     expect_part(message(104, 0), label + "states a size of 0 bytes");
 }
@@ -143,9 +146,18 @@ TEST(Md3Damage, DamagedSurfacesAreNamed) {
 TEST(Md3Damage, TablesEndWithTheirSurface) {
     const auto size = static_cast<int>(write_surface(two_surfaces()[0]).size());
     for (const auto& [field, bytes] :
-         std::map<std::size_t, int>{{88, 3 * 12}, {96, 7 * 8}, {100, 2 * 7 * 8}}) {
+         std::map<std::size_t, int>{{88, 3 * 12}, {92, 68}, {96, 7 * 8}, {100, 2 * 7 * 8}}) {
         expect_part(message_with(first_surface + field, size - bytes + 1), "do not fit");
         EXPECT_EQ(message_with(first_surface + field, size - bytes).find("do not fit"), std::string::npos);
+    }
+}
+
+TEST(Md3Damage, NoShadersAreNowhere) {
+    std::string bytes = small_file();
+    put(bytes, first_surface + 76, 0);
+    for (const int at : {-1, largest_int}) {
+        put(bytes, first_surface + 92, at);
+        EXPECT_EQ(message_of(bytes), "");
     }
 }
 

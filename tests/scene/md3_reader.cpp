@@ -43,7 +43,21 @@ TEST(Md3Reader, ReadsEveryNumber) {
               (std::vector<glm::vec2>{
                   {0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5F, 0.25F}, {0.125F, 0}, {0, 1}, {-2, 0.5F}}));
     EXPECT_EQ(model.cage.face_texcoords, (std::vector<int>{0, 1, 2, 4, 2, 3, 5, 7, 2, 5, 6, 7}));
+    EXPECT_EQ(model.face_surfaces, (std::vector<int>{0, 0, 1, 1}));
     EXPECT_TRUE(sound(model));
+}
+
+TEST(Md3Reader, ReadsShaders) {
+    std::vector<Md3SurfaceData> surfaces = two_surfaces();
+    const std::string full(64, 's'); // no zero byte ends it
+    surfaces[0].shaders = {full, "", "b"};
+    surfaces[1].shaders.clear();
+    const Md3Model model = parse_md3(write_md3(surfaces, 2), "m.md3");
+    ASSERT_EQ(model.surfaces.size(), 2U);
+    EXPECT_EQ(model.surfaces[0].name, "left");
+    EXPECT_EQ(model.surfaces[0].shaders, surfaces[0].shaders);
+    EXPECT_EQ(model.surfaces[1].name, "right");
+    EXPECT_TRUE(model.surfaces[1].shaders.empty());
 }
 
 TEST(Md3Reader, ReadsTags) {

@@ -20,6 +20,7 @@ struct Md3SurfaceData {
     /// As it is stored, of each vertex in frame 0; empty, and in other frames: something that differs from
     /// vertex to vertex, on which nothing may depend.
     std::vector<int> normals{};
+    std::vector<std::string> shaders{"models/skin.tga"};
 };
 
 inline void put(std::string& bytes, std::size_t at, std::int32_t number) {
@@ -38,10 +39,12 @@ inline std::string padded(std::string text, std::size_t length) {
     return text;
 }
 
-/// With a shader and the tables in the usual order: triangles, shaders, texture coordinates, points.
+/// The tables in the usual order: triangles, shaders, texture coordinates, points.
 inline std::string write_surface(const Md3SurfaceData& data) {
-    std::string shaders = padded("models/skin.tga", 68);
-    std::string triangles, texcoords, points;
+    std::string triangles, shaders, texcoords, points;
+    for (const std::string& shader : data.shaders) {
+        shaders += padded(padded(shader, 64), 68);
+    }
     for (const auto& triangle : data.triangles) {
         for (const int vertex : triangle) {
             append(triangles, vertex);
@@ -66,7 +69,7 @@ inline std::string write_surface(const Md3SurfaceData& data) {
     bytes += padded(data.name, 64);
     append(bytes, 0); // flags
     append(bytes, static_cast<std::int32_t>(data.frame_steps.size()));
-    append(bytes, 1); // shaders
+    append(bytes, static_cast<std::int32_t>(data.shaders.size()));
     append(bytes, static_cast<std::int32_t>(data.texcoords.size()));
     append(bytes, static_cast<std::int32_t>(data.triangles.size()));
     std::size_t end = 108;

@@ -22,6 +22,8 @@ inline bool sound(const Md3Model& model) {
                 cage.face_texcoords.size() == corners.size() && in_range(corners, cage.points.size()) &&
                 in_range(cage.face_texcoords, cage.texcoords.size()) && !model.frames.empty() &&
                 model.frames.front() == cage.points;
+    good = good && model.face_surfaces.size() == cage.face_sizes.size() &&
+           in_range(model.face_surfaces, model.surfaces.size());
     for (const int size : cage.face_sizes) {
         good = good && size == 3;
     }

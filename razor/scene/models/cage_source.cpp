@@ -3,7 +3,7 @@
 #include "razor/scene/animation/cage_frames.h"
 #include "razor/scene/error.h"
 #include "razor/scene/models/gltf_reader.h"
-#include "razor/scene/models/md3_reader.h"
+#include "razor/scene/models/md3_materials.h"
 #include "razor/scene/models/still_cage.h"
 #include "razor/scene/numbered_name.h"
 #include "razor/scene/shapes/shapes.h"
@@ -45,10 +45,11 @@ template <class Frame> void keep(std::vector<Frame>& frames, const std::pair<int
     frames.erase(frames.begin(), frames.begin() + kept.first);
 }
 
-CageCache::Entry read_md3_frames(const MeshDescription& mesh) {
+CageCache::Entry read_md3_frames(const MeshDescription& mesh, TextureCache& textures) {
     CageCache::Entry entry{.playback = mesh.playback};
     Playback& p = entry.playback;
     Md3Model model = read_md3(mesh.file, mesh.crease_angle);
+    paint(model, mesh.file, textures);
     const int last = static_cast<int>(model.frames.size()) - 1;
     if (!p.frames)
         p.frames = {0, last};
@@ -99,7 +100,7 @@ CageCache::Entry read(const MeshDescription& mesh, TextureCache& textures) {
     case ModelFile::sequence:
         return read_sequence(mesh, textures);
     case ModelFile::md3:
-        return read_md3_frames(mesh);
+        return read_md3_frames(mesh, textures);
     case ModelFile::gltf:
         return read_clip(mesh, textures);
     case ModelFile::none:

@@ -77,7 +77,8 @@ std::vector<int> number_groups(std::vector<int>& corners, const std::vector<int>
 
 /// Adds faces of the triangles whose corners stay distinct, with groups as their points. The normals of their
 /// corners, if there are any.
-std::vector<glm::vec3> add_faces(const Md3Triangles& triangles, const Groups& groups, Mesh& cage) {
+std::vector<glm::vec3> add_faces(const Md3Triangles& triangles, const Groups& groups, Md3Model& model) {
+    Mesh& cage = model.cage;
     const std::vector<int>& corners = triangles.corners;
     std::vector<glm::vec3> normals;
     for (std::size_t c = 0; c < corners.size(); c += 3) {
@@ -89,6 +90,7 @@ std::vector<glm::vec3> add_faces(const Md3Triangles& triangles, const Groups& gr
             continue;
         }
         cage.face_sizes.push_back(3);
+        model.face_surfaces.push_back(triangles.surfaces[c / 3]);
         for (std::size_t i = 0; i < 3; ++i) {
             cage.face_vertices.push_back(points[i]);
             cage.face_texcoords.push_back(groups.texcoord[as_size(corners[c + i])]);
@@ -106,7 +108,7 @@ Md3Model join(const Md3Triangles& triangles, double crease_degrees) {
     const Groups groups = group_vertices(triangles);
     Md3Model model;
     Mesh& cage = model.cage;
-    const std::vector<glm::vec3> normals = add_faces(triangles, groups, cage);
+    const std::vector<glm::vec3> normals = add_faces(triangles, groups, model);
     if (cage.face_sizes.empty()) {
         return model;
     }

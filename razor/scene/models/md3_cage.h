@@ -19,6 +19,7 @@ struct Md3Triangles {
     std::vector<std::int16_t> steps;
     std::vector<glm::vec3> normals; // of each vertex in frame 0, unit; empty: not read
     std::vector<int> corners;       // vertices, three a triangle, counter-clockwise seen from outside
+    std::vector<int> surfaces;      // of each triangle the number of its surface
 };
 
 /// The cage, without a name, and its frames as razor/scene/models/md3_reader.h describes them. Without a face

@@ -29,8 +29,9 @@ constexpr std::uint64_t version = 4, frames = 76, tags = 80, surfaces = 84, tags
 
 /// The same of a surface's header. Offsets in it count from the surface's beginning.
 namespace surface {
-constexpr std::uint64_t name = 4, name_bytes = 64, frames = 72, vertices = 80, triangles = 84,
-                        triangles_at = 88, texcoords_at = 96, points_at = 100, end = 104, bytes = 108;
+constexpr std::uint64_t name = 4, name_bytes = 64, frames = 72, shaders = 76, vertices = 80, triangles = 84,
+                        triangles_at = 88, shaders_at = 92, texcoords_at = 96, points_at = 100, end = 104,
+                        bytes = 108;
 } // namespace surface
 
 /// The same of a tag.
@@ -39,6 +40,7 @@ constexpr std::uint64_t name_bytes = 64, origin = 64, axes = 76, bytes = 112;
 } // namespace tag
 
 constexpr std::uint64_t triangle_bytes = 12; // 3 vertex indices
+constexpr std::uint64_t shader_bytes = 68;   // a name of 64; an index that the game fills in
 constexpr std::uint64_t texcoord_bytes = 8;  // s, t: float
 constexpr std::uint64_t point_bytes = 8;     // x, y, z: 16 bits; a normal: two angles of 8 bits
 
@@ -166,7 +168,7 @@ private:
         s.label =
             fmt::format("surface {} of {} ('{}', at byte {})", number + 1, surface_count_,
                         printable(text(at + surface::name, surface::name_bytes), surface::name_bytes), at);
-        surfaces_.push_back(text(at + surface::name, surface::name_bytes));
+        surfaces_.push_back({text(at + surface::name, surface::name_bytes)});
         s.bytes = field(s, "size", surface::end);
         if (s.bytes < surface::bytes || s.bytes > bytes_.size() - at) {
             fail(fmt::format("{}: states a size of {} bytes, where {} to {} are possible; {}", s.label,
@@ -191,6 +193,7 @@ private:
         read_triangles(s, triangles_at, triangles, vertices);
         read_texcoords(s, texcoords_at, vertices);
         read_points(points_at, vertices);
+        read_shaders(s);
         return s.bytes;
     }
 
@@ -231,6 +234,18 @@ private:
             }
             all_.corners.insert(all_.corners.end(),
                                 {corners[0], corners[2], corners[1]}); // counter-clockwise
+            all_.surfaces.push_back(static_cast<int>(surfaces_.size()) - 1);
+        }
+    }
+
+    void read_shaders(const Surface& s) {
+        const std::uint64_t count = field(s, "shaders", surface::shaders);
+        if (count == 0) {
+            return; // wherever they begin
+        }
+        const std::uint64_t begin = table(s, "shaders", surface::shaders_at, count, shader_bytes);
+        for (std::uint64_t i = 0; i < count; ++i) {
+            surfaces_.back().shaders.push_back(text(begin + i * shader_bytes, surface::name_bytes));
         }
     }
 
@@ -295,7 +310,7 @@ private:
 
     std::string_view bytes_;
     std::string file_name_, name_;
-    std::vector<std::string> surfaces_;
+    std::vector<Md3Surface> surfaces_;
     double crease_degrees_;
     std::uint64_t surface_count_ = 0, surfaces_at_ = 0;
     Md3Triangles all_;

@@ -35,14 +35,6 @@ std::vector<std::filesystem::path> libraries_there(const std::filesystem::path& 
     return files;
 }
 
-std::string quoted(const std::vector<std::string>& names) {
-    constexpr std::size_t most = 8;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
-        list += fmt::format("{}'{}'", i == 0 ? "" : ", ", printable(names[i]));
-    return names.size() > most ? fmt::format("{} and {} more", list, names.size() - most) : list;
-}
-
 /// Of materials that faces name and no library has.
 void note_unknown(ModelMaterials& own, const std::vector<std::string>& names, const std::string& file) {
     std::vector<std::string> unknown;

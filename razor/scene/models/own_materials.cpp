@@ -1,9 +1,21 @@
 #include "razor/scene/models/own_materials.h"
 
+#include "razor/scene/text_file.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 namespace razor {
+
+std::string quoted(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 8;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+        list += fmt::format("{}'{}'", i == 0 ? "" : ", ", printable(names[i]));
+    return names.size() > most ? fmt::format("{} and {} more", list, names.size() - most) : list;
+}
 
 void set_own_materials(Mesh& mesh, std::shared_ptr<const ModelMaterials> own) {
     if (own->materials.empty()) {

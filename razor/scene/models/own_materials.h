@@ -10,4 +10,7 @@ namespace razor {
 /// keeps it for its notes alone.
 void set_own_materials(Mesh& mesh, std::shared_ptr<const ModelMaterials> own);
 
+/// "'a', 'b' and 3 more": what a note is about.
+std::string quoted(const std::vector<std::string>& names);
+
 } // namespace razor
