@@ -108,12 +108,13 @@ TEST_F(Md3Materials, OnePictureIsOneTexture) {
 TEST_F(Md3Materials, PicturesAreLookedForInOrder) {
     for (const char* const folder : {"models/players/imp/models/players/imp", "models/models/players/imp"})
         std::filesystem::create_directories(folder_ / folder);
-    put_model({"models\\players/imp/Skin.jpg"}, {});
+    put_model({"models\\players/imp/Skin.bmp"}, {});
     EXPECT_EQ(picture(), "");
     for (const std::string at :
          {"models/players/imp/", "models/models/players/imp/", "models/players/imp/models/players/imp/"})
-        for (const std::string name : {"Skin.jpg.png", "Skin.jpg.tga", "Skin.png", "sKIN.Jpeg", "Skin.jpeg",
-                                       "skin.TGA", "Skin.tga", "SKIN.JPG", "Skin.jpg"}) {
+        for (const std::string name :
+             {"Skin.bmp.png", "Skin.bmp.tga", "Skin.png", "sKIN.Jpeg", "Skin.jpeg", "Skin.JPG", "Skin.jpg",
+              "skin.TGA", "Skin.tga", "SKIN.BMP", "Skin.bmp"}) {
             folder_.file(at + name, red); // by its bytes
             EXPECT_EQ(picture(), at + name);
         }
