@@ -166,6 +166,7 @@ void Reader::inherit_one(const std::string& file, const toml::node& parent) {
     const Text other = read_file(path);
     if (!other.wrong.empty())
         fail(file, parent.source(), fmt::format("inherits {}, which {}", path, other.wrong));
+    machine_.files.push_back(path);
     apply(other.text, path);
 }
 
@@ -176,6 +177,7 @@ void Reader::name_calibration(const std::string& file, const toml::node& counts)
              "calibration must be the name of a file in quotes, written by analysis/calibration/calibrate.py "
              "-o");
     machine_.calibration = (fs::path(file).parent_path() / *name).string();
+    machine_.files.push_back(machine_.calibration);
 }
 
 /// Either what sets others, or the rest.
@@ -203,8 +205,10 @@ void Reader::apply_section(const std::string& name, const toml::table& section, 
 void Reader::set_origin(const Parameter& p, const Origin& origin) {
     if (sets_others(p))
         for (const Parameter& other : parameters())
-            if (std::get<ChoiceKind>(p.kind).sets_key(machine_.config, other.key))
+            if (std::get<ChoiceKind>(p.kind).sets_key(machine_.config, other.key)) {
                 this->origin(other) = origin;
+                this->origin(other).by_another = true;
+            }
     this->origin(p) = origin;
 }
 
@@ -283,7 +287,9 @@ MachineDescription describe_machine(const std::string& file, const std::vector<s
     const Text text = read_file(file);
     if (!text.wrong.empty())
         throw ConfigError(fmt::format("{}: {}", file.empty() ? "\"\"" : file, text.wrong));
-    return describe_machine_text(text.text, file, overrides);
+    MachineDescription out = describe_machine_text(text.text, file, overrides);
+    out.files.push_back(file);
+    return out;
 }
 
 Config parse_machine(const std::string& text, const std::string& name,

@@ -18,6 +18,8 @@ struct MachineDescription {
     std::string name;            // its file's, without folders
     std::vector<Origin> origins; // of parameters(), in that order; empty: not known
     std::string calibration; // a file, its folders resolved: what its counts lack beside real ones; or empty
+    std::vector<std::string>
+        files{}; // that were read, whether a value of theirs is left or not, or are named
 };
 
 /// Reads a file and applies overrides of the form `section.key=value`. Throws ConfigError.

@@ -22,7 +22,8 @@ struct Origin {
     enum Layer { preset, file, setting } layer = preset; // the later one wins
     std::string file_name;                               // relative to the folder of the machine's file
     int line = 0;
-    std::string comment; // behind the value
+    std::string comment;     // behind the value
+    bool by_another = false; // it came with another parameter that was set, as with a preset
 
     /// "default", "tiny.toml:4" or "-g".
     std::string place() const;

@@ -30,17 +30,14 @@ void DescribeCommand::add_to(CLI::App& app) {
 int DescribeCommand::run() const {
     const std::filesystem::path output = output_;
     const bool pixels = razor::is_png(output);
-    if (!output_.empty()) {
-        if (!pixels && output.extension() != ".svg")
-            throw razor::UserError(
-                fmt::format("{}: is no drawing by its name; end it in .svg or .png", output_));
-        razor::check_writable(output);
-    }
-    const MachineDescription machine = describe_machine(machine_.file, machine_.settings);
+    if (!output_.empty() && !pixels && output.extension() != ".svg")
+        throw razor::UserError(fmt::format("{}: is no drawing by its name; end it in .svg or .png", output_));
+    const MachineDescription machine = noted_machine(machine_.file, machine_.settings);
     if (output_.empty()) {
         fmt::print("{}\n{}", provenance_text(machine), chip_text(machine.config));
         return 0;
     }
+    razor::check_writable(output);
     const analysis::Svg drawing =
         draw_chip(machine.config, std::filesystem::path(machine.name).stem().string());
     razor::write_text_file(output,

@@ -8,6 +8,7 @@
 #include "sim/config/parameters.h"
 #include "sim/memory/dram_bounds.h"
 #include "sim/memory/dram_load.h"
+#include "sim/program/run_command.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,7 +87,7 @@ Config configuration(const std::string& machine, const std::string& preset,
         settings.insert(settings.begin(), "memory.preset=" + preset);
     }
     return machine.empty() ? describe_machine_text("", "the default machine", settings).config
-                           : describe_machine(machine, settings).config;
+                           : noted_machine(machine, settings).config;
 }
 
 } // namespace

@@ -24,11 +24,11 @@ nlohmann::ordered_json provenance_json(const MachineDescription& machine) {
 }
 
 std::string provenance_text(const MachineDescription& machine) {
-    int known = 0, assumed = 0, unmarked = 0, settings = 0, defaults = 0;
+    int known = 0, assumed = 0, unmarked = 0, settings = 0, others_set = 0, defaults = 0;
     for (const Origin& origin : machine.origins) {
         const Mark::Kind kind = read_mark(origin.comment).kind;
         int& count = origin.layer == Origin::preset    ? defaults
-                     : origin.layer == Origin::setting ? settings
+                     : origin.layer == Origin::setting ? (origin.by_another ? others_set : settings)
                      : kind == Mark::known             ? known
                      : kind == Mark::assumed           ? assumed
                                                        : unmarked;
@@ -36,8 +36,10 @@ std::string provenance_text(const MachineDescription& machine) {
     }
     std::string out = fmt::format("machine                {}: {} parameters known, {} assumed", machine.name,
                                   known, assumed);
-    const std::pair<int, const char*> others[] = {
-        {unmarked, "unmarked"}, {settings, "overridden"}, {defaults, "left to defaults"}};
+    const std::pair<int, const char*> others[] = {{unmarked, "unmarked"},
+                                                  {settings, "overridden"},
+                                                  {others_set, "set by what is overridden"},
+                                                  {defaults, "left to defaults"}};
     for (const auto& [count, what] : others)
         if (count > 0)
             out += fmt::format(", {} {}", count, what);

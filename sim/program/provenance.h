@@ -9,7 +9,8 @@ namespace sim {
 
 /// Of every parameter: from where its value is, and its mark.
 nlohmann::ordered_json provenance_json(const MachineDescription& machine);
-/// One line: how many parameters are known, assumed, unmarked, overridden and left to defaults.
+/// One line: how many parameters are known, assumed, unmarked, overridden (and set by what is, as by a
+/// preset) and left to defaults.
 std::string provenance_text(const MachineDescription& machine);
 
 } // namespace sim

@@ -12,7 +12,6 @@
 #include "razor/scene/text_file.h"
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
-#include "sim/config/machine_files.h"
 #include "sim/config/parameters.h"
 #include "sim/config/placement.h"
 #include "sim/machine/intervals.h"
@@ -53,6 +52,13 @@ private:
 };
 
 } // namespace
+
+MachineDescription noted_machine(const std::string& file, const std::vector<std::string>& settings) {
+    MachineDescription out = describe_machine(file, settings);
+    for (const std::string& one : out.files)
+        razor::note_input(one);
+    return out;
+}
 
 void MachineOptions::add_to(CLI::App& app) {
     app.add_option("--machine", file, "the machine, such as configs/machines/tiny.toml")
@@ -182,10 +188,7 @@ int RunCommand::run() const {
     if (!jitter_.empty())
         settings.push_back(
             fmt::format("sim.jitter={}", razor::parse_whole("--jitter", jitter_, {0, 2147483647})));
-    const MachineDescription machine_description = describe_machine(machine_.file, settings);
-    for (const std::string& file : machine_files(machine_.file, machine_description))
-        if (!file.empty())
-            razor::note_input(file);
+    const MachineDescription machine_description = noted_machine(machine_.file, settings);
     const std::optional<Calibration> calibration =
         no_calibration_ ? std::nullopt : read_calibration(machine_description);
     const Config& config = machine_description.config;

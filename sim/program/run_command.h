@@ -16,6 +16,9 @@
 
 namespace sim {
 
+/// A machine none of whose files may be written over from now on. Throws ConfigError.
+MachineDescription noted_machine(const std::string& file, const std::vector<std::string>& settings);
+
 /// The options that choose a machine.
 class MachineOptions {
 public:

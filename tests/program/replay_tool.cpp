@@ -189,10 +189,12 @@ TEST_F(ReplayTool, OutputsAreNoMachineFiles) {
     const std::string base = text_of_machine("tiny"), over = "inherit = \"base.toml\"\n[l2]\nways = 16\n";
     folder_.file("base.toml", base);
     folder_.file("m.toml", over);
+    folder_.file("same.toml", "inherit = \"base.toml\"\n" + base); // no value of the other is left
     for (const char* arguments :
          {"replay a.din --machine m.toml --json m.toml",
           "replay a.din --machine m.toml,l2.ways=8 --csv ./m.toml",
-          "replay a.din --machine m.toml --csv base.toml", "rows a.din --machine m.toml --csv m.toml",
+          "replay a.din --machine m.toml --csv base.toml", "replay a.din --machine same.toml --csv base.toml",
+          "rows a.din --machine same.toml --csv base.toml", "rows a.din --machine m.toml --csv m.toml",
           "rows a.din --machine m.toml --json base.toml"}) {
         const Outcome result = run(program + " " + arguments, folder_.path());
         EXPECT_EQ(result.code, 2) << arguments;

@@ -437,15 +437,23 @@ TEST_F(Simulator, TriesMemories) {
 
 TEST_F(Simulator, WritesOverNoFileThatItsMachineInherits) {
     const std::string base = "[chip]\ncores = 2\n";
-    folder_.file("base.toml", base);
     folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+    folder_.file("root.svg", base);
+    folder_.file("base.toml", "inherit = \"root.svg\"\n" + base);
     folder_.file("own.toml", "inherit = \"base.toml\"\n[chip]\nthreads = 1\n");
-    const Outcome result =
-        simulator("run --machine own.toml --scene box.toml --size 8x8 --spp 1 --json base.toml");
-    EXPECT_EQ(result.code, 2) << result.out;
-    EXPECT_NE(result.err.find("base.toml: is one of the files that this is made of"), std::string::npos)
-        << result.err;
-    EXPECT_EQ(text("base.toml"), base);
+    folder_.file("all.toml", "inherit = \"base.toml\"\n" + base); // no value of the others is left
+    const std::string run = "run --scene box.toml --size 8x8 --spp 1 ";
+    for (const std::string& arguments :
+         {run + "--machine own.toml --json base.toml", run + "--machine all.toml --json base.toml",
+          run + "--machine all.toml --json root.svg", std::string("dram --machine all.toml --json root.svg"),
+          std::string("describe --machine all.toml -o root.svg")}) {
+        const Outcome result = simulator(arguments);
+        EXPECT_EQ(result.code, 2) << arguments;
+        EXPECT_NE(result.err.find(": is one of the files that this is made of"), std::string::npos)
+            << result.err;
+        EXPECT_EQ(text("base.toml"), "inherit = \"root.svg\"\n" + base) << arguments;
+        EXPECT_EQ(text("root.svg"), base) << arguments;
+    }
 }
 
 TEST_F(Simulator, RefusesBadMachinesAndOptions) {

@@ -247,6 +247,20 @@ TEST_F(Simulator, DiscardsWhatIsDead) {
 }
 
 // What drawings hold: tests/sim/chip_drawing.cpp.
+// A choice may bring other values with it: these are no overrides of their own.
+TEST_F(Simulator, CountsOverridesThatAreGiven) {
+    const std::pair<const char*, const char*> counts[] = {
+        {"", " assumed, 72 left to defaults"},
+        {" -g core.lanes=8", " 1 overridden, 72 left"},
+        {" -g sim.mode=reference", " 1 overridden, 3 set by what is overridden, 72 left"},
+        {" -g sim.mode=reference -g sim.quantum=1", " 2 overridden, 2 set by what is overridden, 72 left"},
+    };
+    for (const auto& [settings, says] : counts) {
+        const Outcome told = simulator("describe --machine " + tiny + settings);
+        EXPECT_NE(told.out.find(says), std::string::npos) << settings << told.out.substr(0, 200);
+    }
+}
+
 TEST_F(Simulator, DrawsAChip) {
     const std::string start = "describe --machine " + tiny + " -o ";
     const Outcome drawn = simulator(start + "chip.svg");

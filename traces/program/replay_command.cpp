@@ -1,7 +1,7 @@
 #include "traces/program/replay_command.h"
 
 #include "sim/config/error.h"
-#include "sim/config/machine_files.h"
+#include "sim/config/machine_file.h"
 #include "sim/replay/timed_replay.h"
 #include "traces/error.h"
 #include "traces/io/interrupt.h"
@@ -139,7 +139,7 @@ std::vector<ReplayCommand::Machine> ReplayCommand::machines() const {
         const std::vector<std::string> parts = split("--machine", text);
         std::vector<std::string> settings = settings_;
         settings.insert(settings.end(), parts.begin() + 1, parts.end());
-        Machine m{"", parts.front(), {}};
+        Machine m;
         try {
             m.description = sim::describe_machine(parts.front(), settings);
         } catch (const sim::ConfigError& e) { // which takes all for those of -g
@@ -358,8 +358,7 @@ void ReplayCommand::run() {
         const std::vector<Machine> all = machines();
         std::vector<std::string> inputs{file_, against_};
         for (const Machine& m : all)
-            for (std::string& file : sim::machine_files(m.file, m.description))
-                inputs.push_back(std::move(file));
+            inputs.insert(inputs.end(), m.description.files.begin(), m.description.files.end());
         check_apart({csv_, json_}, inputs);
         auto source = open_source(file_);
         const Format& format = format_of_input(from_, file_, *source);

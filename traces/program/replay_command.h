@@ -24,7 +24,6 @@ private:
     enum class By { all, structure, phase, kind };
     struct Machine {
         std::string label; // as given
-        std::string file;
         sim::MachineDescription description;
     };
     std::vector<Machine> machines() const;

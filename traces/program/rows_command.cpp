@@ -2,7 +2,7 @@
 #include "analysis/plots/table_chart.h"
 #include "analysis/traces/dram_rows.h"
 #include "sim/config/error.h"
-#include "sim/config/machine_files.h"
+#include "sim/config/machine_file.h"
 #include "traces/error.h"
 #include "traces/program/analyses.h"
 
@@ -28,7 +28,7 @@ public:
     }
     void run() override {
         const sim::MachineDescription machine = description();
-        options_.prepare({}, sim::machine_files(machine_, machine));
+        options_.prepare({}, machine.files);
         options_.refuse_sample();
         const sim::MemoryConfig& memory = machine.config.memory;
         const auto burst = static_cast<std::uint64_t>(memory.bus_bytes * memory.burst_length);
