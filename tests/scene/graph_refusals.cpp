@@ -54,6 +54,9 @@ TEST(FlatGraph, RefusesWhatCannotBeDrawn) {
     expect({{{"r", {place_group(1, scaled(1e-20))}}, {"g", {place(0, scaled(1e-20))}}}},
            "is scaled by 1e-40");
     expect({{{"r", {place_group(1, scaled(1e20))}}, {"g", {place(0, scaled(1e20))}}}}, "is scaled by 1e+40");
+    expect(root(place(0, scaled(1.000000001e30))),
+           "is scaled by 1.000000001e+30 in the world; keep scales from 1e-30 to 1e+30");
+    expect(root(place(0, scaled(0.999999999e-30))), "is scaled by 9.99999999e-31 in the world; keep");
     expect(root(place(0, {.translate = {1.1e30, 0, 0}})), "reaches beyond 1e+30");
     EXPECT_EQ(refusal(root(place(0, {.translate = {9.9e29, 0, 0}})), boxes), "");
     Placement faint = place_group(1);

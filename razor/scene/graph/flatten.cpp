@@ -216,12 +216,19 @@ struct Inherited {
     throw UserError(fmt::format("object '{}' {}", path_of(flat, graph, node), what));
 }
 
+/// A number that is not the bound, in digits that show it.
+std::string told_from(double number, double bound) {
+    const std::string text = fmt::format("{:g}", number);
+    return text == fmt::format("{:g}", bound) ? fmt::format("{}", number) : text;
+}
+
 void check_scale(const FlatGraph& flat, const SceneGraph& graph, std::int32_t node,
                  const glm::dvec3& singular) {
     if (!(singular.x <= largest_scale) || (singular.x < least_scale && singular.x > 0)) {
         fail(flat, graph, node,
-             fmt::format("is scaled by {:g} in the world; keep scales from {:g} to {:g}", singular.x,
-                         least_scale, largest_scale));
+             fmt::format("is scaled by {} in the world; keep scales from {:g} to {:g}",
+                         told_from(singular.x, singular.x < 1 ? least_scale : largest_scale), least_scale,
+                         largest_scale));
     }
     if (!(singular.z > 0 && singular.z >= least_relative_scale * singular.x)) {
         fail(flat, graph, node,
