@@ -43,8 +43,8 @@ std::string plane_name(std::string_view option, std::string_view text) {
     if (text == names.back())
         return names.back();
     const std::vector<std::string_view> known(names.begin(), names.end());
-    throw UserError(fmt::format("{} '{}' is no layer; did you mean {}? There are: {}", option,
-                                printable(text), nearest(text, known), fmt::join(names, ", ")));
+    throw UserError(
+        fmt::format("{} '{}' is no layer; {}", option, printable(text), or_known(text, known, "There are")));
 }
 
 ValueRange plane_range(const Film& film, std::string_view plane) {

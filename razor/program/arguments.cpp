@@ -31,15 +31,12 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
-/// With the nearest word that is known, where one is near; else where all are listed.
+/// With the word that was meant, where one is near; else where all are listed.
 std::string unknown(std::string_view kind, const std::string& typed, std::span<const std::string_view> known,
                     std::string_view help) {
-    const std::string_view meant = nearest(typed, known);
-    const auto letters =
-        static_cast<int>(typed.size() - std::min(typed.find_first_not_of('-'), typed.size()));
-    return edit_distance(typed, meant) <= std::max(1, letters / 3)
-               ? fmt::format("unknown {} {}; did you mean {}?", kind, printable(typed), meant)
-               : fmt::format("unknown {} {}; see {}", kind, printable(typed), help);
+    const std::string_view near = meant(typed, known);
+    return near.empty() ? fmt::format("unknown {} {}; see {}", kind, printable(typed), help)
+                        : fmt::format("unknown {} {}; did you mean {}?", kind, printable(typed), near);
 }
 
 /// CLI11's complaint as one line, with the nearest option for one that does not exist.

@@ -92,11 +92,8 @@ private:
         const auto times = std::count_if(named.begin(), named.end(), is_it);
         if (times == 0) {
             const std::vector<std::string_view> names = names_of(named);
-            table.fail("node",
-                       fmt::format("the model of '{}' has no node '{}'; did you mean '{}'? It has: {}",
-                                   printable(mesh.name), printable(on.node),
-                                   printable(nearest(on.node, names)),
-                                   list_of(names, [](const auto& name) { return name; })));
+            table.fail("node", fmt::format("the model of '{}' has no node '{}'; {}", printable(mesh.name),
+                                           printable(on.node), or_known(on.node, names, "It has")));
         }
         if (times > 1)
             table.fail("node",

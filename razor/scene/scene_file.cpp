@@ -227,9 +227,8 @@ void check_materials(const TomlTable& pairs, const MeshDescription& mesh) {
             pairs.fail(name, "the model brings no materials that could be replaced; write material instead");
         }
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            pairs.fail(name, fmt::format("the model has no material '{}'; did you mean '{}'? It has: {}",
-                                         printable(name), printable(nearest(name, known)),
-                                         printable(fmt::format("{}", fmt::join(known, ", ")), 1000)));
+            pairs.fail(name, fmt::format("the model has no material '{}'; {}", printable(name),
+                                         or_known(name, known, "It has")));
         }
     }
 }

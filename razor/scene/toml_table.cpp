@@ -236,8 +236,15 @@ std::optional<std::array<std::array<double, 4>, 3>> TomlTable::rows_of_four(std:
 }
 
 glm::dvec3 TomlTable::vector_or_number(std::string_view key, const glm::dvec3& preset, Range range) {
-    if (table_ != nullptr && table_->contains(key) && table_->get(key)->is_number()) {
+    const toml::node* const node = find(key);
+    if (node != nullptr && node->is_number()) {
         return glm::dvec3(number(key, 0, range));
+    }
+    const toml::array* const array = node == nullptr ? nullptr : node->as_array();
+    if (node != nullptr && (array == nullptr || array->size() != 3)) {
+        fail_at(file_name_, node->source(),
+                fmt::format("{} is {}; write a number from {} to {}, or three of them [a, b, c]", full(key),
+                            described(*node), range.least, range.most));
     }
     return vector(key, preset, range);
 }
@@ -248,17 +255,16 @@ std::size_t TomlTable::choice(std::string_view key, std::size_t preset,
     if (node == nullptr) {
         return preset;
     }
-    const std::string list = fmt::format("{}", fmt::join(words, ", "));
     if (!node->is_string()) {
-        fail_at(file_name_, node->source(),
-                fmt::format("{} is {}; write one of: {}", full(key), type_name(*node), list));
+        fail_at(
+            file_name_, node->source(),
+            fmt::format("{} is {}; write one of: {}", full(key), type_name(*node), fmt::join(words, ", ")));
     }
     const std::string& word = node->as_string()->get();
     const auto found = std::find(words.begin(), words.end(), word);
     if (found == words.end()) {
         fail_at(file_name_, node->source(),
-                fmt::format("{} '{}' is unknown; did you mean '{}'? Known: {}", full(key), printable(word),
-                            nearest(word, words), list));
+                fmt::format("{} '{}' is unknown; {}", full(key), printable(word), or_known(word, words)));
     }
     return static_cast<std::size_t>(found - words.begin());
 }
@@ -316,9 +322,8 @@ void TomlTable::finish() const {
     }
     if (first != nullptr) {
         fail_at(file_name_, first->source(),
-                fmt::format("unknown key '{}'; did you mean '{}'? Known: {}",
-                            printable(full(first->str()), 80), nearest(first->str(), known),
-                            fmt::join(known, ", ")));
+                fmt::format("unknown key '{}'; {}", printable(full(first->str()), 80),
+                            or_known(first->str(), known)));
     }
 }
 

@@ -109,8 +109,8 @@ LayerSet parse_layers(std::string_view option, std::string_view text, bool touch
         const std::string_view word = rest.substr(0, comma);
         const auto found = std::find(words.begin(), words.end(), word);
         if (found == words.end())
-            throw UserError(fmt::format("{} '{}' is unknown; did you mean {}? There are: {}", option,
-                                        printable(word), nearest(word, words), fmt::join(words, ", ")));
+            throw UserError(fmt::format("{} '{}' is unknown; {}", option, printable(word),
+                                        or_known(word, words, "There are")));
         for (int g = 0; g < layer_groups; ++g) {
             const auto group = static_cast<LayerGroup>(g);
             const bool again = group != LayerGroup::time && (touches || group != LayerGroup::bytes);

@@ -2,6 +2,7 @@
 
 #include "razor/scene/error.h"
 #include "razor/scene/nearest.h"
+#include "razor/scene/text_file.h"
 #include "sim/machine/explain.h"
 #include "sim/program/sharing_report.h"
 #include "sim/program/study_program.h"
@@ -57,14 +58,21 @@ std::string line_of(const Explanation& e) {
     return fmt::format("{}{}: {}\n", e.path, e.unit.empty() ? "" : " (" + e.unit + ")", e.meaning);
 }
 
-std::string_view nearest_name(const std::vector<Explanation>& all, std::string_view words) {
+std::string_view meant_name(const std::vector<Explanation>& all, std::string_view words) {
     std::vector<std::string_view> names;
     for (const Explanation& e : all)
         for (std::string_view path = e.path; !path.empty();) {
             names.push_back(path); // with and without the names before
             path.remove_prefix(std::min(path.find('.'), path.size() - 1) + 1);
         }
-    return razor::nearest(words, names);
+    return razor::meant(words, names);
+}
+
+std::string no_figure(const std::vector<Explanation>& all, const std::string& words) {
+    const std::string_view near = meant_name(all, words);
+    return fmt::format("no figure of a report is called '{}'; ", razor::printable(words)) +
+           (near.empty() ? "razor-sim explain alone says which there are"
+                         : fmt::format("did you mean '{}'?", near));
 }
 
 } // namespace
@@ -87,8 +95,7 @@ int ExplainCommand::run() const {
         if (is_named_within(e, words_))
             text += line_of(e);
     if (text.empty())
-        throw razor::UserError(fmt::format("no figure of a report is called '{}'; did you mean '{}'?", words_,
-                                           nearest_name(all, words_)));
+        throw razor::UserError(no_figure(all, words_));
     fmt::print("{}", text);
     return 0;
 }

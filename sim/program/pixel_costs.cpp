@@ -59,9 +59,9 @@ void PixelCostOptions::check(const std::vector<std::string>& outputs, unsigned c
     const std::vector<std::string> names = layer_names(cache_levels);
     const std::vector<std::string_view> known(names.begin(), names.end());
     if (std::find(names.begin(), names.end(), shown_) == names.end())
-        throw razor::UserError(
-            fmt::format("--false-colour '{}' is no layer of --costs; did you mean {}? There are: {}",
-                        razor::printable(shown_), razor::nearest(shown_, known), fmt::join(names, ", ")));
+        throw razor::UserError(fmt::format("--false-colour '{}' is no layer of --costs; {}",
+                                           razor::printable(shown_),
+                                           razor::or_known(shown_, known, "There are")));
     if (!range_.empty())
         razor::parse_bounds("--range", range_);
 }

@@ -5,7 +5,9 @@
 #include "razor/program/study/command.h"
 #include "razor/program/study/scene_knobs.h"
 #include "razor/scene/error.h"
+#include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
+#include "razor/scene/text_file.h"
 #include "sim/config/machine_file.h"
 #include "sim/config/parameters.h"
 #include "sim/program/estimates.h"
@@ -57,6 +59,17 @@ std::string wrong_text(std::string_view key, const Value& value,
     return "";
 }
 
+/// Of a key as machines' files have them.
+std::string no_machine_setting(std::string_view key) {
+    std::vector<std::string_view> known;
+    for (const Parameter& p : parameters())
+        known.push_back(p.key);
+    const std::string_view near = razor::meant(key, known);
+    const std::string what = fmt::format("unknown setting {}; ", razor::printable(key));
+    return what + (near.empty() ? "razor-sim print-config says which machines have"
+                                : fmt::format("did you mean {}?", near));
+}
+
 std::string wrong_setting(std::string_view key, Value& value) {
     if (const auto wrong = razor::wrong_scene_setting(key, value))
         return *wrong;
@@ -91,16 +104,15 @@ std::string wrong_setting(std::string_view key, Value& value) {
                                                                      : wrong + "; write another value";
     }
     if (key.find('.') != std::string_view::npos)
-        return fmt::format("unknown setting {}; did you mean {}?", key, nearest_key(key));
-    return razor::unknown_setting(key, run_keys());
+        return no_machine_setting(key);
+    return razor::no_scene_setting(key, run_keys());
 }
 
 /// Of a setting that a study's point leaves to its machine's file.
 double machine_number(const Settings& point, std::string_view key, const std::string& study) {
     const Parameter* const p = find_parameter(key);
     if (p == nullptr && key.find('.') != std::string_view::npos)
-        throw analysis::StudyError(
-            fmt::format("unknown setting {}; did you mean {}?", key, nearest_key(key)));
+        throw analysis::StudyError(no_machine_setting(key));
     const auto machine = point.find("machine");
     if (p == nullptr || machine == point.end())
         throw analysis::StudyError(

@@ -130,11 +130,11 @@ TEST_F(Layers, AreShownInFalseColours) {
 }
 
 TEST_F(Layers, AreRefusedInOneLine) {
-    expect_refused("--layers pick,kdd -o a.exr", "--layers 'kdd' is unknown; did you mean kd?");
+    expect_refused("--layers pick,kdd -o a.exr", "--layers 'kdd' is unknown; did you mean 'kd'?");
     expect_refused("--layers pick -o a.png", "--layers go into EXR files");
     expect_refused("--layers pick --stats a.json", "--layers go into EXR files");
     expect_refused("--false-colour lod.lvel -o a.png",
-                   "--false-colour 'lod.lvel' is no layer; did you mean lod.level?");
+                   "--false-colour 'lod.lvel' is no layer; did you mean 'lod.level'?");
     expect_refused("--false-colour lod -o a.exr", "--false-colour is of PNG files");
     expect_refused("--range 0:1 -o a.png", "--range without --false-colour");
     expect_refused("--false-colour lod --range 0 -o a.png", "--range '0' is not possible");

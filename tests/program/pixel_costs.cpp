@@ -104,7 +104,7 @@ TEST_F(PixelCosts, MistakesAreOneLine) {
         {"--costs -o a.png", "add -o FILE.exr"},
         {"--costs", "add -o FILE.exr"},
         {"--false-colour cost.cycles -o a.exr", "add -o FILE.png"},
-        {"--false-colour cost.cycle -o a.png", "did you mean cost.cycles?"},
+        {"--false-colour cost.cycle -o a.png", "did you mean 'cost.cycles'?"},
         {"--false-colour cost.l4_misses -o a.png", "did you mean"},
         {"--false-colour cost.cycles --range 4:4 -o a.png", "ends before it begins"},
         {"--range 0:4 -o a.png", "--range without --false-colour"},

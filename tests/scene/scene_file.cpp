@@ -33,9 +33,63 @@ TEST(Nearest, IsLeastEdits) {
     EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
     EXPECT_EQ(edit_distance("szie", "size"), 1);
     EXPECT_EQ(edit_distance("size", "size"), 0);
-    constexpr std::array<std::string_view, 3> words{"radiance", "corner", "edge_u"};
-    EXPECT_EQ(nearest("radience", words), "radiance");
-    EXPECT_EQ(nearest("edge", words), "edge_u");
+}
+
+// What was meant is asked only where that may be: of a word that is like no other, no one is told.
+TEST(Nearest, IsMeantWhereNear) {
+    constexpr std::array<std::string_view, 12> words{"radiance", "corner",   "edge_v",        "edge_u",
+                                                     "lod",      "rotation", "fov",           "size",
+                                                     "--size",   "m",        "l2.size_bytes", "kd"};
+    const std::pair<std::string_view, std::string_view> meant_by[] = {
+        {"radience", "radiance"},
+        {"edge", "edge_v"},
+        {"edge_U", "edge_v"},
+        {"rotate", "rotation"},
+        {"fow", "fov"},
+        {"szie", "size"},
+        {"--sise", "--size"},
+        {"kdd", "kd"},
+        {"l2.size", "l2.size_bytes"},
+        {"rad", "radiance"},
+        {"corners", "corner"},
+        // What has as many other letters as like ones is another word.
+        {"side", "size"},
+        {"time", ""},
+        {"noise", ""},
+        {"n", ""},
+        {"--frobnicate", ""},
+        {"kind", ""},
+        {"", ""},
+        {"-", ""},
+        {"samples", ""},
+        {"l2.way", ""},
+        {"ra", ""}};
+    for (const auto& [word, other] : meant_by)
+        EXPECT_EQ(meant(word, words), other) << word;
+    constexpr std::array<std::string_view, 2> few{"size", "crop"};
+    EXPECT_EQ(or_known("sise", few), "did you mean 'size'? Known: size, crop");
+    EXPECT_EQ(or_known("spp", few, "There are"), "there are: size, crop");
+}
+
+// Of what a number, three of them, or either, may be.
+TEST(SceneFile, WrongTypesSayWhatIsWanted) {
+    const std::string mesh = "[[mesh]]\nshape = \"box\"\n",
+                      numbers = "write a number from 1e-30 to 1e+30, or three of them [a, b, c]";
+    const std::pair<std::string, std::string> wrong[] = {
+        {mesh + "scale = \"2\"", "s.toml:3:9: mesh.scale is text; " + numbers},
+        {mesh + "scale = [1, 2]", "s.toml:3:9: mesh.scale is an array of 2; " + numbers},
+        {mesh + "scale = true", "s.toml:3:9: mesh.scale is true or false; " + numbers},
+        {mesh + "scale = [1, \"2\", 3]",
+         "s.toml:3:13: mesh.scale is text; write a number from 1e-30 to 1e+30"},
+        {mesh + "translate = \"2\"", "s.toml:3:13: mesh.translate is text; write three numbers [a, b, c]"},
+        {mesh + "edge_length = \"2\"", "s.toml:3:15: mesh.edge_length is text; write a number from "},
+        {"[settings]\nsamples = \"2\"\n" + mesh,
+         "s.toml:2:11: settings.samples is text; write a whole number from 1 to 65536"},
+        {"[sky]\nradiance = \"2\"\n" + mesh, "s.toml:2:12: sky.radiance is text; write a number from 0 to "
+                                             "1000000000, or three of them [a, b, c]"},
+    };
+    for (const auto& [text, says] : wrong)
+        EXPECT_TRUE(message_of(text).starts_with(says)) << message_of(text);
 }
 
 TEST(SceneFile, ReadsEveryKey) {
@@ -223,7 +277,7 @@ TEST(SceneFile, MistakesNamePlaceCauseAndMend) {
         {"[settings]\nsize = [64, 32]\ncrop = [32, 30, 32, 3]\n" + mesh,
          "s.toml:3:8: the crop of 32 x 3 pixels at (32, 30) is not a part of a picture of 64 x 32; give"},
         {"[settings]\ncrop = [5, 5, 0, 1]\n" + mesh, "the crop of 0 x 1 pixels at (5, 5) is not"},
-        {"[settings]\nlod = \"coarse\"\n" + mesh, "settings.lod 'coarse' is unknown; did you mean"},
+        {"[settings]\nlod = \"coarse\"\n" + mesh, "settings.lod 'coarse' is unknown; known: "},
         {"[settings]\nedge_pixels = nan\n" + mesh, "settings.edge_pixels = nan is out of range"},
         {"settings = 3\n" + mesh, "s.toml:1:12: settings is a whole number; write a table [settings]"},
         {"light = 3\n" + mesh, "light is a whole number; write [[light]]"},

@@ -4,7 +4,6 @@
 #include "analysis/traces/estimators.h"
 #include "analysis/traces/touches.h"
 #include "razor/program/study/checks.h"
-#include "razor/scene/nearest.h"
 #include "traces/error.h"
 #include "traces/formats/format.h"
 #include "traces/program/analysis_options.h"
@@ -93,7 +92,7 @@ std::string wrong_setting(std::string_view key, Value& value) {
     std::vector<std::string_view> keys;
     for (const TraceSetting& setting : trace_settings)
         keys.emplace_back(setting.key);
-    return fmt::format("unknown setting {}; did you mean {}?", key, razor::nearest(key, keys));
+    return razor::no_setting(key, keys);
 }
 
 double seconds_of(clockid_t clock) {

@@ -1,5 +1,8 @@
 #include "razor/program/study/checks.h"
 
+#include "razor/scene/nearest.h"
+#include "razor/scene/text_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,6 +39,13 @@ std::string wrong_number(std::string_view key, Value& value, double least, doubl
     return right ? ""
                  : fmt::format("{} = {} is not possible; write a number from {} to {}", key, toml_text(value),
                                least, most);
+}
+
+std::string no_setting(std::string_view key, const std::vector<std::string_view>& known) {
+    const std::string_view near = meant(key, known);
+    return near.empty()
+               ? fmt::format("unknown setting {}; there are {}", printable(key), fmt::join(known, ", "))
+               : fmt::format("unknown setting {}; did you mean {}?", printable(key), near);
 }
 
 } // namespace razor

@@ -18,4 +18,7 @@ std::string wrong_whole(std::string_view key, const analysis::Value& value, doub
 /// ... a number in a range, which becomes a real one.
 std::string wrong_number(std::string_view key, analysis::Value& value, double least, double most);
 
+/// "unknown setting X; did you mean Y?", or which there are.
+std::string no_setting(std::string_view key, const std::vector<std::string_view>& known);
+
 } // namespace razor

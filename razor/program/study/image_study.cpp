@@ -34,7 +34,7 @@ std::string wrong_image_setting(std::string_view key, Value& value) {
         return *wrong;
     if (auto wrong = wrong_host_setting(key, value))
         return *wrong;
-    return unknown_setting(key, host_keys());
+    return no_scene_setting(key, host_keys());
 }
 
 analysis::Settings without_host(analysis::Settings settings) {

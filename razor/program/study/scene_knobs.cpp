@@ -4,7 +4,6 @@
 #include "razor/program/arguments.h"
 #include "razor/program/scene_options.h"
 #include "razor/scene/error.h"
-#include "razor/scene/nearest.h"
 #include "razor/scene/ranges.h"
 #include "razor/scene/text_file.h"
 #include "razor/scene/words.h"
@@ -77,10 +76,15 @@ std::string wrong_size(const std::string& text) {
     return "";
 }
 
-/// Whether a word is so like another that it may be it, mistyped.
-bool is_near(std::string_view word, std::string_view other) {
-    const std::size_t shorter = std::min(word.size(), other.size());
-    return other.starts_with(word) || 2 * static_cast<std::size_t>(edit_distance(word, other)) <= shorter;
+/// What is wrong with an option, of the setting that it stands for.
+std::string in_words_of_studies(const std::string& wrong) {
+    for (const SceneKnob& knob : scene_knobs()) {
+        const std::string option(knob.option);
+        if (!option.empty() && wrong.starts_with(option) &&
+            (wrong[option.size()] == ':' || wrong[option.size()] == ' '))
+            return std::string(knob.key) + wrong.substr(option.size());
+    }
+    return wrong;
 }
 
 /// Of files that name nothing else.
@@ -119,7 +123,7 @@ std::optional<std::string> wrong_scene_setting(std::string_view key, Value& valu
     return wrong;
 }
 
-std::string unknown_setting(std::string_view key, const std::vector<std::string_view>& others) {
+std::string no_scene_setting(std::string_view key, const std::vector<std::string_view>& others) {
     std::vector<std::string_view> known = others;
     for (const SceneKnob& knob : scene_knobs()) {
         if (knob.option == fmt::format("--{}", key))
@@ -127,10 +131,7 @@ std::string unknown_setting(std::string_view key, const std::vector<std::string_
                                knob.key);
         known.push_back(knob.key);
     }
-    const std::string_view other = nearest(key, known);
-    return is_near(key, other)
-               ? fmt::format("unknown setting {}; did you mean {}?", printable(key), other)
-               : fmt::format("unknown setting {}; there are {}", printable(key), fmt::join(known, ", "));
+    return no_setting(key, known);
 }
 
 SceneDescription describe_scene(const analysis::Settings& settings, const fs::path& folder) {
@@ -152,7 +153,11 @@ SceneDescription describe_scene(const analysis::Settings& settings, const fs::pa
     }
     std::reverse(words.begin(), words.end()); // as CLI11 takes them
     app.parse(words);
-    return options.describe();
+    try {
+        return options.describe();
+    } catch (const UserError& error) {
+        throw UserError(in_words_of_studies(error.what()));
+    }
 }
 
 analysis::Settings with_defaults(analysis::Settings settings, const SceneDescription& scene) {

@@ -26,8 +26,8 @@ const std::vector<SceneKnob>& scene_knobs();
 /// What is wrong with a value (cause; mend), or an empty text; nothing where scenes have no such key. Numbers
 /// become real ones where they may have fractions.
 std::optional<std::string> wrong_scene_setting(std::string_view key, analysis::Value& value);
-/// "unknown setting X; did you mean Y?", of these keys and those of scenes.
-std::string unknown_setting(std::string_view key, const std::vector<std::string_view>& others);
+/// no_setting() of these keys and those of scenes.
+std::string no_scene_setting(std::string_view key, const std::vector<std::string_view>& others);
 
 /// The scene of these settings, posed; keys that are not of scenes are passed over. Files are found from
 /// `folder`. Throws UserError.
