@@ -68,7 +68,7 @@ std::string mend(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 /// An unset variable of a shell is an empty value: what would be done then is not what was meant.
-void check_values(const CLI::App& app) {
+void refuse_empty_values(const CLI::App& app) {
     for (const CLI::Option* const option : app.get_options()) {
         const std::vector<std::string>& values = option->results();
         if (std::find(values.begin(), values.end(), "") != values.end())
@@ -77,7 +77,7 @@ void check_values(const CLI::App& app) {
                                         option->get_required() ? "" : ", or leave it out"));
     }
     for (const CLI::App* const command : app.get_subcommands())
-        check_values(*command);
+        refuse_empty_values(*command);
 }
 
 /// What the program has said is written, or UserError.
@@ -103,7 +103,7 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
         finish_output();
         return false;
     }
-    check_values(app);
+    refuse_empty_values(app);
     return true;
 }
 

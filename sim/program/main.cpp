@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     sweep.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
-            sim::check_values(app);
+            sim::refuse_dashes(app);
             return print.parsed()               ? print_config(machine)
                    : describe.parsed()          ? describe.run()
                    : explain.parsed()           ? explain.run()

@@ -22,7 +22,7 @@ void check_option(const CLI::Option& option) {
 
 } // namespace
 
-void check_values(const CLI::App& app) {
+void refuse_dashes(const CLI::App& app) {
     for (const CLI::App* const command : app.get_subcommands())
         for (const CLI::Option* const option : command->get_options())
             check_option(*option);

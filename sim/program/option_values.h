@@ -7,6 +7,6 @@ namespace sim {
 
 /// Throws razor::UserError where an option of the subcommand that was given has - in the place of a file or a
 /// folder.
-void check_values(const CLI::App& app);
+void refuse_dashes(const CLI::App& app);
 
 } // namespace sim
