@@ -65,11 +65,11 @@ TEST_F(TraceTool, SaysWhatOtherFormatsCannotHold) {
 /// Two outputs are two files; what cannot be printed was not done.
 TEST_F(TraceTool, LosesNoOutput) {
     folder_.file("a.din", "0 7fff0010 8\n1 7fff0010 8\n");
-    folder_.file("empty.din", "");
+    folder_.file("empty.csv", "address\n"); // of no references
     for (const char* arguments :
          {"lines a.din --csv x --json ./x", "lines a.din --csv - --json -",
           "report a.din -o x.html --json x.html", "picture a.din -o x.svg --csv x.svg",
-          "report a.din -o x.pdf", "causes a.din --sizes 1KiB --svg x.png", "picture empty.din -o x.svg",
+          "report a.din -o x.pdf", "causes a.din --sizes 1KiB --svg x.png", "picture empty.csv -o x.svg",
           "strides a.din --top 1 --histogram"}) {
         SCOPED_TRACE(arguments);
         const Outcome result = tool(arguments);
@@ -339,9 +339,34 @@ TEST_F(TraceTool, LeavesNothingBehindWhereItIsKilled) {
     EXPECT_EQ(folder_.count(), before);
 }
 
+// Whatever is asked of it, and however its format is known.
+TEST_F(TraceTool, AnEmptyFileIsNoTrace) {
+    for (const char* name : {"e.csv", "e.din", "e.rzt", "e"})
+        folder_.file(name, "");
+    ASSERT_EQ(run("gzip -c e >e.din.gz", folder_.path()).code, 0);
+    const std::size_t before = folder_.count();
+    for (const char* command :
+         {"info", "info --json", "convert", "curve", "lines", "windows --window 9", "reuse", "strides",
+          "footprint", "objects --sizes 1KiB", "causes --sizes 1KiB", "use --sizes 1KiB"})
+        for (const char* file : {"e.csv --from csv", "e.csv", "e.din", "e.din.gz", "e.rzt", "e",
+                                 "e --from champsim", "- --from din"}) {
+            const std::string arguments = std::string(command) + " " + file,
+                              more = std::string_view(command) == "convert" ? " out.csv" : "";
+            SCOPED_TRACE(arguments);
+            const Outcome result = tool(arguments + more);
+            EXPECT_EQ(result.code, 2);
+            EXPECT_EQ(result.out, "");
+            const std::string name =
+                file[0] == '-' ? "standard input" : arguments.substr(arguments.find(" e") + 1);
+            EXPECT_EQ(result.err, "razor-trace: " + name.substr(0, name.find(" --")) +
+                                      ": is empty; record the trace again\n");
+        }
+    EXPECT_EQ(folder_.count(), before);
+}
+
 TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
     folder_.file("a.din", "0 10 4\n");
-    folder_.file("empty.din", "");
+    folder_.file("empty.csv", "address\n"); // of no references
     const std::size_t before = folder_.count();
     for (const auto& [arguments, cause] : std::vector<std::pair<std::string, std::string>>{
              {"curve", "TRACE"},
@@ -368,8 +393,8 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
               "give other --ways, or --sizes that are multiples of 192"},
              {"curve a.din --sizes 32KiB --rate 1e-30", "give a larger --rate"},
              {"footprint a.din --threads --by structure", "excludes"},
-             {"report empty.din -o a.html", "record some"},
-             {"picture empty.din -o a.svg", "record some"},
+             {"report empty.csv -o a.html", "record some"},
+             {"picture empty.csv -o a.svg", "record some"},
              {"curve a.din --ways 2000", "from 1 to 1024"},
              {"curve a.din --by colour", "there is no such thing; give all, structure"},
              {"curve a.din --kinds read,nothing", "there is no such thing; give read, write"},
@@ -393,7 +418,6 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"picture a.din", "--output"},
              {"picture a.din -o a.jpg", "name a .png file"},
              {"picture a.din -o no/a.png", "no/a.png: cannot be written"},
-             {"report - --from din -o a.html < a.din", "write it into a file first"},
              {"report a.din -o a.html --sizes 1KiB,2KiB", "give one"},
              {"objects a.din", "--sizes"},
              {"tiles a.din", "does not say for which screen tile"},
@@ -411,10 +435,10 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
         EXPECT_NE(result.err.find(cause), std::string::npos) << result.err;
         EXPECT_EQ(folder_.count(), before) << arguments;
     }
-    for (const char* format : {"din", "lackey", "oraclegeneral"}) { // of nothing
-        const Outcome result = tool(std::string("curve - --from ") + format + " </dev/null");
-        EXPECT_EQ(result.code, 0) << result.err;
-    }
+    const Outcome pipe = run("(cat a.din | " + program + " report - --from din -o a.html)", folder_.path());
+    EXPECT_EQ(pipe.code, 2);
+    EXPECT_NE(pipe.err.find("write it into a file first"), std::string::npos) << pipe.err;
+    EXPECT_EQ(tool("curve empty.csv").code, 0);
 }
 
 } // namespace

@@ -116,8 +116,11 @@ const Format* format_by_suffix(std::string_view path) {
 }
 
 const Format& format_of_input(std::string_view name, const std::string& path, PeekingSource& source) {
-    if (!name.empty())
-        return format_by_name("--from", name);
+    const Format* const given = name.empty() ? nullptr : &format_by_name("--from", name);
+    if (source.peek(1).empty())
+        throw Error(fmt::format("{}: is empty; record the trace again", source.name()));
+    if (given != nullptr)
+        return *given;
     if (source.peek(magic.size()).starts_with(magic))
         return table[0];
     if (const Format* f = format_by_suffix(path))
