@@ -1,5 +1,8 @@
 #include "analysis/study/point.h"
 
+#include "analysis/study/error.h"
+#include "analysis/study/toml_section.h"
+
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <fmt/format.h>
 
@@ -7,6 +10,14 @@
 #include <set>
 
 namespace analysis {
+
+std::string stated(std::string_view body, std::string_view key) {
+    try {
+        return parse_toml(body, "a point")[key].value_or(std::string());
+    } catch (const StudyError&) {
+        return "";
+    }
+}
 
 std::string point_name(std::string_view body) {
     // A namespace of this project's own, so that no other's names are met.
@@ -30,7 +41,7 @@ std::vector<Point> resolve_points(const Study& study, const Resolve& resolve) {
         try {
             point.body = resolve(point);
         } catch (const std::exception& error) {
-            point.impossible = error.what();
+            point.impossible = study.placed(error.what(), point.settings);
             point.body = fmt::format("impossible = true\nrival = {}\n\n[settings]\n{}",
                                      toml_text(Value(rival)), toml_text(point.settings));
         }

@@ -14,12 +14,15 @@ namespace analysis {
 struct Point {
     Settings settings;
     std::string rival; // whose it is; empty: the program's own
-    /// All that the result depends on, with every default filled in, as the program that measures writes it:
-    /// the library looks for nothing in it. TOML, by custom.
+    /// All that the result depends on, with every default filled in, in TOML as the program that measures
+    /// writes it: the library looks for nothing in it.
     std::string body;
     std::string name;       // see point_name()
     std::string impossible; // why the point cannot be measured; empty: nothing is known against it
 };
+
+/// The text that a body says under a key that is in no table; empty: none.
+std::string stated(std::string_view body, std::string_view key);
 
 /// Of a text: 32 hexadecimal digits, a UUID of version 5 (SHA-1, RFC 4122), equal for equal texts on all
 /// machines.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -207,13 +208,21 @@ private:
         }
     }
 
-    Settings single_settings(const toml::table& table, std::string_view section) const {
+    /// ... and where it stands.
+    Value placed(const std::string& key, const toml::node& node) {
+        Value value = checked(key, node);
+        const toml::source_position at = node.source().begin;
+        study_.places.insert_or_assign({key, value}, FilePlace{at.line, at.column});
+        return value;
+    }
+
+    Settings single_settings(const toml::table& table, std::string_view section) {
         Settings out;
         each(table, "", [&](const std::string& key, const toml::node& node) {
             if (node.is_array())
                 fail_at(file_, node.source(),
                         fmt::format("{}.{} is a list; write one value, or move it to [knobs]", section, key));
-            out.emplace(key, checked(key, node));
+            out.emplace(key, placed(key, node));
         });
         return out;
     }
@@ -223,19 +232,19 @@ private:
         study_.reference_seeds = section.whole("seeds", 2, 1, 1000);
         each(table, "", [&](const std::string& key, const toml::node& node) {
             if (key != "seeds")
-                study_.reference.emplace(key, checked(key, node));
+                study_.reference.emplace(key, placed(key, node));
         });
     }
 
-    Lists lists(const toml::table& table) const {
+    Lists lists(const toml::table& table) {
         Lists out;
         each(table, "", [&](const std::string& key, const toml::node& node) {
             std::vector<Value> values;
             if (const toml::array* const array = node.as_array())
                 for (const toml::node& one : *array)
-                    values.push_back(checked(key, one));
+                    values.push_back(placed(key, one));
             else
-                values.push_back(checked(key, node));
+                values.push_back(placed(key, node));
             if (values.empty())
                 fail_at(file_, node.source(), fmt::format("{} has no values; list some", key));
             out.emplace_back(key, std::move(values));
@@ -438,7 +447,33 @@ Study read_size(std::string_view text, std::string_view name, const Vocabulary& 
 
 } // namespace
 
+std::string Study::place_of(const std::string& key, const Value& value) const {
+    const auto found = places.find({key, value});
+    return found == places.end() ? file
+                                 : fmt::format("{}:{}:{}", file, found->second.line, found->second.column);
+}
+
+std::string Study::placed(const std::string& wrong, const Settings& settings) const {
+    const auto in_a_word = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+    };
+    std::size_t first = std::string::npos;
+    std::string place;
+    for (const auto& [key, value] : settings)
+        for (std::size_t at = wrong.find(key); at < first; at = wrong.find(key, at + 1)) {
+            const std::size_t end = at + key.size();
+            if ((at > 0 && in_a_word(wrong[at - 1])) || (end < wrong.size() && in_a_word(wrong[end])))
+                continue;
+            first = at;
+            place = place_of(key, value) + ": ";
+        }
+    return wrong.starts_with(file + ":") ? wrong : place + wrong;
+}
+
 Study parse_study(std::string_view text, std::string_view name, const Vocabulary& vocabulary, bool full) {
+    if (full && !parse_toml(text, name).contains("full"))
+        throw StudyError(fmt::format(
+            "{}: has no [full], the size that --full asks for; leave --full out, or write one", name));
     Excludes excludes;
     // Its mistakes are said at once, not when its size is asked for.
     read_size(text, name, vocabulary, !full, excludes);

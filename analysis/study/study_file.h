@@ -35,7 +35,9 @@
 
 #include "analysis/study/settings.h"
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -80,6 +82,11 @@ struct CurveRequest {
     std::string x, y;
 };
 
+/// Where a value stands in a study's file.
+struct FilePlace {
+    std::uint32_t line = 0, column = 0;
+};
+
 struct Study {
     std::string file, title;
     int seeds = 1, repeats = 1;
@@ -92,6 +99,13 @@ struct Study {
     std::vector<CurveRequest> curves;
     std::vector<std::string> rank; // figures
     std::vector<Rival> rivals;
+    std::map<std::pair<std::string, Value>, FilePlace>
+        places; // of settings and their values, the last of equal ones
+
+    /// "FILE:LINE:COLUMN" of a setting; the file alone where it does not say that.
+    std::string place_of(const std::string& key, const Value& value) const;
+    /// What is wrong with a point of these settings, behind the place of the first that it names, if any.
+    std::string placed(const std::string& wrong, const Settings& settings) const;
 };
 
 /// Most points of a study.

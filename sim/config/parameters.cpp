@@ -144,6 +144,13 @@ const std::string& nearest_key(std::string_view key) {
     return std::min_element(table().begin(), table().end(), by_distance)->key;
 }
 
+bool alike(const Config& a, const Config& b) {
+    return std::all_of(table().begin(), table().end(), [&](const Parameter& p) {
+        const bool counts = applies(p, a);
+        return counts == applies(p, b) && (!counts || print_value(p, a) == print_value(p, b));
+    });
+}
+
 bool applies(const Parameter& p, const Config& config) {
     if (p.key == "network.buses")
         return config.network.bus();

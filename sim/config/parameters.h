@@ -59,6 +59,8 @@ const std::string& nearest_key(std::string_view key);
 /// Whether the machine has what the parameter is of: not so for a level of caches that it lacks, but for the
 /// size that says so.
 bool applies(const Parameter& p, const Config& config);
+/// Whether all parameters have the same values in both, but those that apply to neither.
+bool alike(const Config& a, const Config& b);
 /// The value of a parameter, as TOML writes it.
 std::string print_value(const Parameter& p, const Config& config);
 /// What it may be and in which unit: "1 to 64 bytes, a power of two".

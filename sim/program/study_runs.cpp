@@ -32,6 +32,13 @@ using analysis::Value;
 /// Of which points are compared with their reference: relative errors, but of rates their difference.
 constexpr const char* compared[] = {"cycles", "dram_bytes", "l1_miss_rate", "l2_miss_rate"};
 
+/// In a point's body, before its machine.
+constexpr std::string_view machine_title = "# the machine\n";
+/// Throws ConfigError.
+Config machine_in(std::string_view body) {
+    return parse_machine(std::string(body.substr(body.rfind(machine_title))), "a point's machine");
+}
+
 double number_at(const nlohmann::ordered_json& json, const char* pointer) {
     return razor::pointed_numbers(json, pointer).front();
 }
@@ -122,17 +129,17 @@ const MachineStudy::Described& MachineStudy::described(const Settings& settings)
 }
 
 std::string MachineStudy::changed(const Point& point) const {
-    if (const std::string scene = razor::changed_scene(point.settings, folder_, point.body); !scene.empty())
+    if (const std::string scene =
+            razor::changed_scene(point.settings, folder_, analysis::stated(point.body, "scene_digest"));
+        !scene.empty())
         return scene;
-    std::string config;
     try {
-        config = print_machine(machine_of(point.settings).config);
+        if (alike(machine_in(point.body), machine_of(point.settings).config))
+            return "";
     } catch (const std::exception&) {
         // It cannot be read any more.
     }
-    return !config.empty() && point.body.find(config) != std::string::npos
-               ? ""
-               : (folder_ / plain_text(point.settings.at("machine"))).string();
+    return (folder_ / plain_text(point.settings.at("machine"))).string();
 }
 
 MachineDescription MachineStudy::machine_of(const Settings& settings) const {
@@ -148,8 +155,14 @@ MachineDescription MachineStudy::machine_of(const Settings& settings) const {
     } catch (const ConfigError& error) {
         // What overrides the machine's file here is the study's.
         std::string what = error.what();
-        for (std::size_t at = 0; (at = what.find(" from -g", at)) != std::string::npos;)
-            what.replace(at, std::string_view(" from -g").size(), " from " + study_.file);
+        for (const auto& [key, value] : settings) {
+            if (const std::string option = fmt::format("-g {}={}: ", key, plain_text(value));
+                what.starts_with(option))
+                what.erase(0, option.size());
+            const std::string from = key + " from -g";
+            if (const std::size_t at = what.find(from); at != std::string::npos)
+                what.replace(at, from.size(), fmt::format("{} from {}", key, study_.place_of(key, value)));
+        }
         throw ConfigError(what);
     }
 }
@@ -167,9 +180,10 @@ std::string MachineStudy::own_body(const Settings& settings, int seeds, bool of_
     const auto threads = settings.find("host_threads");
     return fmt::format(
         "# A point of razor-sim study.\nkind = \"machine\"\nprogram = {}\nscene_digest = {}\nseeds = {}\n"
-        "repeats = {}\nhost_threads = {}\n\n[settings]\n{}\n# the machine\n{}",
+        "repeats = {}\nhost_threads = {}\n\n[settings]\n{}\n{}{}",
         toml_text(Value(machine_study_program().name)), toml_text(Value(scene.digest)), seeds, study_.repeats,
-        threads == settings.end() ? "1" : plain_text(threads->second), toml_text(known), config);
+        threads == settings.end() ? "1" : plain_text(threads->second), toml_text(known), machine_title,
+        config);
 }
 
 Point MachineStudy::reference_of(const Point& point) const {
@@ -195,7 +209,9 @@ std::string MachineStudy::body(const Point& point) const {
         try {
             out += fmt::format("\n# compared with {}\n", reference_of(point).name);
         } catch (const std::exception& error) {
-            throw razor::UserError(fmt::format("its reference, by [reference]: {}", error.what()));
+            throw razor::UserError(
+                study_.placed(fmt::format("its reference, by [reference]: {}", error.what()),
+                              analysis::overlaid(point.settings, study_.reference)));
         }
     return out;
 }

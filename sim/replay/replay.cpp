@@ -2,6 +2,7 @@
 
 #include "sim/config/error.h"
 #include "sim/config/machine_file.h"
+#include "sim/config/parameters.h"
 #include "traces/error.h"
 #include "traces/in_order.h"
 
@@ -20,7 +21,7 @@ bool is_of(const traces::Description& about, const Config& config) {
     if (!about.filters.empty() || about.sample != 1)
         return false;
     const std::optional<Config> own = machine_of(about);
-    return own && print_machine(*own) == print_machine(config);
+    return own && alike(*own, config);
 }
 
 } // namespace

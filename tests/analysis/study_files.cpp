@@ -231,7 +231,7 @@ TEST(StudyPoint, EqualBodiesAreMeasuredOnceAndImpossibleOnesAreKept) {
     });
     ASSERT_EQ(points.size(), 2U);
     EXPECT_EQ(points[0].impossible, "");
-    EXPECT_EQ(points[1].impossible, "no such edge");
+    EXPECT_EQ(points[1].impossible, "test.toml:3:15: no such edge");
     EXPECT_NE(points[1].name, points[0].name);
 }
 
@@ -245,6 +245,31 @@ TEST(StudySettings, TextReadsBackAsItWas) {
     EXPECT_EQ(
         toml_text(settings),
         "\"a b\" = \"quote \\\" slash \\\\ line\\u000A\"\nc = 0.1\nd = 0.0\ne = 1e+300\nf = true\ng = -7\n");
+}
+
+// What is wrong with a point is told of the line that says so.
+TEST(StudyFile, KnowsWhereSettingsStand) {
+    const Study study =
+        test_study("kind = \"test\"\n[settings]\nsamples = 3\n[knobs]\nedge = [1, 2]\n[[points]]\n"
+                   "edge = 4\nsamples = 5\n");
+    const auto of = [&](const char* wrong, std::size_t point) {
+        return study.placed(wrong, study.points.at(point));
+    };
+    EXPECT_EQ(of("edge is odd", 1), "test.toml:5:12: edge is odd");
+    EXPECT_EQ(of("edge is odd", 2), "test.toml:7:8: edge is odd");
+    EXPECT_EQ(of("5 samples of an edge", 2), "test.toml:8:11: 5 samples of an edge");
+    EXPECT_EQ(of("edge 1 of 3 samples", 0), "test.toml:5:9: edge 1 of 3 samples");
+    EXPECT_EQ(of("edges and l1.edge, edge_pixels", 0), "edges and l1.edge, edge_pixels") << "other words";
+    EXPECT_EQ(of("test.toml:1:1: edge", 0), "test.toml:1:1: edge");
+    EXPECT_EQ(study.place_of("edge", Value(9.0)), "test.toml");
+}
+
+TEST(StudyPoint, StatesTexts) {
+    const std::string body = "# x = \"no\"\ndigest = \"abc\"\nseeds = 1\n[settings]\nx = \"digest\"\n";
+    EXPECT_EQ(stated(body, "digest"), "abc");
+    for (const char* none : {"x", "seeds", "settings", "abc"})
+        EXPECT_EQ(stated(body, none), "") << none;
+    EXPECT_EQ(stated("no TOML", "digest"), "");
 }
 
 } // namespace

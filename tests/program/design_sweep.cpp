@@ -266,7 +266,8 @@ TEST_F(DesignSweep, RefusesMistakesWithOneLine) {
         {begin + "scene = [\"box.toml\", \"none.toml\"]\n",
          "bad.toml:5:22: scene = \"none.toml\": there is no file none.toml"},
         {begin + "l1.ways = [3]\n", "which l1.ways (3) of 64-byte lines do not divide"},
-        {begin + "l1.ways = [3]\n", "l1.ways from bad.toml"},
+        {begin + "l1.ways = [3]\n", "the first: bad.toml:5:12: "},
+        {begin + "l1.ways = [3]\n", "l1.ways from bad.toml:5:12"},
         {begin + "core.lanes = [4]\n[reference]\nsim.mode = \"reference\"\n", "leave out [reference]"},
         {"kind = \"machine\"\n[knobs]\ncore.lanes = [4]\n", "razor-sim sweep: sweep"},
     };
@@ -287,6 +288,7 @@ TEST_F(DesignSweep, RefusesMistakesWithOneLine) {
         {"sweep.toml --point 0123", "write run"},
         {"sweep.toml run --point 0 --part 1/2", "give one"},
         {"sweep.toml run -o u --point 0123", "no point 0123"},
+        {"sweep.toml --full", "sweep.toml: has no [full]"},
         {"none.toml", "none.toml"},
     };
     for (const auto& [arguments, says] : options) {

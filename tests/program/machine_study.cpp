@@ -230,7 +230,10 @@ TEST_F(MachineStudy, SaysWhatIsImpossible) {
          "bad.toml:8:5: cycles_error is measured beside a reference"},
         {"kind = \"machine\"\n[settings]\nmachine = \"tiny.toml\"\n[knobs]\nworkers = [1]\n"
          "[reference]\nl1.ways = 3\n",
-         "its reference, by [reference]: "},
+         "the first: bad.toml:7:11: its reference, by [reference]: "},
+        {"kind = \"machine\"\n[settings]\nmachine = \"tiny.toml\"\nestimate = \"sample:0.1\"\n[knobs]\n"
+         "fidelity_error = [0.1]\n",
+         "the first: bad.toml:6:19: fidelity_error chooses samples itself"},
         {"kind = \"image\"\n[knobs]\nsamples = [1]\n", "use the program that measures others"},
     };
     for (const auto& [bad, says] : cases) {

@@ -190,6 +190,10 @@ TEST_F(Study, RefusesMistakesWithOneLine) {
         {"kind = \"image\"\n[knobs]\nsamples = [0]\n",
          "bad.toml:3:12: samples = 0 is not possible; write a whole number"},
         {"kind = \"image\"\n[knobs]\nmemory = [\"1\"]\n", "bad.toml:3:11: memory '1' is not possible"},
+        {"kind = \"image\"\n[settings]\ncrop = \"0,0,8\"\n[knobs]\nsamples = [1]\n",
+         "bad.toml:3:8: crop '0,0,8' is not possible; give four whole numbers"},
+        {"kind = \"image\"\n[knobs]\ncrop = [\"0,0,8,8\", \"0,0,0,8\"]\n",
+         "bad.toml:3:20: crop '0,0,0,8' has no pixels; give X,Y,WIDTH,HEIGHT"},
         {"kind = \"image\"\n[knobs]\nthreads = [0.5]\n", "bad.toml:3:12: threads = 0.5 is not possible"},
         {"kind = \"machine\"\n[knobs]\nsamples = [1]\n", "use the program that measures others"},
     };
@@ -204,7 +208,17 @@ TEST_F(Study, RefusesMistakesWithOneLine) {
         EXPECT_EQ(folder_.count(), before);
     }
     EXPECT_EQ(study("none.toml").code, 2);
+    // What must fit together is told of one of the lines that say it.
+    folder_.file("bad.toml", "kind = \"image\"\n[settings]\nsize = \"8x8\"\n[knobs]\ncrop = [\"0,0,4,4\", "
+                             "\"4,4,8,8\"]\n");
+    EXPECT_NE(study("bad.toml --plan").out.find("impossible: bad.toml:5:20: crop: the crop of 8 x 8 pixels"),
+              std::string::npos)
+        << study("bad.toml --plan").out;
     EXPECT_EQ(study("study.toml --part 3/2").code, 2);
+    folder_.file("bad.toml", "kind = \"image\"\n[knobs]\nsamples = [1]\n");
+    EXPECT_EQ(
+        study("bad.toml --full --plan").err,
+        "razor: bad.toml: has no [full], the size that --full asks for; leave --full out, or write one\n");
     folder_.file("none.toml", "[[mesh]]\nfile = \"none.obj\"\n");
     // What no single value shows is a point that fails.
     folder_.file("bad.toml", "kind = \"image\"\n[settings]\nsize = \"8x8\"\n[knobs]\nscene = [\"pawn.toml\", "

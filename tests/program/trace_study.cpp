@@ -126,7 +126,7 @@ TEST_F(TraceStudy, SaysWhatIsImpossible) {
         {"kind = \"trace\"\n[knobs]\nshare = [2]\n", "share = 2.0 is not possible"},
         {"kind = \"trace\"\n[knobs]\nmethod = [\"exact\"]\n", "a point has no trace; write trace"},
         {"kind = \"trace\"\n[settings]\ntrace = \"none\"\n[knobs]\nmethod = [\"exact\"]\n",
-         "there is no trace none"},
+         "bad.toml:3:9: there is no trace none"},
         {"kind = \"trace\"\n[settings]\ntrace = \"a.din\"\n[knobs]\nmethod = [\"exact\"]\n[reference]\nways "
          "= 4\n",
          "leave out [reference]"},

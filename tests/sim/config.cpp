@@ -114,5 +114,18 @@ TEST(MachineFile, PrintedMachinesReadBack) {
     }
 }
 
+// What applies to neither machine is no difference.
+TEST(MachineFile, AlikeInWhatApplies) {
+    const auto with = [](std::vector<std::string> settings) { return parse_machine("", "m.toml", settings); };
+    const Config plain = with({});
+    EXPECT_TRUE(alike(plain, plain));
+    EXPECT_TRUE(alike(plain, parse_machine(print_machine(plain), "printed")));
+    EXPECT_FALSE(alike(plain, with({"memory.tRCD=15"})));
+    EXPECT_FALSE(alike(plain, with({"energy.add_pj=0.125"})));
+    EXPECT_TRUE(
+        alike(with({"network.topology=ideal"}), with({"network.topology=ideal", "network.hop_cycles=7"})));
+    EXPECT_FALSE(alike(with({"network.topology=crossbar"}), with({"network.topology=ideal"})));
+}
+
 } // namespace
 } // namespace sim::test

@@ -200,7 +200,7 @@ TraceStudy::TraceStudy(const analysis::Study& study, std::filesystem::path folde
         std::error_code none;
         if (!std::filesystem::is_regular_file(file, none))
             throw Error(fmt::format("{}: there is no trace {}; record it, as the study's first lines may say",
-                                    study.file, file));
+                                    study.place_of("trace", point.at("trace")), file));
         Known& one = known_[key];
         const Description about = open_trace(file, point)->description();
         if (about.sample < 1)

@@ -233,7 +233,7 @@ std::vector<Point> ImageStudy::references(const std::vector<Point>& points) cons
 }
 
 std::string ImageStudy::changed(const Point& point) const {
-    return changed_scene(known_only(point.settings), folder_, point.body);
+    return changed_scene(known_only(point.settings), folder_, analysis::stated(point.body, "scene_digest"));
 }
 
 Result ImageStudy::make_reference(const Point& reference, const analysis::Store& store) const {

@@ -66,10 +66,14 @@ const SceneKnob* find_knob(std::string_view key) {
     return found == all.end() ? nullptr : &*found;
 }
 
-/// Of a picture's size.
-std::string wrong_size(const std::string& text) {
+/// Of a picture's size, and of a part of it, which must lie in what each point's size is.
+std::string wrong_numbers(std::string_view key, const std::string& text) {
     try {
-        parse_size("size", text, size_range);
+        if (key == "size")
+            parse_size(key, text, size_range);
+        if (key == "crop")
+            if (const auto part = parse_four(key, text, crop_range); part[2] == 0 || part[3] == 0)
+                return fmt::format("crop '{}' has no pixels; give X,Y,WIDTH,HEIGHT", printable(text));
     } catch (const UserError& error) {
         return error.what();
     }
@@ -118,9 +122,7 @@ std::optional<std::string> wrong_scene_setting(std::string_view key, Value& valu
         break;
     }
     std::string wrong = wrong_word(key, value, knob->words);
-    if (wrong.empty() && key == "size")
-        wrong = wrong_size(std::get<std::string>(value));
-    return wrong;
+    return wrong.empty() ? wrong_numbers(key, std::get<std::string>(value)) : wrong;
 }
 
 std::string no_scene_setting(std::string_view key, const std::vector<std::string_view>& others) {
@@ -205,9 +207,9 @@ std::string scene_digest(const analysis::Settings& settings, const fs::path& fol
 }
 
 std::string changed_scene(const analysis::Settings& settings, const fs::path& folder,
-                          const std::string& body) {
+                          const std::string& digest) {
     try {
-        if (body.find(scene_digest(settings, folder, describe_scene(settings, folder))) != std::string::npos)
+        if (scene_digest(settings, folder, describe_scene(settings, folder)) == digest)
             return "";
     } catch (const std::exception&) {
         // It cannot be read any more.

@@ -41,9 +41,9 @@ analysis::Settings with_defaults(analysis::Settings settings, const SceneDescrip
 std::string scene_digest(const analysis::Settings& settings, const std::filesystem::path& folder,
                          const SceneDescription& scene);
 
-/// The file of the settings' scene, where the digest of what it and the files it names are now is not in
-/// `body`, a point's; else nothing.
+/// The file of the settings' scene, where the digest of what it and the files it names are now is another
+/// one; else nothing.
 std::string changed_scene(const analysis::Settings& settings, const std::filesystem::path& folder,
-                          const std::string& body);
+                          const std::string& digest);
 
 } // namespace razor
