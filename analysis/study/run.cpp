@@ -30,9 +30,12 @@ int measure_and_write(const Point& point, const Store& store, const Measure& mea
         result = {};
         result.failed = error.what();
     }
-    // What failed may have failed for that.
-    if (options.changed && !options.changed(point).empty())
-        return changed_code;
+    try { // what failed may have failed for that
+        if (options.changed && !options.changed(point).empty())
+            return changed_code;
+    } catch (const Stopped&) {
+        return stopped_code;
+    }
     try {
         store.write_result(point, result, options.program);
     } catch (const std::exception&) {

@@ -26,7 +26,8 @@ struct RunOptions {
     std::function<void(std::size_t done, std::size_t of, const Point& next)> progress{};
     int jobs = 1; // points measured at a time, each in a process
     /// Which of the files that a point is measured from is no more what it was when the point was named, or
-    /// nothing: asked of each that is measured, in its process, before its result is written.
+    /// nothing: asked of each that is measured, in its process, before its result is written. May throw
+    /// Stopped.
     std::function<std::string(const Point& point)> changed{};
 };
 

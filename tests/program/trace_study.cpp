@@ -4,9 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 namespace razor {
 namespace {
@@ -109,6 +111,30 @@ TEST_F(TraceStudy, ComparesWithExactCurves) {
     folder_.file("b.din", "0 10 4\n0 20 4\n0 10 4\n"); // another trace
     EXPECT_EQ(tool("study moved.toml -o s").code, 0);
     EXPECT_EQ(results().size(), 12U);
+}
+
+// What changes while it is measured is no result of what was planned; what is written as it was is the same.
+TEST_F(TraceStudy, KeepsNothingOfTracesThatChange) {
+    std::ifstream in(folder_ / "a.din");
+    const std::string before{std::istreambuf_iterator<char>(in), {}};
+    for (const bool changes : {true, false}) {
+        SCOPED_TRACE(changes);
+        const std::string store = changes ? "s" : "t";
+        std::thread editor([&] {
+            while (!std::filesystem::exists(folder_ / store / "claims"))
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            folder_.file("other.din", before + (changes ? "0 10 4\n" : ""));
+            std::filesystem::rename(folder_ / "other.din", folder_ / "a.din"); // at once
+        });
+        const Outcome result = tool("study study.toml --quiet -o " + store);
+        editor.join();
+        EXPECT_EQ(result.code, changes ? 2 : 0) << result.err;
+        EXPECT_EQ(result.err, changes ? "razor-trace: a.din: was changed while the study ran, and what was "
+                                        "measured of it is not kept; run the same command again\n"
+                                      : "");
+        EXPECT_EQ(tool("study study.toml --quiet -o " + store).code, 0); // goes on
+        folder_.file("a.din", before);
+    }
 }
 
 TEST_F(TraceStudy, SaysWhatIsImpossible) {

@@ -4,6 +4,7 @@
 #include "razor/program/interrupt.h"
 #include "razor/scene/error.h"
 #include "traces/error.h"
+#include "traces/io/interrupt.h"
 #include "traces/program/study_runs.h"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ void StudyCommand::add_to(CLI::App& app) {
 
 int StudyCommand::run() const {
     try {
-        const razor::StudyProgram program = trace_study_program();
+        razor::StudyProgram program = trace_study_program();
         const analysis::Study study = options_.read(program);
         if (!study.rivals.empty())
             throw Error(fmt::format("{}: traces have no rivals; leave out [[rival]]", study.file));
@@ -36,6 +37,7 @@ int StudyCommand::run() const {
         const TraceStudy traces(study, options_.base(), razor::watch_interrupts());
         const auto points =
             analysis::resolve_points(study, [&](const analysis::Point& point) { return traces.body(point); });
+        program.changed = [&](const analysis::Point& point) { return traces.changed(point); };
         const analysis::Store store(options_.folder());
         return options_.run(program, study, points, store, [&](const std::vector<analysis::Point>& missing) {
             return std::vector<razor::StudyStage>{
@@ -47,6 +49,8 @@ int StudyCommand::run() const {
         throw Error(error.what());
     } catch (const razor::UserError& error) {
         throw Error(error.what());
+    } catch (const analysis::Stopped&) { // before anything was measured
+        throw Interrupted();
     }
 }
 

@@ -17,6 +17,8 @@
 #include <ctime>
 #include <numeric>
 #include <set>
+#include <span>
+#include <sys/stat.h>
 
 namespace traces {
 namespace {
@@ -47,6 +49,7 @@ constexpr TraceSetting trace_settings[] = {
               "or \"empty\""},
     {"warm_up", "windows: at their beginning this part is not counted; without it 0"}};
 constexpr std::uint64_t least_sample = 256; // lines
+constexpr std::size_t most_at_once = 65536; // touches, before it looks whether to stop
 
 std::string wrong_sizes(const Value& value) {
     if (const std::string wrong = razor::wrong_word("sizes", value, {}); !wrong.empty())
@@ -101,16 +104,27 @@ double seconds_of(clockid_t clock) {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Of any number of bytes: each part's name with that of all before.
-std::string digest_of(Source& source) {
+/// Of any number of bytes: each part's name with that of all before. Throws Stopped.
+std::string digest_of(Source& source, const std::atomic<bool>& stop) {
     std::string out, part;
     for (;;) {
+        if (stop.load())
+            throw analysis::Stopped{};
         part.resize(std::size_t{1} << 20U);
         part.resize(source.read(part.data(), part.size()));
         if (part.empty())
             return out.empty() ? analysis::point_name("") : out;
         out = analysis::point_name(out + part);
     }
+}
+
+/// Which file it is, how long, and when it was last changed; empty where there is none.
+std::string stamp_of(const std::string& file) {
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0)
+        return "";
+    return fmt::format("{} {} {} {}.{} {}.{}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec,
+                       s.st_mtim.tv_nsec, s.st_ctim.tv_sec, s.st_ctim.tv_nsec);
 }
 
 std::unique_ptr<Input> open_trace(const std::string& file, const Settings& settings) {
@@ -209,7 +223,8 @@ TraceStudy::TraceStudy(const analysis::Study& study, std::filesystem::path folde
                                     file, about.sample));
         if (about.line_bytes != 0)
             one.line_bytes = about.line_bytes;
-        one.digest = digest_of(*open_source(file));
+        one.stamp = stamp_of(file);
+        one.digest = digest_of(*open_source(file), stop_);
     }
 }
 
@@ -280,6 +295,18 @@ std::vector<Point> TraceStudy::references(const std::vector<Point>& points) cons
     return out;
 }
 
+std::string TraceStudy::changed(const Point& point) const {
+    const Known& before = known(point.settings);
+    const std::string file = file_of(point.settings).string();
+    try {
+        if (stamp_of(file) == before.stamp || digest_of(*open_source(file), stop_) == before.digest)
+            return "";
+    } catch (const Error&) {
+        // It cannot be read any more.
+    }
+    return file;
+}
+
 TraceStudy::Run TraceStudy::run(const Settings& whole, std::uint64_t seed) const {
     const std::vector<std::uint64_t> sizes = sizes_of(whole);
     const auto estimator = analysis::make_estimator(sizes, whole_at(whole, "ways"), sampling_of(whole, seed));
@@ -290,12 +317,14 @@ TraceStudy::Run TraceStudy::run(const Settings& whole, std::uint64_t seed) const
                               analysis::Touches::demand, analysis::By::all);
     std::vector<std::uint64_t> lines;
     for (Block block; input->next(block);) {
-        if (stop_.load())
-            throw analysis::Stopped{};
         lines.clear();
         touches.each(block, [&](const analysis::Touch& t) { lines.push_back(t.line); });
         const double before = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-        estimator->touch(lines);
+        for (std::size_t i = 0; i < lines.size(); i += most_at_once) {
+            if (stop_.load())
+                throw analysis::Stopped{};
+            estimator->touch(std::span(lines).subspan(i, std::min(most_at_once, lines.size() - i)));
+        }
         out.estimator_seconds += seconds_of(CLOCK_THREAD_CPUTIME_ID) - before;
         out.touches += lines.size();
     }

@@ -21,7 +21,7 @@ std::string trace_settings_text();
 class TraceStudy {
 public:
     /// `folder`: where traces are named from. Reads all traces once. Throws Error where there is none, or one
-    /// that cannot be studied.
+    /// that cannot be studied; analysis::Stopped.
     TraceStudy(const analysis::Study& study, std::filesystem::path folder, const std::atomic<bool>& stop);
 
     /// A point's body. Throws std::exception where its settings do not fit each other.
@@ -32,10 +32,14 @@ public:
     analysis::Result measure_reference(const analysis::Point& reference) const;
     /// ... beside its reference's, which has been measured.
     analysis::Result measure(const analysis::Point& point, const analysis::Store& store) const;
+    /// The point's trace, where it is no more what it was when the study began; else nothing. Throws
+    /// analysis::Stopped.
+    std::string changed(const analysis::Point& point) const;
 
 private:
     struct Known {          // of a trace's file
         std::string digest; // of its bytes
+        std::string stamp;  // while it is this, nobody has written there: large traces need not be read again
         std::uint64_t line_bytes = 64;
     };
     struct Run {                                                          // of a trace through an estimator
