@@ -1,6 +1,7 @@
 // The references of a block's streams, merged by time.
 #pragma once
 
+#include "traces/io/interrupt.h"
 #include "traces/reference.h"
 
 #include <cstdint>
@@ -14,17 +15,23 @@ class TimeOrder {
 public:
     /// Visits the references of a block, visit(segment, number), in order of time as far as the order within
     /// streams allows: always the earliest of the streams' next ones (of equals, that of the first stream),
-    /// where none counts as earlier than those before it in its stream.
+    /// where none counts as earlier than those before it in its stream. Visits may be long: throws
+    /// Interrupted between two of them.
     template <class Visit> void each(const Block& block, Visit visit) {
         if (block.segments.size() == 1) {
             const Segment& only = block.segments.front();
-            for (std::size_t i = only.begin; i < only.end; ++i)
+            for (std::size_t i = only.begin; i < only.end; ++i) {
+                check_interrupts(i - only.begin);
                 visit(only, i);
+            }
             return;
         }
         sort(block);
-        for (const std::uint32_t i : numbers_)
-            visit(block.segments[segment_of_[i]], std::size_t{i});
+        for (std::size_t place = 0; place < numbers_.size(); ++place) {
+            check_interrupts(place);
+            const std::size_t i = numbers_[place];
+            visit(block.segments[segment_of_[i]], i);
+        }
     }
 
 private:

@@ -4,6 +4,7 @@
 #include "analysis/traces/table.h"
 #include "traces/description.h"
 #include "traces/in_time.h"
+#include "traces/io/interrupt.h"
 #include "traces/reference.h"
 
 #include <array>
@@ -84,8 +85,10 @@ public:
             const std::uint64_t last = a.address + a.more;
             Touch touch{
                 a.address >> shift_, a.address & within, within, a.group, a.stream, a.time, a.writes, a.tile};
-            for (; touch.line != last >> shift_; ++touch.line, touch.low = 0)
+            for (; touch.line != last >> shift_; ++touch.line, touch.low = 0) {
+                traces::check_interrupts(); // there may be millions
                 visit(touch);
+            }
             touch.high = last & within;
             visit(touch);
         });

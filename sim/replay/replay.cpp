@@ -5,6 +5,7 @@
 #include "sim/config/parameters.h"
 #include "traces/error.h"
 #include "traces/in_order.h"
+#include "traces/io/interrupt.h"
 
 #include <fmt/format.h>
 
@@ -216,6 +217,7 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
     const bool compacts = machine_.by_reference() && !machine_.is_memory(); // of a DRAM any has a place
     const unsigned shift = machine_.line_shift();
     for (std::size_t i = begin; i < end;) {
+        traces::check_interrupts();
         const std::uint32_t number = block.classes[i];
         const ReplayAction& a = actions_[number];
         const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];

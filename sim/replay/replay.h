@@ -90,7 +90,7 @@ public:
     Replay(const Config& config, const traces::Description& about, const ReplayOptions& options,
            ReplayListener* listener = nullptr);
     ReplayMachine& machine() { return machine_; }
-    /// The next of the trace. Throws traces::Error.
+    /// The next of the trace. Throws traces::Error, traces::Interrupted.
     void add(const traces::Block& block);
     /// No more comes. `about`: with all names.
     ReplayResult finish(const traces::Description& about);

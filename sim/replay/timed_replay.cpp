@@ -3,6 +3,7 @@
 #include "sim/config/error.h"
 #include "sim/machine/windows.h"
 #include "traces/error.h"
+#include "traces/io/interrupt.h"
 
 #include <fmt/format.h>
 
@@ -167,6 +168,7 @@ void TimedReplay::perform(std::uint32_t number) {
 
 void TimedReplay::run(bool all) {
     for (;;) {
+        traces::check_interrupts();
         if (turns_.empty()) {
             if (waiting_.empty() || (!all && machine_.window_end() > limit()))
                 return;

@@ -1,10 +1,11 @@
 // Streams merged by time, against the definition: the earliest of the streams' next ones, one after the
 // other.
-#include "traces/in_time.h"
+#include "traces/in_order.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -55,6 +56,40 @@ TEST(InTime, VisitsTheEarliestOfTheStreams) {
         Visits visits;
         order.each(block, [&](const Segment& s, std::size_t i) { visits.emplace_back(s.stream, i); });
         ASSERT_EQ(visits, plainly(block)) << trial;
+    }
+}
+
+/// Sets the signal for as long as it lives.
+struct Interrupt {
+    Interrupt() { interrupt_signal = 1; }
+    ~Interrupt() { interrupt_signal = 0; }
+};
+
+// Of blocks that take long, only a few references more are visited.
+TEST(InTime, EndsBetweenTwoVisits) {
+    for (const std::size_t streams : {1U, 2U, 7U}) {
+        constexpr std::size_t of_each = 5000;
+        Block block;
+        for (std::size_t s = 0; s < streams; ++s) {
+            for (std::size_t i = 0; i < of_each; ++i)
+                block.times.push_back(i);
+            block.segments.push_back({static_cast<std::uint32_t>(s), s * of_each, (s + 1) * of_each});
+        }
+        block.addresses.resize(block.times.size());
+        block.order = {{.segment = 0, .count = of_each}};
+        for (const bool ordered : {false, true}) {
+            if (!ordered)
+                block.order.clear();
+            std::size_t visits = 0;
+            std::optional<Interrupt> signal;
+            const auto visit = [&](const Segment&, std::size_t) {
+                if (++visits == 1000)
+                    signal.emplace();
+            };
+            EXPECT_THROW(each_in_order(block, visit, [](const Turn&) {}), Interrupted);
+            EXPECT_GE(visits, 1000U);
+            EXPECT_LE(visits, 1256U);
+        }
     }
 }
 

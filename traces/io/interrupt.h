@@ -2,6 +2,7 @@
 #pragma once
 
 #include <csignal>
+#include <cstddef>
 
 namespace traces {
 
@@ -23,6 +24,12 @@ struct Interrupted {};
 inline void check_interrupts() {
     if (interrupted())
         throw Interrupted();
+}
+
+/// The same at some of many steps, by their numbers: the others cost nothing.
+inline void check_interrupts(std::size_t step) {
+    if (step % 256 == 0)
+        check_interrupts();
 }
 
 } // namespace traces

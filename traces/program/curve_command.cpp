@@ -147,7 +147,7 @@ Table CurveCommand::exact() {
     std::size_t shown = 0;
     for (bool more = true; shown < lines.size() && more; ++shown) {
         if (optimum_)
-            least.push_back(optimum.misses(lines[shown], groups, check_interrupts));
+            least.push_back(optimum.misses(lines[shown], groups, [] { check_interrupts(); }));
         more = chosen || lru.lines() > lines[shown]; // else all larger ones are like this one
     }
     for (std::size_t g = 0; g < groups; ++g)

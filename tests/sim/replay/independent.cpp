@@ -8,6 +8,7 @@
 #include "traces/error.h"
 #include "traces/formats/format.h"
 #include "traces/in_order.h"
+#include "traces/io/interrupt.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -296,6 +297,26 @@ TEST(IndependentReplay, WhatCannotBeReplayedIsSaid) {
     builder.take(block);
     EXPECT_NE(mistake([&] { Replay(config, description("cycles"), {}).add(block); }).find("beyond"),
               std::string::npos);
+}
+
+// Also in a block that takes long, and of what waits for it.
+TEST(IndependentReplay, EndsWithinABlock) {
+    const Config config = machine(hierarchies.front());
+    traces::BlockBuilder builder;
+    for (std::uint64_t i = 0; i < 100000; ++i)
+        builder.add({i, i * 64 % 1048576, 0, {}});
+    traces::Block block;
+    builder.take(block);
+    Replay plain(config, description("cycles"), {});
+    TimedReplay timed(config, nullptr, description("cycles"), {});
+    traces::interrupt_signal = 1;
+    EXPECT_THROW(plain.add(block), traces::Interrupted);
+    EXPECT_THROW(timed.add(block), traces::Interrupted);
+    traces::interrupt_signal = 0;
+    timed.add(block);
+    traces::interrupt_signal = 1;
+    EXPECT_THROW(timed.finish(description("cycles")), traces::Interrupted);
+    traces::interrupt_signal = 0;
 }
 
 } // namespace
