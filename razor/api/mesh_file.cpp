@@ -63,7 +63,7 @@ MeshFigures write_mesh_file(const std::filesystem::path& file, const razor::Scen
     stop_if(cancel);
     frame.dice_all(native_target(isa));
     stop_if(cancel);
-    const std::vector<DicedInstance> objects = diced_mesh(frame);
+    const std::vector<DicedInstance> objects = diced_mesh(frame, [&] { stop_if(cancel); });
 
     Writer out(file.string(), cancel);
     out.line("# razor {}: {}, as its camera sees it", version(), word(scene.name));

@@ -68,7 +68,8 @@ struct Grid {
 
 class InstanceBuilder {
 public:
-    InstanceBuilder(Frame& frame, const InstanceRecord& record) : frame_(frame), record_(record) {
+    InstanceBuilder(Frame& frame, const InstanceRecord& record, const std::function<void()>& look)
+        : frame_(frame), record_(record), look_(look) {
         const FrameHeader& h = frame.header();
         const dvec3 origin = vec(record.origin);
         field_ = {vec(h.field_origin) - origin, vec(h.camera_slope), h.camera_base, h.camera_growth};
@@ -82,8 +83,11 @@ public:
     DicedInstance build() {
         for (int p = 0; p < record_.patch_count; ++p)
             add_patch(record_.first_patch + p);
-        for (std::size_t t = 0; t < triangles_.size(); ++t)
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            if (t % 1024 == 0)
+                look_();
             add_face(triangles_[t]);
+        }
         for (dvec3& p : out_.points)
             p = world_ + frame_.unit() * p;
         return std::move(out_);
@@ -214,6 +218,7 @@ private:
         g.part = record.kind < PatchKind::flat_quad && (record.side_flags[0] & side_half) != 0;
         vertices_.clear();
         for (const Block& b : all) {
+            look_();
             const BlockHeader& block = *b.header;
             for (int s = 0; s < 4; ++s)
                 if (block.curve[s] != inner_side) {
@@ -233,8 +238,10 @@ private:
                 }
             }
         }
-        for (const Block& b : finest)
+        for (const Block& b : finest) {
+            look_();
             add_block(g, b);
+        }
     }
 
     void add_block(const Grid& g, const Block& b) {
@@ -314,6 +321,7 @@ private:
 
     Frame& frame_;
     const InstanceRecord& record_;
+    const std::function<void()>& look_;
     Field field_{};
     bool morphs_ = false, mirrored_ = false;
     dvec3 world_{0};
@@ -326,10 +334,10 @@ private:
 
 } // namespace
 
-std::vector<DicedInstance> diced_mesh(Frame& frame) {
+std::vector<DicedInstance> diced_mesh(Frame& frame, const std::function<void()>& look) {
     std::vector<DicedInstance> all;
     for (int n = 0; n < frame.instances(); ++n)
-        all.push_back(InstanceBuilder(frame, frame.header().instances.get()[n]).build());
+        all.push_back(InstanceBuilder(frame, frame.header().instances.get()[n], look).build());
     return all;
 }
 

@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <functional>
 #include <vector>
 
 namespace razor {
@@ -24,7 +25,9 @@ struct DicedInstance {
 
 /// Of a frame whose blocks are diced (Frame::dice_all): every vertex where the camera's field puts it
 /// (razor/kernels/morph.h), in double precision; vertices that have gone from the camera's view appear only
-/// where something beside them has not. Instances in the scene's order.
-std::vector<DicedInstance> diced_mesh(Frame& frame);
+/// where something beside them has not. Instances in the scene's order. `look` is called now and then, far
+/// more often than ten times a second, and may throw to end the work.
+std::vector<DicedInstance> diced_mesh(
+    Frame& frame, const std::function<void()>& look = [] {});
 
 } // namespace razor

@@ -213,5 +213,29 @@ TEST(DicedMeshes, FollowTheDicingCamera) {
     EXPECT_NE(own[0].points, diced(scene)[0].points);
 }
 
+// Who writes a mesh may be asked to stop: after no more than a block, or so many faces.
+TEST(DicedMeshes, LookWhetherToEnd) {
+    struct End {};
+    const Scene scene = scene_of(urchin_cage(), 100);
+    Frame frame(scene, {});
+    frame.dice_all(*native_targets().back());
+    std::size_t looks = 0, faces = 0;
+    for (const DicedInstance& one : diced_mesh(frame, [&] { ++looks; }))
+        faces += one.face_sizes.size();
+    EXPECT_GT(faces, 2000U);
+    EXPECT_GT(looks, faces / 128);
+    const std::size_t all = looks;
+    for (const std::size_t last : {std::size_t{1}, all / 2, all}) {
+        looks = 0;
+        EXPECT_THROW(diced_mesh(frame,
+                                [&] {
+                                    if (++looks == last)
+                                        throw End();
+                                }),
+                     End);
+        EXPECT_EQ(looks, last);
+    }
+}
+
 } // namespace
 } // namespace razor::test
