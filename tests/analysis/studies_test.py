@@ -56,7 +56,8 @@ class Studies(unittest.TestCase):
         self.assertEqual(len(table.splitlines()), 2)
         _, half, late = rows[0]["megabytes"]
         self.assertLess(late, half + 0.5) # of 75 frames
-        self.assertLess(late, 1.1 * rows[0]["fresh_megabytes"])
+        # Pages of the program itself are resident or not, as its host likes: up to some megabytes.
+        self.assertLess(late, 1.25 * rows[0]["fresh_megabytes"])
         self.assertGreater(rows[0]["over_fresh"], 0)
         self.assertIn("too few", self.refused("levels/steady.py", "x.toml", "--frames", "10", "--last", "10"))
 
