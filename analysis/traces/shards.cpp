@@ -9,11 +9,13 @@
 namespace analysis {
 namespace {
 
-/// In the sample, a cache of n lines has n * rate; what is less than one still holds the line at hand.
+/// In the sample, a cache of n lines has n * rate; what is less than one still holds the line at hand. At
+/// most more than any cache has, however small the rate.
 std::uint64_t scaled(std::uint64_t distance, double rate) {
     if (distance == StackDistance::first)
         return distance;
-    return static_cast<std::uint64_t>(std::ceil(static_cast<double>(distance - 1) / rate)) + 1;
+    return static_cast<std::uint64_t>(std::min(std::ceil(static_cast<double>(distance - 1) / rate), 0x1p62)) +
+           1;
 }
 
 /// Of hashes, which have 53 bits.

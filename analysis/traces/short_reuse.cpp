@@ -18,7 +18,8 @@ constexpr std::uint64_t seed_step = 0xD1B54A32D192ED03U; // odd, without a patte
 ShortReuse::ShortReuse(std::vector<std::uint64_t> sizes, double rate, std::uint64_t stretch,
                        std::uint64_t seed)
     : sizes_(std::move(sizes)), stretch_(stretch),
-      period_(std::max(stretch, static_cast<std::uint64_t>(static_cast<double>(stretch) / rate))),
+      period_(std::max(stretch,
+                       static_cast<std::uint64_t>(std::min(static_cast<double>(stretch) / rate, 0x1p62)))),
       seed_(seed), stack_(slots) {
     for (std::size_t i = 0; i < near_.size(); ++i) // in a stretch that has so many lines
         near_[i] =
