@@ -112,8 +112,8 @@ inline vint face_material(const Context& c, const Hits& h, const vint& record, c
     return gather(materials, face, m);
 }
 
-/// Rays by what they ask for, of the length at which the finest vertices of their blocks are gone
-/// (gone_from()): from a half, where those of the level before are, to 1.
+/// What rays ask for as a share of the length at which the finest vertices of their blocks are gone
+/// (gone_from()): a half, where those of the next finer level are, to 1.
 inline vfloat part_gone(const Context& c, const vint& block, const vfloat& target, const vmask& m) {
     constexpr int absolute_word = offsetof(BlockHeader, absolute) / 4;
     vint absolute = gather(as<std::int32_t>(c.grids) + absolute_word, block, m);
@@ -254,6 +254,8 @@ template <Look L>
         // can move, which begin to where the others end, the more of that the nearer they are to it; and not
         // along the normal but back along the ray: beside the surface others may be nearer than that, as in
         // sharp folds, along the ray none is.
+        // Vertices of a level move four times as far as those of the next finer one: from half of what the
+        // next coarser level's can move to twice that, with which blocks of that level begin.
         vfloat part = part_gone(c, block, s.target, s.hit);
         vfloat above = k.sway_above - k.sway;
         above = above * (part * part);
