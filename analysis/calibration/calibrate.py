@@ -5,14 +5,16 @@
     analysis/calibration/calibrate.py avx2 --machine configs/machines/zen4-2c-avx2.toml --no-fit -- --size 48x48 --spp 4
 
 Renders a frame with the target's kernels under valgrind (callgrind: cachegrind that knows who called whom) and the same
-frame on one worker of the machine with each of --registers, and fits core.vector_registers, core.scalar_moves and
-core.vector_moves to all kernels alike; or (--no-fit) on the machine as it is. What follows -- is the frame: a scene and options as of `razor render`; the built-in scene at 64x64 with
-one sample without. -o writes what remains between both for a machine file's `calibration`.
+frame on one worker of the machine with each of --registers and --interleaved, and fits core.vector_registers,
+core.interleaved_values, core.scalar_moves and core.vector_moves to all kernels alike; or (--no-fit) on the machine as it is.
+What follows -- is the frame: a scene and options as of `razor render`; the built-in scene at 64x64 with one sample without.
+-o writes what remains between both for a machine file's `calibration`.
 
 valgrind counts a gather and the memory operand of a fused multiplication of avx2 as eight references, so that references
 are fitted for other targets alone. Bars: 20 % of instructions, 25 % of references. Exit code: 0; 2 on a mistake.
 """
 import argparse
+import itertools
 import json
 import os
 import subprocess
@@ -24,7 +26,7 @@ import fit
 
 BARS = {"instructions": 0.20, "references": 0.25}
 FRAME = ["--size", "64x64", "--spp", "1"]
-FITTED = ("core.vector_registers", "core.scalar_moves", "core.vector_moves")
+FITTED = ("core.vector_registers", "core.interleaved_values", "core.scalar_moves", "core.vector_moves")
 # What decides what is counted, beside these (a key, or a section): a machine that differs in any is not the one that was
 # calibrated.
 DECISIVE = ("core.lanes", "core.broadcasts", "core.memory_operands", "core.scalar_overhead", "core.gather", "core.address_folding", "core.skip_idle", "lanes", "instructions")
@@ -120,16 +122,16 @@ def fitted(options, folder, counted, figures):
     def run(*values):
         return simulated_report(options, folder, [f"{key}={value}" for key, value in zip(FITTED, values)])
 
-    least = options.registers[0]
-    reports = {r: run(r, 0, 0) for r in options.registers}
-    simulated = {r: simulated_counts(report) for r, report in reports.items()}
+    reports = {values: run(*values, 0, 0) for values in itertools.product(options.registers, options.interleaved)}
+    simulated = {values: simulated_counts(report) for values, report in reports.items()}
+    least = next(iter(reports))
     slopes = []
     for one in ((1, 0), (0, 1)):
-        more = complete(counted, simulated_counts(run(least, *one)))
+        more = complete(counted, simulated_counts(run(*least, *one)))
         slopes.append({k: more[k]["instructions"] - simulated[least][k]["instructions"] for k in counted})
-    found, error = fit.fit(counted, simulated, slopes, figures)
-    ratios = fit.ratios(counted, simulated[found[0]], slopes, found[1:], list(BARS))
-    return reports[found[0]], ratios, found, error
+    (values, *moves), error = fit.fit(counted, simulated, slopes, figures)
+    ratios = fit.ratios(counted, simulated[values], slopes, moves, list(BARS))
+    return reports[values], ratios, (*values, *moves), error
 
 
 def calibrate(options, folder):
@@ -181,7 +183,8 @@ def parse(arguments):
     parser.add_argument("target", choices=["plain", "sse4", "avx2"], help="whose kernels are counted")
     parser.add_argument("--machine", required=True, metavar="FILE")
     parser.add_argument("-g", action="append", default=[], metavar="KEY=VALUE", help="overrides a setting of the machine")
-    parser.add_argument("--registers", nargs="+", type=int, default=[1, 2, 3, 4, 5, 6, 8], metavar="N", help="to try")
+    parser.add_argument("--registers", nargs="+", type=int, default=[1, 2, 3, 4, 6, 8], metavar="N", help="to try")
+    parser.add_argument("--interleaved", nargs="+", type=int, default=[0, 1, 2, 3, 4, 6], metavar="N", help="likewise")
     parser.add_argument("--no-fit", dest="fit", action="store_false", help="take the machine's own settings: for frames held out")
     parser.add_argument("-o", "--output", metavar="FILE.json", help="write what remains, for a machine's `calibration`")
     parser.add_argument("--profile", metavar="FILE", help="callgrind's of the same frame, instead of counting anew")
@@ -191,6 +194,8 @@ def parse(arguments):
     options = parser.parse_args(arguments)
     if min(options.registers) < 1:
         raise Mistake("--registers: give numbers from 1")
+    if min(options.interleaved) < 0:
+        raise Mistake("--interleaved: give numbers from 0")
     options.frame, options.command = frame, command
     return options
 

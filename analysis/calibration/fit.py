@@ -1,10 +1,10 @@
-"""Which core.vector_registers, core.scalar_moves and core.vector_moves bring the simulated core's counts nearest to a
-native build's.
+"""Which core.vector_registers, core.interleaved_values, core.scalar_moves and core.vector_moves bring the simulated core's
+counts nearest to a native build's.
 
 Counts: {kernel: {"instructions": n, "references": n}}. The error of a kernel's figure is the logarithm of simulated over
 counted; all kernels count alike, however large, as a machine is asked about each. Moves are charged with every scalar
 computation, and with every instruction of a vector computation, so that a kernel's instructions are a + b scalar + c vector
-exactly, and references do not change; registers are tried out.
+exactly, and references do not change; registers and what is interleaved are tried out.
 """
 import math
 
@@ -30,9 +30,9 @@ def error(all_ratios):
 
 
 def fit(counted, simulated, slopes, figures):
-    """((registers, scalar, vector), error) with the least error. `simulated`: {registers: counts without moves}. Of equal
-    errors the fewest registers and the least moves."""
-    tried = ((error(ratios(counted, counts, slopes, (scalar, vector), figures)), registers, scalar, vector)
-             for registers, counts in simulated.items() for scalar in SCALAR for vector in VECTOR)
+    """((values, scalar, vector), error) with the least error. `simulated`: {values: counts without moves}, the values being
+    (registers, interleaved). Of equal errors the fewest registers and the least moves."""
+    tried = ((error(ratios(counted, counts, slopes, (scalar, vector), figures)), values, scalar, vector)
+             for values, counts in simulated.items() for scalar in SCALAR for vector in VECTOR)
     least, *found = min(tried)
     return tuple(found), least

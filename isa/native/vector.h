@@ -79,91 +79,94 @@ template <class R, class Op, class... A> [[gnu::always_inline]] inline R map(Op 
     return r;
 }
 } // namespace detail
+// Always: out of line, all operands are stored before each operation and loaded in it, whether registers are left or
+// not.
+#define ISA_INLINE [[gnu::always_inline]] inline
 #define ISA_OP(expression) [](auto... x) { return reg::expression(x...); }
 
 // --- vfloat arithmetic: correctly rounded
-inline vfloat operator+(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(add), a, b); }
-inline vfloat operator-(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(sub), a, b); }
-inline vfloat operator*(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(mul), a, b); }
-inline vfloat operator/(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(div), a, b); }
+ISA_INLINE vfloat operator+(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(add), a, b); }
+ISA_INLINE vfloat operator-(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(sub), a, b); }
+ISA_INLINE vfloat operator*(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(mul), a, b); }
+ISA_INLINE vfloat operator/(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(div), a, b); }
 /// a*b + c. One rounding; two on sse4.
-inline vfloat fma(const vfloat& a, const vfloat& b, const vfloat& c) {
+ISA_INLINE vfloat fma(const vfloat& a, const vfloat& b, const vfloat& c) {
     return detail::map<vfloat>(ISA_OP(fma), a, b, c);
 }
 /// a*b - c. One rounding; two on sse4.
-inline vfloat fms(const vfloat& a, const vfloat& b, const vfloat& c) {
+ISA_INLINE vfloat fms(const vfloat& a, const vfloat& b, const vfloat& c) {
     return detail::map<vfloat>(ISA_OP(fms), a, b, c);
 }
 /// c - a*b. One rounding; two on sse4.
-inline vfloat fnma(const vfloat& a, const vfloat& b, const vfloat& c) {
+ISA_INLINE vfloat fnma(const vfloat& a, const vfloat& b, const vfloat& c) {
     return detail::map<vfloat>(ISA_OP(fnma), a, b, c);
 }
 /// a*b - p: the exact rounding error of p = a*b on every target, sse4 too (barring overflow, and underflow of
 /// the error).
-inline vfloat product_error(const vfloat& a, const vfloat& b, const vfloat& p) {
+ISA_INLINE vfloat product_error(const vfloat& a, const vfloat& b, const vfloat& p) {
     return detail::map<vfloat>(ISA_OP(product_error), a, b, p);
 }
 /// a < b ? a : b (b where either is NaN or both are zeros).
-inline vfloat min(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(min), a, b); }
+ISA_INLINE vfloat min(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(min), a, b); }
 /// a > b ? a : b (b where either is NaN or both are zeros).
-inline vfloat max(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(max), a, b); }
+ISA_INLINE vfloat max(const vfloat& a, const vfloat& b) { return detail::map<vfloat>(ISA_OP(max), a, b); }
 /// Correctly rounded; NaN below zero, -0 at -0.
-inline vfloat sqrt(const vfloat& a) { return detail::map<vfloat>(ISA_OP(sqrt), a); }
+ISA_INLINE vfloat sqrt(const vfloat& a) { return detail::map<vfloat>(ISA_OP(sqrt), a); }
 /// Exact; NaN and infinities unchanged.
-inline vfloat floor(const vfloat& a) { return detail::map<vfloat>(ISA_OP(floor), a); }
+ISA_INLINE vfloat floor(const vfloat& a) { return detail::map<vfloat>(ISA_OP(floor), a); }
 /// To the nearest integer, ties to even; exact; NaN and infinities unchanged.
-inline vfloat round_even(const vfloat& a) { return detail::map<vfloat>(ISA_OP(round_even), a); }
+ISA_INLINE vfloat round_even(const vfloat& a) { return detail::map<vfloat>(ISA_OP(round_even), a); }
 /// 1/a and 1/sqrt(a) by true division and square root: one and two roundings.
-inline vfloat reciprocal(const vfloat& a) { return vfloat(1.0F) / a; }
-inline vfloat reciprocal_sqrt(const vfloat& a) { return vfloat(1.0F) / sqrt(a); }
+ISA_INLINE vfloat reciprocal(const vfloat& a) { return vfloat(1.0F) / a; }
+ISA_INLINE vfloat reciprocal_sqrt(const vfloat& a) { return vfloat(1.0F) / sqrt(a); }
 
 // --- vfloat comparison: false where either is NaN, except !=
-inline vmask operator<(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
-inline vmask operator<=(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(le), a, b); }
-inline vmask operator>(const vfloat& a, const vfloat& b) { return b < a; }
-inline vmask operator>=(const vfloat& a, const vfloat& b) { return b <= a; }
-inline vmask operator==(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
-inline vmask operator!=(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(ne), a, b); }
+ISA_INLINE vmask operator<(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
+ISA_INLINE vmask operator<=(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(le), a, b); }
+ISA_INLINE vmask operator>(const vfloat& a, const vfloat& b) { return b < a; }
+ISA_INLINE vmask operator>=(const vfloat& a, const vfloat& b) { return b <= a; }
+ISA_INLINE vmask operator==(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
+ISA_INLINE vmask operator!=(const vfloat& a, const vfloat& b) { return detail::map<vmask>(ISA_OP(ne), a, b); }
 
 // --- vint arithmetic: 32 bits, wraps
-inline vint operator+(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(add), a, b); }
-inline vint operator-(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(sub), a, b); }
-inline vint operator*(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(mul), a, b); }
-inline vint operator&(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_and), a, b); }
-inline vint operator|(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_or), a, b); }
-inline vint operator^(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_xor), a, b); }
+ISA_INLINE vint operator+(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(add), a, b); }
+ISA_INLINE vint operator-(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(sub), a, b); }
+ISA_INLINE vint operator*(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(mul), a, b); }
+ISA_INLINE vint operator&(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_and), a, b); }
+ISA_INLINE vint operator|(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_or), a, b); }
+ISA_INLINE vint operator^(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(bit_xor), a, b); }
 /// Shifts: counts modulo 32; >> is arithmetic.
-inline vint operator<<(const vint& a, const vint& n) { return detail::map<vint>(ISA_OP(shift_left), a, n); }
-inline vint operator>>(const vint& a, const vint& n) { return detail::map<vint>(ISA_OP(shift_right), a, n); }
-inline vint shift_right_logical(const vint& a, const vint& n) {
+ISA_INLINE vint operator<<(const vint& a, const vint& n) { return detail::map<vint>(ISA_OP(shift_left), a, n); }
+ISA_INLINE vint operator>>(const vint& a, const vint& n) { return detail::map<vint>(ISA_OP(shift_right), a, n); }
+ISA_INLINE vint shift_right_logical(const vint& a, const vint& n) {
     return detail::map<vint>(ISA_OP(shift_right_logical), a, n);
 }
 /// Shifts of all lanes by one constant from 0 to 31.
-template <std::same_as<vint> V> inline vint operator<<(const V& a, int n) {
+template <std::same_as<vint> V> ISA_INLINE vint operator<<(const V& a, int n) {
     return detail::map<vint>([n](reg::I x) { return reg::shift_left(x, n); }, a);
 }
-template <std::same_as<vint> V> inline vint operator>>(const V& a, int n) {
+template <std::same_as<vint> V> ISA_INLINE vint operator>>(const V& a, int n) {
     return detail::map<vint>([n](reg::I x) { return reg::shift_right(x, n); }, a);
 }
-template <std::same_as<vint> V> inline vint shift_right_logical(const V& a, int n) {
+template <std::same_as<vint> V> ISA_INLINE vint shift_right_logical(const V& a, int n) {
     return detail::map<vint>([n](reg::I x) { return reg::shift_right_logical(x, n); }, a);
 }
-inline vint min(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(min), a, b); }
-inline vint max(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(max), a, b); }
+ISA_INLINE vint min(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(min), a, b); }
+ISA_INLINE vint max(const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(max), a, b); }
 
 // --- vint comparison
-inline vmask operator<(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
-inline vmask operator<=(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(le), a, b); }
-inline vmask operator>(const vint& a, const vint& b) { return b < a; }
-inline vmask operator>=(const vint& a, const vint& b) { return b <= a; }
-inline vmask operator==(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
-inline vmask operator!=(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(ne), a, b); }
+ISA_INLINE vmask operator<(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(lt), a, b); }
+ISA_INLINE vmask operator<=(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(le), a, b); }
+ISA_INLINE vmask operator>(const vint& a, const vint& b) { return b < a; }
+ISA_INLINE vmask operator>=(const vint& a, const vint& b) { return b <= a; }
+ISA_INLINE vmask operator==(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(eq), a, b); }
+ISA_INLINE vmask operator!=(const vint& a, const vint& b) { return detail::map<vmask>(ISA_OP(ne), a, b); }
 
 // --- masks. && and || do not exist: use & and |.
-inline vmask operator&(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_and), a, b); }
-inline vmask operator|(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_or), a, b); }
-inline vmask operator^(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_xor), a, b); }
-inline vmask operator!(const vmask& a) { return detail::map<vmask>(ISA_OP(mask_not), a); }
+ISA_INLINE vmask operator&(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_and), a, b); }
+ISA_INLINE vmask operator|(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_or), a, b); }
+ISA_INLINE vmask operator^(const vmask& a, const vmask& b) { return detail::map<vmask>(ISA_OP(mask_xor), a, b); }
+ISA_INLINE vmask operator!(const vmask& a) { return detail::map<vmask>(ISA_OP(mask_not), a); }
 vmask operator&&(const vmask&, const vmask&) = delete;
 vmask operator||(const vmask&, const vmask&) = delete;
 
@@ -202,22 +205,24 @@ inline vmask first_lanes(sint n) {
 }
 
 /// m ? a : b.
-inline vfloat select(const vmask& m, const vfloat& a, const vfloat& b) {
+ISA_INLINE vfloat select(const vmask& m, const vfloat& a, const vfloat& b) {
     return detail::map<vfloat>(ISA_OP(select), m, a, b);
 }
-inline vint select(const vmask& m, const vint& a, const vint& b) { return detail::map<vint>(ISA_OP(select), m, a, b); }
+ISA_INLINE vint select(const vmask& m, const vint& a, const vint& b) {
+    return detail::map<vint>(ISA_OP(select), m, a, b);
+}
 
 // --- conversion
 /// Towards zero; NaN and what does not fit give INT_MIN.
-inline vint to_int(const vfloat& a) { return detail::map<vint>(ISA_OP(to_int), a); }
+ISA_INLINE vint to_int(const vfloat& a) { return detail::map<vint>(ISA_OP(to_int), a); }
 /// To nearest, ties to even.
-inline vfloat to_float(const vint& a) { return detail::map<vfloat>(ISA_OP(to_float), a); }
+ISA_INLINE vfloat to_float(const vint& a) { return detail::map<vfloat>(ISA_OP(to_float), a); }
 /// The same 32 bits.
-inline vint as_int(const vfloat& a) { return detail::map<vint>(ISA_OP(as_int), a); }
-inline vfloat as_float(const vint& a) { return detail::map<vfloat>(ISA_OP(as_float), a); }
+ISA_INLINE vint as_int(const vfloat& a) { return detail::map<vint>(ISA_OP(as_int), a); }
+ISA_INLINE vfloat as_float(const vint& a) { return detail::map<vfloat>(ISA_OP(as_float), a); }
 /// Flips, or clears, the sign bit, of NaN too.
-inline vfloat operator-(const vfloat& a) { return as_float(as_int(a) ^ vint(std::int32_t(0x80000000U))); }
-inline vfloat abs(const vfloat& a) { return as_float(as_int(a) & vint(0x7fffffff)); }
+ISA_INLINE vfloat operator-(const vfloat& a) { return as_float(as_int(a) ^ vint(std::int32_t(0x80000000U))); }
+ISA_INLINE vfloat abs(const vfloat& a) { return as_float(as_int(a) & vint(0x7fffffff)); }
 
 // --- across lanes
 /// 0, 1, 2, ... width-1.
@@ -283,5 +288,6 @@ inline sfloat extract(const vfloat& a, sint lane) { return reg::extract(a.r, lan
 inline sint extract(const vint& a, sint lane) { return reg::extract(a.r, lane.v); }
 
 #undef ISA_OP
+#undef ISA_INLINE
 
 } // namespace ISA_NATIVE

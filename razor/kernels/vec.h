@@ -27,8 +27,9 @@ inline vfloat dot(const vvec& a, const vvec& b) {
 inline vvec cross(const vvec& a, const vvec& b) {
     return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
 }
-/// a + s * b
-inline vvec madd(const vfloat& s, const vvec& b, const vvec& a) {
+/// a + s * b. Always inline: else a `b` that is the same in all lanes is written out lane by lane for each
+/// call.
+[[gnu::always_inline]] inline vvec madd(const vfloat& s, const vvec& b, const vvec& a) {
     return {fma(s, b.x, a.x), fma(s, b.y, a.y), fma(s, b.z, a.z)};
 }
 inline vvec select(const vmask& m, const vvec& a, const vvec& b) {

@@ -26,7 +26,7 @@ struct CoreConfig {
     integer issue_width = 0, lanes = 0, window = 0;
     std::string pairing, shared_classes;
     integer shared_cores = 0;
-    integer vector_registers = 0, spill_slots = 0, memory_operands = 0;
+    integer vector_registers = 0, interleaved_values = 0, spill_slots = 0, memory_operands = 0;
     double scalar_overhead = 0, scalar_moves = 0, vector_moves = 0;
     std::string predictor;
     integer predictor_history = 0, predictor_entries = 0, mispredict_cycles = 0;

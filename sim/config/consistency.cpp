@@ -77,6 +77,11 @@ void check_core(const std::string& what, const Config& config) {
         fail(what, fmt::format("core.pairing \"{}\" {}", c.pairing, mistake));
     if (std::string mistake = shared_classes_mistake(c.shared_classes); !mistake.empty())
         fail(what, fmt::format("core.shared_classes \"{}\" {}", c.shared_classes, mistake));
+    if (c.interleaved_values != 0 && c.broadcasts != "register")
+        fail(what,
+             fmt::format("core.interleaved_values is {}, which core.broadcasts \"{}\" does not know; make "
+                         "that \"register\", or it 0",
+                         c.interleaved_values, c.broadcasts));
     if (c.predictor == "counters" && c.predictor_history > 10)
         fail(what,
              fmt::format(

@@ -173,6 +173,7 @@ Due Engine::unfold(Hart& h, Due ready, const stamp& s) {
 }
 
 void Engine::branch(Hart& h, site where, Due ready, bool taken) {
+    end_stretch(h);
     if (prediction_ == Prediction::counters)
         h.tile->sites.bring(where);
     charge_overhead(h, overhead_, begin(h));
@@ -210,6 +211,8 @@ enum class Shape { lanes, across, to_scalar };
 template <Shape shape, class... Stamp>
 inline stamp operate_on(Engine& engine, Hart& hart, operation op, const Stamp&... operands) {
     const std::size_t kind = sim::vector_kind(static_cast<std::size_t>(op));
+    if (shape == Shape::across)
+        engine.end_stretch(hart);
     if (engine.warming()) [[unlikely]]
         return engine.warm_operation(hart, kind, shape != Shape::to_scalar, operands.value...);
     sim::Due ready = engine.begin(hart);

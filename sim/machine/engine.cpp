@@ -145,8 +145,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
                 auto number = static_cast<std::uint32_t>(harts_.size());
                 Hart& h = harts_.emplace_back(number, tile, core, config, labels_.columns());
                 if (by_register_)
-                    h.machine_registers = std::make_unique<MachineRegisters>(
-                        wide(config.core.vector_registers) * pieces_, pieces_);
+                    h.machine_registers =
+                        std::make_unique<MachineRegisters>(wide(config.core.vector_registers) * pieces_,
+                                                           pieces_, wide(config.core.interleaved_values));
                 h.spill_base = lines_.spill_begin() + number * spill_bytes;
                 tile.harts.push_back(&h);
             }

@@ -132,6 +132,11 @@ public:
     }
     /// Of the computation whose operands are needed next, some may come from the stack with it.
     void allow_memory_operands(Hart& h) const { h.memory_operands = memory_operands_; }
+    /// Of code that compilers take a sub-vector at a time.
+    void end_stretch(Hart& h) const {
+        if (by_register_) [[unlikely]]
+            h.machine_registers->end_stretch();
+    }
     std::uint32_t vector_instructions() const { return pieces_; }
     /// Whether caches are warmed by what threads touch, and nothing takes time (warming.cpp).
     bool warming() const { return warming_; }

@@ -12,6 +12,7 @@ namespace sim {
 
 /// All of it before the operation itself. `instructions` includes those that are references.
 void Engine::assemble(Hart& h, std::uint32_t instructions, std::uint32_t references, Due ready) {
+    end_stretch(h);
     h.counters.assembly_instructions += instructions;
     h.counters.assembly_references += references;
     h.site = {};

@@ -194,6 +194,7 @@ stamp Engine::warm_scalar(Hart& h, std::size_t kind) {
 
 /// The place at which a thread lets the others come as far as it has.
 void Engine::warm_branch(Hart& h, site where, bool taken) {
+    end_stretch(h);
     warm_overhead(h);
     pass(h, branch_class, 1);
     count(h, 1, false);

@@ -31,11 +31,12 @@ with tempfile.TemporaryDirectory() as folder:
     refuses("No such file", "sse4", "--machine", machine, "--profile", profile + "s")
     refuses("install valgrind", "sse4", "--machine", machine, "--valgrind", profile + "s")
     refuses("from 1", "sse4", "--machine", machine, "--registers", "0")
+    refuses("from 0", "sse4", "--machine", machine, "--interleaved", "-1")
     refuses("invalid choice", "sse5", "--machine", machine)
     if not shutil.which("valgrind"):
         print("no valgrind on the PATH: no kernel was counted")
         sys.exit(77)
-    done = run("sse4", "--machine", machine, "--registers", "2", "-o", out)
+    done = run("sse4", "--machine", machine, "--registers", "2", "--interleaved", "1", "-o", out)
     if "this build on this processor" in done.stderr:
         print(done.stderr)
         sys.exit(77)
@@ -47,6 +48,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert {row["kernel"] for row in result["kernels"]} >= {"build", "tessellate", "traverse", "intersect", "shade"}, result
     assert abs(sum(row["share"] for row in result["kernels"]) - 1) < 1e-9, result
     assert all(0.25 < row["instructions"]["ratio"] < 4 for row in result["kernels"] if row["share"] > 0.05), result
+    assert result["settings"]["core.interleaved_values"] == 1, result
     assert result["settings"]["core.vector_registers"] == 2 and result["settings"]["lanes.masked"] == "on", result
     assert result["build"].split()[:4] == [result["build"].split()[0], "lanes", "of", "sse4,"], result
     held_out = {"sse4": ["instructions", "references"], "avx2": ["instructions"]}  # valgrind counts references of avx2 otherwise

@@ -219,6 +219,33 @@ TEST(Core, OperandsFromTheStackMayTakeNoInstruction) {
     EXPECT_LE(r[2].cycles, r[0].cycles);
 }
 
+// What was used since the last branch, permutation or lane by lane stays, as many values as are interleaved.
+TEST(Core, StretchesAreTakenAPieceAtATime) {
+    Config c = simple();
+    c.core.lanes = ISA_WIDTH / 4;
+    c.core.vector_registers = 1;
+    c.core.broadcasts = "register";
+    const auto spilled = [&](integer interleaved, const std::function<void()>& between) {
+        c.core.interleaved_values = interleaved;
+        return run_on(c,
+                      [&](std::byte*, int) {
+                          stamp a = vector_op(operation::add, stamp{});
+                          stamp b = vector_op(operation::add, stamp{}); // a is out
+                          between();
+                          vector_op(operation::add, a, b);
+                      })
+            .core.spill_loads;
+    };
+    const auto nothing = [] {};
+    EXPECT_EQ(spilled(0, nothing), 2U); // b too, once a is back
+    EXPECT_EQ(spilled(1, nothing), 2U);
+    EXPECT_EQ(spilled(2, nothing), 0U);
+    EXPECT_EQ(spilled(2, [] { isa::timing::branch(here, stamp{}, true); }), 2U);
+    EXPECT_EQ(spilled(2, [] { isa::timing::cross_op(operation::shuffle, stamp{}, stamp{}); }), 2U);
+    EXPECT_EQ(spilled(8, [] { isa::timing::cross_op(operation::shuffle, stamp{}, stamp{}); }), 2U);
+    EXPECT_EQ(spilled(2, [] { isa::timing::cross_to_scalar(operation::reduce, stamp{}, stamp{}); }), 0U);
+}
+
 TEST(Core, MispredictsCostTheirPenalty) {
     Config c = simple();
     c.core.predictor = "counters";

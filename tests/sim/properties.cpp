@@ -92,6 +92,7 @@ Config random_machine(std::mt19937& random) {
     c.core.window = pick(0, 1) == 0 ? 1 : pick(2, 200);
     c.core.vector_registers = pick(0, 8);
     c.core.broadcasts = pick(0, 1) == 0 ? "value" : "register";
+    c.core.interleaved_values = c.core.broadcasts == "value" ? 0 : pick(0, 6);
     c.core.memory_operands = pick(0, 3);
     c.core.scalar_overhead = static_cast<double>(pick(0, 30)) / 10;
     c.core.scalar_moves = pick(0, 1) == 0 ? 0 : static_cast<double>(pick(1, 30)) / 10;

@@ -18,7 +18,8 @@ namespace {
 struct PlainRegisters {
     std::size_t room;
     std::size_t pieces; // of a value that is no broadcast
-    std::deque<std::uint32_t> held{};
+    std::size_t interleaved = 0;
+    std::deque<std::uint32_t> held{}, stretch{}; // of `stretch` the first `interleaved`
     std::set<std::uint32_t> stored{};
 
     void hold(std::uint32_t value) {
@@ -30,11 +31,22 @@ struct PlainRegisters {
         });
         held.erase(out, held.end());
     }
+    /// Whether it is one of the `interleaved` others used last in the stretch, or was itself.
+    bool passes(std::uint32_t value) {
+        const auto at = std::find(stretch.begin(), stretch.end(), value);
+        const bool there =
+            static_cast<std::size_t>(at - stretch.begin()) < std::min(interleaved, stretch.size());
+        if (at != stretch.end())
+            stretch.erase(at);
+        stretch.push_front(value);
+        return there;
+    }
     RegisterFile::Use use(std::uint32_t value) {
         auto where = RegisterFile::Use::resident;
+        const bool passing = passes(value);
         if (const auto at = std::find(held.begin(), held.end(), value); at != held.end())
             held.erase(at);
-        else
+        else if (!passing)
             where = stored.insert(value).second ? RegisterFile::Use::unstored : RegisterFile::Use::stored;
         hold(value);
         return where;
@@ -142,17 +154,23 @@ TEST(Registers, OfTheMachineEqualAListOfTheLastUsed) {
     std::mt19937 random(7);
     for (const std::size_t pieces : {1U, 2U, 4U, 8U})
         for (const std::size_t values : {1U, 2U, 3U, 6U}) {
-            MachineRegisters file(values * pieces, pieces);
-            PlainRegisters plain{values * pieces, pieces};
+            const std::size_t interleaved = values == 2 ? 0 : pieces + 1;
+            MachineRegisters file(values * pieces, pieces, interleaved);
+            PlainRegisters plain{values * pieces, pieces, interleaved};
             std::vector<std::uint32_t> made;
             std::array<int, 3> seen{};
             for (int i = 0; i < 20000; ++i) {
+                if (random() % 8 == 0) {
+                    file.end_stretch();
+                    plain.stretch.clear();
+                }
                 if (made.empty() || random() % 3 == 0) {
                     const bool broadcast = random() % 3 == 0;
                     made.push_back(file.make(broadcast));
                     ASSERT_EQ(MachineRegisters::is_broadcast(made.back()), broadcast);
                     ASSERT_EQ(MachineRegisters::number(made.back()), made.size());
                     plain.hold(made.back());
+                    plain.passes(made.back());
                     continue;
                 }
                 const std::uint32_t value =

@@ -97,17 +97,19 @@ TEST(Sampling, WarmingCountsWhatADetailedRunCounts) {
         const char* what;
         std::vector<std::string> settings;
     };
-    const Case cases[] = {{"plain", {}},
-                          {"reference", {"sim.mode=reference", "memory.controller=queued"}},
-                          {"spilling", {"core.vector_registers=2"}},
-                          {"through", {"l1.write_policy=through", "l1.write_miss=around"}},
-                          {"inclusive", {"l2.inclusion=inclusive"}},
-                          {"exclusive", {"l2.inclusion=exclusive"}},
-                          {"broadcasts", {"core.broadcasts=register", "core.vector_registers=3"}},
-                          {"untouched by idle lanes", {"core.skip_idle=on", "core.gather=lane"}},
-                          {"lanes", {"core.gather=lane", "lanes.scatter=on", "lanes.masked=on"}},
-                          {"moves", {"core.scalar_moves=0.25", "core.vector_moves=0.5"}},
-                          {"folding", {"core.address_folding=on", "core.memory_operands=1"}}};
+    const Case cases[] = {
+        {"plain", {}},
+        {"reference", {"sim.mode=reference", "memory.controller=queued"}},
+        {"spilling", {"core.vector_registers=2"}},
+        {"through", {"l1.write_policy=through", "l1.write_miss=around"}},
+        {"inclusive", {"l2.inclusion=inclusive"}},
+        {"exclusive", {"l2.inclusion=exclusive"}},
+        {"broadcasts", {"core.broadcasts=register", "core.vector_registers=3"}},
+        {"interleaved", {"core.broadcasts=register", "core.vector_registers=1", "core.interleaved_values=3"}},
+        {"untouched by idle lanes", {"core.skip_idle=on", "core.gather=lane"}},
+        {"lanes", {"core.gather=lane", "lanes.scatter=on", "lanes.masked=on"}},
+        {"moves", {"core.scalar_moves=0.25", "core.vector_moves=0.5"}},
+        {"folding", {"core.address_folding=on", "core.memory_operands=1"}}};
     const Body kernels = [](std::byte* data, std::byte* more, int w) { mix(data, more, w, 30); };
     const Body old_values = [](std::byte* data, std::byte*, int) { use_old_values(data, 20000); };
     for (const Case& k : cases)
