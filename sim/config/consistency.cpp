@@ -326,8 +326,6 @@ void check_coherence(const std::string& what, const Config& config) {
         refuse(level_name(levels - 1) + ".write_miss", own.write_miss, "allocate");
     if (config.coherence.snoops() && !config.network.bus())
         refuse("network.topology", config.network.topology, "bus");
-    if (config.coherence.snoops() && config.beyond_tiles(last))
-        refuse(level_name(last) + ".share", config.cache(last).share, "tile");
     if (config.beyond_tiles(last) && config.cores_sharing(last) != config.all_cores())
         refuse(level_name(last) + ".share", config.cache(last).share, "chip");
     const CoherenceConfig& c = config.coherence;

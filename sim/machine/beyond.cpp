@@ -29,7 +29,7 @@ Beyond::Beyond(const Config& config, Reply reply)
       line_bytes_(static_cast<std::uint32_t>(config.cache(config.tile_levels() - 1).line_bytes)),
       // In core cycles, and with room for what else comes out of order.
       ways_(config, served_, disorder / 2 * wide(config.memory.clock_ps) / wide(config.chip.clock_ps)),
-      config_(config), reply_(std::move(reply)) {}
+      config_(config), snoops_(config.coherence.snoops()), reply_(std::move(reply)) {}
 
 void Beyond::connect(std::deque<Tile>& tiles) {
     tiles_ = &tiles;
@@ -38,8 +38,8 @@ void Beyond::connect(std::deque<Tile>& tiles) {
             config_, ways_, tiles,
             [this](Request w) {
                 w.at = std::max(w.at, served_);
-                if (config_.coherence.snoops()) // memory has it as it passes
-                    return push(w);
+                if (snoops_) // memory, or the cache here, has it as it passes
+                    return caches_.empty() ? push(w) : come_to_bank(w, w.at);
                 const Ways::Leg leg = ways_.writing(asker(w), w.write, w.bytes);
                 return caches_.empty() ? send_on(w, leg, w.at) : send_to_bank(w, leg, w.at);
             },
@@ -79,10 +79,16 @@ void Beyond::accept(std::vector<Request>& leaving) {
     leaving.clear();
 }
 
+void Beyond::send_read(const Request& r, cycle t) {
+    const Ways::Leg leg = ways_.asking(asker(r), r.read);
+    return caches_.empty() || snoops_ ? send_on(r, leg, t) : send_to_bank(r, leg, t);
+}
+
 /// A request is at its bank of a cache here.
 void Beyond::take_bank(Request r, cycle there) {
     const bool write = r.stage == Request::writes;
-    const std::uint32_t bytes = write ? r.bytes : r.kind == Request::upgrade ? 1 : line_bytes_;
+    const bool right_alone = r.kind == Request::upgrade && !r.found;
+    const std::uint32_t bytes = write ? r.bytes : right_alone ? 1 : line_bytes_;
     r.at = cache_of(r).cache.book({write ? r.write : r.read, bytes, there, r.column});
     push(r);
 }

@@ -3,8 +3,9 @@
 // tile, sequence). Requests go over the network (sim/network/ways.h), as do answers; an MSHR is held until
 // the answer is back, a place in the buffer until what is written has arrived and been taken. Where tiles
 // share a cache, a request that arrives takes its bank, in this order, and acts when the bank begins with it.
-// What an inclusive cache drops there leaves the tiles at the end of the window, in which they may still have
-// used it. Not modelled: that a bank stands still while a miss waits for an MSHR.
+// On buses whose tiles see each other's requests it is first known who has the line, and only what comes from
+// the cache takes a bank. What an inclusive cache drops there leaves the tiles at the end of the window, in
+// which they may still have used it. Not modelled: that a bank stands still while a miss waits for an MSHR.
 //
 // By memory's controller (memory.controller) it is one of two: immediate_beyond.h, queued_beyond.h.
 #pragma once
@@ -127,6 +128,10 @@ protected:
     virtual void send_on(const Request& r, const Ways::Leg& leg, cycle t) = 0;
     /// ... for the bank of a cache here, which it takes.
     virtual void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) = 0;
+    /// It is there at `t` without a message.
+    virtual void come_to_bank(const Request& r, cycle t) = 0;
+    /// A line, or the right to write it, is asked for at `t`: at a bank of a cache here, or on the buses.
+    void send_read(const Request& r, cycle t);
     /// A message of the directory's, or to it.
     virtual void send_word(const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) = 0;
     void take_bank(Request r, cycle there);
@@ -143,6 +148,7 @@ protected:
     cycle served_ = 0;
     Ways ways_;
     Config config_;
+    bool snoops_;     // tiles see each other's requests
     Tickets tickets_; // of what caches here ask memory for
     std::deque<SharedCache> caches_;
     Reply reply_;

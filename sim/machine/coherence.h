@@ -9,15 +9,16 @@
 // * snoop: all caches see each other's requests. Those of the same bus as it passes; the hub passes it on to
 //   all other buses. coherence.snoop_cycles later all have said what they have, and the owner begins to bring
 //   the line, of which memory takes what it had changed as it passes; memory is asked at once, but its answer
-//   waits for what the caches say, as does a writer. What they say goes on lines of its own.
+//   waits for what the caches say, as does a writer. What they say goes on lines of its own. A cache that all
+//   tiles share stands where memory does here, at the hub.
 // What happens to a line is decided when the directory has looked it up, or the hub has it, in the order in
 // which requests are served, and acts on the tiles' caches at once, that is after the window: whether one has
 // a line is what its tags say then. When it is done is what messages take over the network: each leaves when
-// the one before it is there (see Send). Not modelled: ports of caches
-// that look lines up or bring them; that a line which is asked for again while it is taken away cannot be
-// read meanwhile, or, before a cache beyond the tiles, recalled; that a request waits where all lines of its
-// set are being asked for; that a bus lets only so many requests be under way, or memory read in vain what an
-// owner brings.
+// the one before it is there (see Send). Not modelled: ports of caches that look lines up or bring them; that
+// a line which is asked for again while it is taken away cannot be read meanwhile, or, before a cache beyond
+// the tiles, recalled; that a request waits where all lines of its set are being asked for; that a bus lets
+// only so many requests be under way, or memory, or a cache beyond the tiles, reads in vain what an owner
+// brings.
 #pragma once
 
 #include "sim/machine/tile.h"

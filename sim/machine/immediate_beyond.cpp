@@ -218,7 +218,7 @@ void ImmediateBeyond::arrive(Request r) {
         return;
     r.mshr = *mshr;
     r.stage = Request::reads;
-    send_to_bank(r, ways_.asking(asker(r), r.read), r.at);
+    send_read(r, r.at);
 }
 
 void ImmediateBeyond::write(Request r) {
@@ -237,35 +237,44 @@ void ImmediateBeyond::write(Request r) {
 }
 
 void ImmediateBeyond::read(Request r) {
-    Answer answer{r.at, Cause::coherence};
-    if (coherence_ && !r.found) { // the directory lies beside the cache's tags
-        const cycle known = r.at + cache_of(r).cache.latency() + coherence_->look_up();
-        const Coherence::Outcome out = ask_others(r, known);
-        r.found = true;
-        r.finished = out.finished;
-        answer.ready = std::max(out.at, out.finished);
-        if (out.from == Coherence::Outcome::below) { // later if who was thought to have it has not
-            r.at = out.at > known ? out.at : r.at + coherence_->look_up();
-            return push(r);
-        }
-        r.stage = Request::supplied;
+    if (coherence_ && !r.found)
+        return look_for_owner(r);
+    Answer a = cache_of(r).cache.serve_booked({r.read, line_bytes_, r.at, r.column}, false);
+    if (a.refused) {
+        r.at = a.ready;
+        return push(r);
     }
-    if (r.stage == Request::reads) {
-        answer = cache_of(r).cache.serve_booked({r.read, line_bytes_, r.at, r.column}, false);
-        if (answer.refused) {
-            r.at = answer.ready;
-            return push(r);
-        }
-        answer.ready = ways_.answer(asker(r), r.read, line_bytes_, answer.ready);
-        if (r.finished > answer.ready)
-            answer = {r.finished, Cause::coherence};
-        if (coherence_)
-            coherence_->arrives(r, answer.ready);
+    a.ready = ways_.answer(asker(r), r.read, line_bytes_, std::max(a.ready, r.known));
+    if (r.finished > a.ready)
+        a = {r.finished, Cause::coherence};
+    if (coherence_)
+        coherence_->arrives(r, a.ready);
+    answer(r, a);
+}
+
+/// The request is on the buses; or at a directory, which lies beside the cache's tags.
+void ImmediateBeyond::look_for_owner(Request r) {
+    const cycle known = snoops_ ? r.at : r.at + cache_of(r).cache.latency() + coherence_->look_up();
+    const Coherence::Outcome out = ask_others(r, known);
+    if (out.from != Coherence::Outcome::below)
+        return answer(r, {std::max(out.at, out.finished), Cause::coherence});
+    r.found = true;
+    r.finished = out.finished;
+    if (snoops_) {
+        r.known = out.known;
+        return take_bank(r, out.at);
     }
+    // Later if who was thought to have it has not.
+    r.at = out.at > known ? out.at : r.at + coherence_->look_up();
+    push(r);
+}
+
+/// The tile has what it asked for.
+void ImmediateBeyond::answer(const Request& r, const Answer& a) {
     Port& port = ports_[port_of(r)];
-    port.mshrs.close(r.mshr, answer.ready);
-    reply_(r.tile, r.ticket, answer);
-    if (std::optional<Request> next = release(port.held, false, answer.ready))
+    port.mshrs.close(r.mshr, a.ready);
+    reply_(r.tile, r.ticket, a);
+    if (std::optional<Request> next = release(port.held, false, a.ready))
         push(*next);
 }
 

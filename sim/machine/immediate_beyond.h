@@ -75,6 +75,7 @@ private:
     void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
         take_bank(r, ways_.send(leg, t));
     }
+    void come_to_bank(const Request& r, cycle t) override { take_bank(r, t); }
     void send_word(const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) override {
         arrives(ways_.send(leg, t));
     }
@@ -91,6 +92,8 @@ private:
     std::optional<std::size_t> take(OrderedPool& pool, const Request& request);
     void write(Request r);
     void read(Request r);
+    void look_for_owner(Request r);
+    void answer(const Request& r, const Answer& a);
 
     std::vector<Port> ports_; // by tile and exit
     Memory memory_;

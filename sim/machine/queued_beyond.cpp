@@ -215,12 +215,12 @@ void QueuedBeyond::act(const Request& r) {
         claim(r);
     } else if (r.kind == Request::invalidate || r.kind == Request::discard) {
         tell(r);
+    } else if (r.stage == Request::reads && !r.found && (caches_.empty() || snoops_)) {
+        ask_others(r);
     } else if (r.stage != Request::arrives && !caches_.empty()) {
         look_up(r);
     } else if (r.stage == Request::writes) {
         write_owners(r);
-    } else if (r.stage != Request::arrives) {
-        ask_others(r);
     } else if (grants_silently(r)) {
         return;
     } else if (r.write != Request::nothing) {
@@ -275,8 +275,7 @@ void QueuedBeyond::enter_mshr(Request r) {
                      .request = r},
                     served_);
     r.stage = Request::reads;
-    const Ways::Leg leg = ways_.asking(asker(r), r.read);
-    return caches_.empty() ? send_on(r, leg, served_) : send_to_bank(r, leg, served_);
+    send_read(r, served_);
 }
 
 // --- coherence
@@ -307,22 +306,41 @@ bool QueuedBeyond::is_blocked(const Request& r) {
     return true;
 }
 
-/// Without caches beyond the tiles: the directory beside the line's channel has the request, or the bus.
+/// The directory beside the line's channel has the request, or the bus.
 void QueuedBeyond::ask_others(Request r) {
     if (is_blocked(r))
         return;
     r.decision = new_decision();
     coherence_->ask(r, r.at + coherence_->look_up(),
-                    {[this, r](cycle at) {
-                         attribution_of(r).count_memory_read(r.read, r.column);
-                         arrive(keep({.goes = Transfer::to_be_read,
-                                      .who = asker(r),
-                                      .address = r.read,
-                                      .bytes = line_bytes_,
-                                      .request = r}),
-                                at);
-                     },
+                    {[this, r](cycle at) { ask_below(r, at); },
                      [this, r](const Coherence::Outcome& out) { is_over(r, out); }});
+}
+
+/// No other tile is known to bring the line.
+void QueuedBeyond::ask_below(const Request& r, cycle t) {
+    if (!caches_.empty()) {
+        Request found = r;
+        found.found = true;
+        return come_to_bank(found, t);
+    }
+    attribution_of(r).count_memory_read(r.read, r.column);
+    arrive(keep({.goes = Transfer::to_be_read,
+                 .who = asker(r),
+                 .address = r.read,
+                 .bytes = line_bytes_,
+                 .request = r}),
+           t);
+}
+
+/// A tile's answer would leave at `t`: on buses, no sooner than caches have said what they have.
+void QueuedBeyond::send_when_known(std::uint64_t transfer, const Request& r, cycle t) {
+    if (!snoops_)
+        return send_back(transfer, t);
+    Decision& d = decisions_[r.decision];
+    if (d.over)
+        return send_back(transfer, std::max(t, d.out.known));
+    d.leaves = transfer;
+    d.at = t;
 }
 
 std::uint32_t QueuedBeyond::new_decision() {
@@ -423,13 +441,13 @@ void QueuedBeyond::answer(const Request& r, const Answer& a) {
     }
     if (ways_.ideal())
         return is_back(r, a);
-    send_back(keep({.goes = Transfer::back,
-                    .who = asker(r),
-                    .address = r.read,
-                    .bytes = line_bytes_,
-                    .request = r,
-                    .from = a.from}),
-              a.ready);
+    const std::uint64_t line = keep({.goes = Transfer::back,
+                                     .who = asker(r),
+                                     .address = r.read,
+                                     .bytes = line_bytes_,
+                                     .request = r,
+                                     .from = a.from});
+    send_when_known(line, r, a.ready);
 }
 
 void QueuedBeyond::is_back(const Request& r, const Answer& a) {
@@ -466,18 +484,10 @@ void QueuedBeyond::take_answers() {
             free_.push_back(d.id);
             continue;
         }
-        if (!coherence_ || !config_.coherence.snoops() || t.who.kind != Ways::Asker::tile) {
+        if (t.who.kind == Ways::Asker::tile)
+            send_when_known(d.id, t.request, d.at);
+        else
             send_back(d.id, d.at);
-            continue;
-        }
-        // It leaves when caches have said what they have.
-        Decision& decision = decisions_[t.request.decision];
-        if (decision.over) {
-            send_back(d.id, std::max(d.at, decision.out.known));
-        } else {
-            decision.leaves = d.id;
-            decision.at = d.at;
-        }
     }
     for (const WaitingMemory::Done& d : memory_.writes()) {
         const Transfer& t = transfers_[d.id];

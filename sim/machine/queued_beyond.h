@@ -65,7 +65,7 @@ private:
     struct Decision {
         bool over = false; // all of it is known:
         Coherence::Outcome out{};
-        std::uint64_t leaves = nothing; // memory's answer, a transfer, which would leave at ...
+        std::uint64_t leaves = nothing; // the answer, a transfer, which would leave at ...
         bool is_back = false;           // the line is there since ...
         cycle at = 0;
         Cause from = Cause::memory;
@@ -97,6 +97,9 @@ private:
     void send_to_bank(const Request& r, const Ways::Leg& leg, cycle t) override {
         leave(keep({.goes = Transfer::to_a_bank, .request = r}), leg, t);
     }
+    void come_to_bank(const Request& r, cycle t) override {
+        foresee(t, Event::takes_bank, keep({.goes = Transfer::to_a_bank, .request = r}));
+    }
     void send_word(const Ways::Leg& leg, cycle t, const Coherence::Arrives& arrives) override {
         const std::uint64_t word = keep({.goes = Transfer::word});
         arrives_.resize(transfers_.size());
@@ -120,6 +123,8 @@ private:
     void next_waiting(std::size_t port, bool mshr);
     bool is_blocked(const Request& r);
     void ask_others(Request r);
+    void ask_below(const Request& r, cycle t);
+    void send_when_known(std::uint64_t transfer, const Request& r, cycle t);
     std::uint32_t new_decision();
     void is_over(const Request& r, const Coherence::Outcome& out);
     void write_owners(const Request& r);

@@ -53,10 +53,11 @@ std::uint64_t line_from_below(const Config& c) {
 /// they are there, only what follows counts. Or until caches of its bus have heard of it.
 std::uint64_t shortest_known(const Config& c) {
     const unsigned last = c.cache_levels() - 1;
-    const std::uint64_t there = c.memory.controller == "queued" ? 0 : Ways::shortest(c).there;
+    const bool beyond = c.beyond_tiles(last), when_there = beyond || c.memory.controller == "queued";
+    const std::uint64_t there = when_there ? 0 : Ways::shortest(c).there;
     if (c.coherence.snoops())
         return there + wide(c.coherence.snoop_cycles);
-    return wide(c.coherence.directory_cycles) + (c.beyond_tiles(last) ? wide(c.cache(last).latency) : there);
+    return there + wide(c.coherence.directory_cycles) + (beyond ? wide(c.cache(last).latency) : 0);
 }
 
 } // namespace

@@ -98,14 +98,14 @@ struct Request {
     enum Kind : std::uint8_t { lines, invalidate, discard, upgrade, claim } kind = lines;
     bool exclusive = false; // of a read: to write it
     bool stays = false;     // of a write: its line stays where it was
-    bool found = false;     // the directory has been asked for it
-    /// Where it stands: on its way, then at a bank of a cache beyond the tiles, with an entry of its exit's
-    /// MSHRs.
-    /// (supplied: another tile brings the line.)
-    enum Stage : std::uint8_t { arrives, writes, reads, supplied } stage = arrives;
+    bool found = false;     // the directory, or who else is on the buses, has been asked for it
+    /// Where it stands: on its way, then on the buses or at a bank of a cache beyond the tiles, with an entry
+    /// of its exit's MSHRs.
+    enum Stage : std::uint8_t { arrives, writes, reads } stage = arrives;
     static constexpr std::size_t no_entry = ~std::size_t{0};
     std::size_t mshr = 0;
     cycle finished = 0;         // when all other caches have dropped the line
+    cycle known = 0;            // when they have said what they have: no answer leaves earlier
     std::uint32_t decision = 0; // a number, of what they say
     std::uint32_t to = 0;       // cache beyond the tiles that word of a line goes to
 };

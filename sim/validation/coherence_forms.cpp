@@ -69,13 +69,61 @@ cycle brought(const Config& c, integer from, integer to) {
     return static_cast<cycle>(said(c, to, from) + c.l2.latency + way(c, from, to) + lines(c));
 }
 cycle fetched_over_bus(const Config& c, integer tile) {
-    const integer memory = on_bus(c) + c.memory.controller_cycles + c.memory.tCL + c.memory.burst_clocks();
-    return static_cast<cycle>(std::max(memory, all_said(c, tile)) + c.network.hop_cycles + lines(c));
+    const integer memory = c.memory.controller_cycles + c.memory.tCL + c.memory.burst_clocks();
+    const integer below = on_bus(c) + (c.l3.size_bytes != 0 ? c.l3.latency : memory);
+    return static_cast<cycle>(std::max(below, all_said(c, tile)) + c.network.hop_cycles + lines(c));
+}
+/// Through an L3 at the hub, as is memory, from a row that is not open.
+cycle fetched_through_l3(const Config& c, integer tile) {
+    const integer memory =
+        c.memory.controller_cycles + c.memory.tRCD + c.memory.tCL + c.memory.burst_clocks();
+    const integer below = on_bus(c) + c.l3.latency + words(c) + memory + lines(c);
+    return static_cast<cycle>(std::max(below, all_said(c, tile)) + c.network.hop_cycles + lines(c));
+}
+
+/// What machines whose tiles see each other's requests take, without a cache beyond these, or with an L3.
+void add_snoops_of(const Config& c, const std::string& where, std::vector<CoherenceForm>& out) {
+    const bool l3 = c.l3.size_bytes != 0;
+    const auto add = [&](const char* name, const char* by, const std::vector<TimedAccess>& accesses,
+                         const std::vector<cycle>& expected) {
+        out.push_back({fmt::format("{}, {}", name, where), by, expected, {}});
+        act_in_turn(c, accesses, &out.back().measured);
+    };
+    std::vector<TimedAccess> accesses = {{1, 0, true}};
+    std::vector<cycle> expected;
+    for (int turn = 0; turn < 10; ++turn)
+        for (const auto& [from, to] : {std::pair(1, 10), std::pair(10, 1)}) {
+            accesses.insert(accesses.end(), {{to, 0, false}, {to, 0, true}});
+            expected.push_back(brought(c, from, to));
+        }
+    add("ping-pong", "request, what the owner says, line", accesses, expected);
+    accesses.clear();
+    expected.clear();
+    for (int turn = 0; turn < 5; ++turn) {
+        accesses.insert(accesses.end(), {{4, 0, true}, {9, 0, false}, {2, 0, false}, {11, 0, false}});
+        expected.insert(expected.end(), {brought(c, 4, 9), fetched_over_bus(c, 2), fetched_over_bus(c, 11)});
+    }
+    add("a producer and three consumers",
+        l3 ? "a line brought, the others from the L3" : "a line brought, the others from memory's open row",
+        accesses, expected);
+    // A line that nobody has, then one that its reader alone has.
+    if (l3)
+        add("a line that the L3 lacks", "request, L3, memory, line; then from who has it",
+            {{4, 0, false}, {9, 0, false}}, {fetched_through_l3(c, 4), brought(c, 4, 9)});
+    out.push_back({fmt::format("upgrade, {}", where),
+                   "request, what all say",
+                   {static_cast<cycle>(2 * access_gap + 1 + all_said(c, 5))},
+                   {}});
+    out.back().measured.push_back(0);
+    const Report r = act_in_turn(c, {{7, 0, false}, {5, 0, false}, {5, 0, true}});
+    for (const ThreadReport& t : r.threads)
+        if (t.tile == 5)
+            out.back().measured.front() = t.finish;
 }
 
 void add_snoops(const std::string& mode, std::vector<CoherenceForm>& out) {
     for (const integer buses : {1, 2, 3})
-        for (const integer snoop_cycles : {4, 90}) { // sooner and later than memory
+        for (const integer snoop_cycles : {4, 90}) { // sooner and later than memory, and an L3
             Config c = coherent_machine("bus", 12, mode);
             c.coherence.plain = "snoop";
             c.network.buses = buses;
@@ -85,37 +133,10 @@ void add_snoops(const std::string& mode, std::vector<CoherenceForm>& out) {
                                                   : buses == 2 ? "two buses"
                                                                : "three buses",
                                                   snoop_cycles);
-            const auto add = [&](const char* name, const char* by, const std::vector<TimedAccess>& accesses,
-                                 const std::vector<cycle>& expected) {
-                out.push_back({fmt::format("{}, {}", name, where), by, expected, {}});
-                act_in_turn(c, accesses, &out.back().measured);
-            };
-            std::vector<TimedAccess> accesses = {{1, 0, true}};
-            std::vector<cycle> expected;
-            for (int turn = 0; turn < 10; ++turn)
-                for (const auto& [from, to] : {std::pair(1, 10), std::pair(10, 1)}) {
-                    accesses.insert(accesses.end(), {{to, 0, false}, {to, 0, true}});
-                    expected.push_back(brought(c, from, to));
-                }
-            add("ping-pong", "request, what the owner says, line", accesses, expected);
-            accesses.clear();
-            expected.clear();
-            for (int turn = 0; turn < 5; ++turn) {
-                accesses.insert(accesses.end(), {{4, 0, true}, {9, 0, false}, {2, 0, false}, {11, 0, false}});
-                expected.insert(expected.end(),
-                                {brought(c, 4, 9), fetched_over_bus(c, 2), fetched_over_bus(c, 11)});
-            }
-            add("a producer and three consumers", "a line brought, the others from memory's open row",
-                accesses, expected);
-            out.push_back({fmt::format("upgrade, {}", where),
-                           "request, what all say",
-                           {static_cast<cycle>(2 * access_gap + 1 + all_said(c, 5))},
-                           {}});
-            out.back().measured.push_back(0);
-            const Report r = act_in_turn(c, {{7, 0, false}, {5, 0, false}, {5, 0, true}});
-            for (const ThreadReport& t : r.threads)
-                if (t.tile == 5)
-                    out.back().measured.front() = t.finish;
+            add_snoops_of(c, where, out);
+            c.l3.size_bytes = 1 << 20;
+            c.l3.share = "chip";
+            add_snoops_of(c, where + " above an L3", out);
         }
 }
 

@@ -237,6 +237,10 @@ std::vector<CoherentOrder> coherent_orders() {
             c.coherence.plain = "snoop";
             c.network.buses = 3;
             add("snooped", c);
+            c.l3.size_bytes = 1 << 20;
+            c.l3.share = "chip";
+            c.l3.banks = 2;
+            add("snooped above an L3", c);
             continue;
         }
         add("directories", c);

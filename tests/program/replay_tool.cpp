@@ -41,11 +41,17 @@ protected:
     const std::string program = quoted_argument(RAZOR_TRACE);
 };
 
+const std::string snooping_above_l3 =
+    " -g chip.tiles=4 -g network.topology=bus -g network.buses=2 -g coherence.plain=snoop -g "
+    "l2.inclusion=inclusive -g l3.size_bytes=65536";
+const std::string reference_mode = " -g sim.mode=reference -g sim.quantum=1 -g memory.controller=queued";
+
 TEST_F(ReplayTool, CountsWhatTheRunCounted) {
     for (const std::string& on :
          {machine("tiny"), machine("niagara-like"), machine("xeon-x5355-2s"), machine("zen4-2c"),
           machine("tiny") + " -g chip.tiles=2 -g coherence.plain=directory -g l2.inclusion=inclusive -g "
                             "l1.prefetcher=stride -g core.store_buffer=4 -g sim.quantum=1000",
+          machine("tiny") + snooping_above_l3, machine("tiny") + snooping_above_l3 + reference_mode,
           machine("tiny") + " -g l2.inclusion=exclusive -g renderer.discard=on -g l3.size_bytes=65536 -g "
                             "l3.share=tile"}) {
         SCOPED_TRACE(on);

@@ -190,7 +190,7 @@ TEST(Coherence, LinesOutliveAFrame) {
 
 // One access at a time: the windows' length does not matter.
 TEST(Coherence, WindowsChangeNothingForWhoTakesTurns) {
-    for (const std::string topology : {"ideal", "mesh", "bus"})
+    for (const std::string topology : {"ideal", "mesh", "bus", "bus above an L3"})
         expect_equal_in_windows(
             [&](integer window) {
                 Config c = simple();
@@ -199,7 +199,9 @@ TEST(Coherence, WindowsChangeNothingForWhoTakesTurns) {
                 c.chip.cores = 2;
                 c.network.topology = topology;
                 c.sim.window = window;
-                c = topology == "bus" ? snooping(c, 3) : coherent(c);
+                if (topology == "bus above an L3")
+                    c = with_l3(c, 2);
+                c = topology.starts_with("bus") ? snooping(c, 3) : coherent(c);
                 return act(c, random_steps(7, 100, c, 4));
             },
             topology);
@@ -250,7 +252,10 @@ TEST(Coherence, WhatItNeedsIsSaid) {
                       bus = "network.topology = \"bus\"\n";
     EXPECT_EQ(mistake(snoops + bus), "");
     EXPECT_NE(mistake(snoops).find("network.topology must be bus, not ideal"), std::string::npos);
-    EXPECT_NE(mistake(snoops + bus + "chip.tiles = 4\nl3.size_bytes = 65536\nl3.ways = 8\n").find("l3.share"),
+    const std::string l3 = "chip.tiles = 4\nl3.size_bytes = 65536\nl3.ways = 8\n";
+    EXPECT_EQ(mistake(snoops + bus + l3), "");
+    EXPECT_EQ(mistake(snoops + bus + l3 + "network.buses = 2\nsim.mode = \"reference\"\n"), "");
+    EXPECT_NE(mistake(snoops + bus + l3 + "l3.share = 8\n").find("l3.share must be chip, not 8"),
               std::string::npos);
     EXPECT_NE(mistake(bus + "chip.tiles = 4\nnetwork.buses = 3\n").find("make it a divisor"),
               std::string::npos);

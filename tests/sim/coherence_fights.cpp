@@ -2,6 +2,7 @@
 // does.
 #include "sim/validation/coherence_forms.h"
 #include "tests/sim/coherent.h"
+#include "tests/sim/networks.h"
 #include "tests/sim/unchanging.h"
 
 #include <fmt/format.h>
@@ -104,7 +105,8 @@ Config fighting_for_entries(std::uint32_t seed) {
 }
 
 struct Fought : CoherenceCounters {
-    std::uint64_t lost_within_tiles = 0; // upgrades
+    std::uint64_t lost_within_tiles = 0;     // upgrades
+    std::uint64_t hits_beyond_the_tiles = 0; // of an L3
 };
 
 /// What so many of these machines count together; the laws say that every copy is known, and that one cache
@@ -120,6 +122,8 @@ template <class Machine> Fought fight(Machine machine, std::uint32_t seeds) {
             sum.*row.count += r.coherence.*row.count;
         for (unsigned level = 0; level < c.tile_levels(); ++level)
             sum.lost_within_tiles += r.cache_total(level).lost_upgrades;
+        if (c.tile_levels() != c.cache_levels())
+            sum.hits_beyond_the_tiles += r.cache_total(c.tile_levels()).hits;
     }
     return sum;
 }
@@ -141,11 +145,9 @@ TEST(Coherence, TilesThatFightForEntriesKeepTheLaws) {
     EXPECT_GT(all.lost_upgrades, 100U);
 }
 
-/// The same on buses.
+/// The same on buses; above an L3 where one lies beyond the tiles.
 Config fighting_on_buses(std::uint32_t seed) {
     Config c = fighting(seed);
-    if (c.l3.share == "chip")
-        c.l3.size_bytes = 0;
     c.coherence.snoop_cycles = std::array{1, 6, 200}[seed % 3];
     return snooping(c, c.chip.tiles == 8   ? integer{1} << (seed / 3 % 4)
                        : c.chip.tiles == 2 ? 1 + seed % 2
@@ -153,7 +155,8 @@ Config fighting_on_buses(std::uint32_t seed) {
 }
 
 TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
-    const Fought all = fight(fighting_on_buses, 200);
+    const Fought all = fight(fighting_on_buses, 300);
+    EXPECT_GT(all.hits_beyond_the_tiles, 10000U);
     EXPECT_GT(all.lost_upgrades, 50U);
     EXPECT_GT(all.silent_upgrades, 50U);
     EXPECT_GT(all.forwards_dirty, 1000U);
@@ -163,11 +166,14 @@ TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
 // A line that its first reader is still being brought waits for that before it goes on to the second, which
 // is as late in both modes.
 TEST(Coherence, LinesGoOnWhenTheirOwnersHaveThem) {
-    for (const std::string topology : {"crossbar", "bus"}) {
+    for (const std::string topology : {"crossbar", "bus", "bus above an L3"}) {
         const auto read_by_two = [&](const std::string& mode) {
-            Config c = coherent_machine(topology, 12, mode);
-            if (topology == "bus")
+            const bool bus = topology.starts_with("bus");
+            Config c = coherent_machine(bus ? "bus" : topology, 12, mode);
+            if (bus)
                 c.coherence.plain = "snoop";
+            if (topology == "bus above an L3")
+                c = with_l3(c, 1);
             return run_on(
                 c,
                 [](std::byte* base, int worker) {
@@ -285,15 +291,18 @@ TEST(Coherence, TilesThatFightInOrderOfTimeKeepTheLaws) {
     all = fight_in_order(fighting_for_entries);
     EXPECT_GT(all.recalls_received, 1000U);
     all = fight_in_order(fighting_on_buses);
+    EXPECT_GT(all.hits_beyond_the_tiles, 1000U);
     EXPECT_GT(all.forwards_dirty, 300U);
     EXPECT_GT(all.passed_on, 300U);
 }
 
 TEST(Coherence, ReportsDoNotDependOnTheHost) {
-    for (std::uint32_t seed = 1; seed <= 16; ++seed) {
+    int above_l3 = 0;
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         Config c = seed <= 8    ? fighting(seed)
                    : seed <= 12 ? fighting_for_entries(seed)
                                 : fighting_on_buses(seed);
+        above_l3 += c.coherence.snoops() && c.l3.share == "chip" && c.l3.size_bytes != 0 ? 1 : 0;
         if (seed % 2 == 0)
             c = in_order_of_time(c);
         expect_equal_on_host_threads([&](int threads) { return contend(c, seed, threads); },
@@ -302,6 +311,7 @@ TEST(Coherence, ReportsDoNotDependOnTheHost) {
             [&](std::uint32_t order) { return contend(c, seed, 1, {.host_order = order}); },
             fmt::format("seed {}", seed));
     }
+    EXPECT_GE(above_l3, 3);
 }
 
 } // namespace

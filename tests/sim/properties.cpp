@@ -58,7 +58,7 @@ void add_tlbs(Config& c, std::mt19937& random) {
 
 /// Coherence of plain data, with what it needs.
 void add_coherence(Config& c, std::mt19937& random) {
-    const bool snoops = c.network.bus() && !c.beyond_tiles(c.cache_levels() - 1) && random() % 4 != 0;
+    const bool snoops = c.network.bus() && random() % 4 != 0;
     c.coherence.plain = snoops ? "snoop" : "directory";
     c.coherence.directory_cycles = c.coherence.snoop_cycles = 1 + static_cast<integer>(random() % 40);
     c.coherence.directory_ways = 1 + static_cast<integer>(random() % 8);
@@ -276,6 +276,22 @@ TEST(Properties, RandomMachinesKeepTheLaws) {
         EXPECT_GT(r.cycles, 0U);
         EXPECT_FALSE(print_text(r).empty());
     }
+}
+
+TEST(Properties, SomeRandomMachinesSnoopAboveASharedCache) {
+    std::mt19937 random(2027);
+    int fast = 0, reference = 0, several_buses = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        const Config c = random_machine(random);
+        if (!c.coherence.snoops() || !c.beyond_tiles(c.cache_levels() - 1))
+            continue;
+        EXPECT_NO_THROW(check_consistency(c, "random"));
+        ++(c.sim.mode == "fast" ? fast : reference);
+        several_buses += c.network.buses > 1 ? 1 : 0;
+    }
+    EXPECT_GT(fast, 10);
+    EXPECT_GT(reference, 5);
+    EXPECT_GT(several_buses, 5);
 }
 
 TEST(Properties, BrokenNumbersAreNoticed) {

@@ -44,7 +44,7 @@ TEST(Validation, TheTlbsFormsPass) {
 
 TEST(Validation, CoherencesFormsPass) {
     const std::vector<ValidationRow> rows = check_coherence();
-    EXPECT_EQ(rows.size(), 84U);
+    EXPECT_EQ(rows.size(), 132U);
     for (const ValidationRow& row : rows)
         EXPECT_EQ(row.state, State::passed) << row.what << ": " << row.measured;
 }

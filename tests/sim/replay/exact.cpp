@@ -172,6 +172,7 @@ TEST(SharedLevelReplay, IsNearWhereMessagesShareTheNetwork) {
          {std::vector<std::string>{"network.topology=mesh"},
           {"network.topology=ring", "memory.controller=queued"},
           {"network.topology=crossbar", "l3.prefetcher=next"},
+          {"network.topology=bus", "coherence.plain=snoop", "l2.inclusion=inclusive"},
           {"network.topology=mesh", "sim.mode=reference", "sim.quantum=1", "memory.controller=queued"}}) {
         SCOPED_TRACE(fmt::format("{}", fmt::join(more, " ")));
         const Config config = read_machine(
@@ -245,11 +246,17 @@ const Case directory{
     "Directory", "tiny",
     with(two_by_two, {"coherence.plain=directory", "l2.inclusion=inclusive", "network.topology=mesh"})};
 
+const Case snooping{
+    "SnoopingAboveAnL3", "tiny",
+    with(two_by_two, {"coherence.plain=snoop", "l2.inclusion=inclusive", "network.topology=bus",
+                      "network.buses=2", "l3.size_bytes=65536", "l3.share=chip"})};
+
 INSTANTIATE_TEST_SUITE_P(
     Machines, ReferenceReplay,
     ::testing::Values(
         Case{"Tiny", "tiny", {}}, Case{"Through", "tiny", {"l1.write_policy=through"}}, inclusive, exclusive,
-        directory, Case{"Strides", "tiny", {"l1.prefetcher=stride", "l2.prefetcher=next", "l1.mshrs=2"}},
+        directory, snooping,
+        Case{"Strides", "tiny", {"l1.prefetcher=stride", "l2.prefetcher=next", "l1.mshrs=2"}},
         Case{"StoreBuffer", "tiny", {"core.store_buffer=4", "tlb.entries=8", "core.gather=lane"}},
         Case{"Written", "tiny", {"sim.frame_end=write", "sim.jitter=7"}},
         Case{"Tiles", "tiny", with(two_by_two, {"network.topology=mesh"})},
@@ -262,7 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(Machines, NearReplay,
                          ::testing::Values(Case{"Tiny", "tiny", {}},
                                            Case{"Through", "tiny", {"l1.write_policy=through"}}, inclusive,
-                                           exclusive, directory),
+                                           exclusive, directory, snooping),
                          name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -286,6 +293,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Directory", "tiny",
              with(two_by_two,
                   {"coherence.plain=directory", "l2.inclusion=inclusive", "network.topology=mesh"})},
+        snooping,
+        Case{"SnoopingQueued", "tiny",
+             with(snooping.settings, {"memory.controller=queued", "sim.quantum=1000"})},
         Case{"SmallDirectory", "tiny",
              with(two_by_two,
                   {"coherence.plain=directory", "l2.inclusion=inclusive", "coherence.directory_entries=256",
