@@ -162,6 +162,39 @@ TEST(Coherence, TheSharedCacheTakesWhatPasses) {
     }
 }
 
+// What a tile throws out changed the next one finds there; what it throws out itself tiles lose, if it is
+// inclusive, and who asks then has it alone.
+TEST(Coherence, LinesThatLeaveTilesOrTheSharedCacheAreKnown) {
+    for (const bool reference : {false, true}) {
+        Config c = simple();
+        c.chip.tiles = 2;
+        c = above_l3(c, 2, 1024, 4);
+        Config small = c;
+        small.l2.ways = 1;
+        const int sets = static_cast<int>(small.l2.size_bytes / 64);
+        const std::vector<Step> steps = {{0, 0, 0, true}, {0, 0, sets, false}, {1, 0, 0, false}};
+        Report r = act(reference ? in_order_of_time(small) : small, steps);
+        EXPECT_EQ(r.l2[0].write_backs, 1U);
+        EXPECT_EQ(r.l3[0].reads, 3U);
+        EXPECT_EQ(r.l3[0].writes, 1U);
+        EXPECT_EQ(r.l3[0].hits, 2U);
+        EXPECT_EQ(r.coherence.forwards, 0U);
+        EXPECT_EQ(r.memory.reads, 2U);
+        EXPECT_EQ(r.memory.writes, 0U);
+
+        small = above_l3(c, 2, 4, 1);
+        small.l3.inclusion = "inclusive";
+        const std::vector<Step> more = {{0, 0, 0, true}, {1, 0, 4, false}, {1, 0, 0, false}};
+        r = act(reference ? in_order_of_time(small) : small, more);
+        EXPECT_EQ(r.l2[0].back_invalidations, 1U);
+        EXPECT_EQ(r.l3[0].write_backs, 1U);
+        EXPECT_EQ(r.coherence.forwards, 0U);
+        EXPECT_EQ(r.coherence.exclusive, 2U);
+        EXPECT_EQ(r.memory.reads, 3U);
+        EXPECT_EQ(r.memory.writes, 1U);
+    }
+}
+
 // Lines that tiles bring, and rights to write, take none of its banks.
 TEST(Coherence, SharedCachesAreBusyWithTheirOwnLinesAlone) {
     for (const bool reference : {false, true}) {
