@@ -250,10 +250,15 @@ void ImmediateBeyond::read(Request r) {
     if (coherence_)
         coherence_->arrives(r, a.ready);
     answer(r, a);
+    line_is_known(r);
 }
 
 /// The request is on the buses; or at a directory, which lies beside the cache's tags.
 void ImmediateBeyond::look_for_owner(Request r) {
+    if (snoops_ && coherence_->is_coming(r.read)) { // its owner's request waits for its bank
+        blocked_[r.read].push_back(r);
+        return;
+    }
     const cycle known = snoops_ ? r.at : r.at + cache_of(r).cache.latency() + coherence_->look_up();
     const Coherence::Outcome out = ask_others(r, known);
     if (out.from != Coherence::Outcome::below)
@@ -267,6 +272,18 @@ void ImmediateBeyond::look_for_owner(Request r) {
     // Later if who was thought to have it has not.
     r.at = out.at > known ? out.at : r.at + coherence_->look_up();
     push(r);
+}
+
+/// It is known when the one who asked has the line: those go on that wait for that.
+void ImmediateBeyond::line_is_known(const Request& r) {
+    const auto waiting = blocked_.find(r.read);
+    if (waiting == blocked_.end())
+        return;
+    for (Request& next : waiting->second) {
+        next.at = r.at;
+        push(next);
+    }
+    blocked_.erase(waiting);
 }
 
 /// The tile has what it asked for.

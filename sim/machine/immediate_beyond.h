@@ -6,6 +6,7 @@
 #include "sim/memory/pool.h"
 
 #include <optional>
+#include <unordered_map>
 
 namespace sim {
 
@@ -93,11 +94,14 @@ private:
     void write(Request r);
     void read(Request r);
     void look_for_owner(Request r);
+    void line_is_known(const Request& r);
     void answer(const Request& r, const Answer& a);
 
     std::vector<Port> ports_; // by tile and exit
     Memory memory_;
     std::deque<MemoryBelow> below_; // by cache
+    // On buses above a cache, by line: what waits until it is known when the line's owner has it.
+    std::unordered_map<std::uint64_t, std::vector<Request>> blocked_;
 };
 
 } // namespace sim

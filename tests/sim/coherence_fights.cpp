@@ -166,19 +166,23 @@ TEST(Coherence, TilesThatFightOnBusesKeepTheLaws) {
 // A line that its first reader is still being brought waits for that before it goes on to the second, which
 // is as late in both modes.
 TEST(Coherence, LinesGoOnWhenTheirOwnersHaveThem) {
-    for (const std::string topology : {"crossbar", "bus", "bus above an L3"}) {
+    for (const std::string topology : {"crossbar", "bus", "bus above an L3", "bus above a busy L3"}) {
         const auto read_by_two = [&](const std::string& mode) {
             const bool bus = topology.starts_with("bus");
             Config c = coherent_machine(bus ? "bus" : topology, 12, mode);
             if (bus)
                 c.coherence.plain = "snoop";
-            if (topology == "bus above an L3")
+            if (topology.ends_with("L3"))
                 c = with_l3(c, 1);
+            const bool busy = topology.ends_with("busy L3");
+            c.l3.bank_bytes = busy ? 1 : c.l3.bank_bytes; // for 64 cycles, by the first one's line
             return run_on(
                 c,
-                [](std::byte* base, int worker) {
+                [busy](std::byte* base, int worker) {
                     if (worker == 3 || worker == 8)
                         load(here, base, 4, stamp{});
+                    if (busy && worker == 0)
+                        load(here, base + 64, 4, stamp{});
                 },
                 12);
         };
