@@ -88,9 +88,9 @@ void add_core(Table& t) {
           "what a value with the same scalar in all lanes takes of the registers: as much as any value; "
           "register: one machine register, and one store or load where it is spilled");
     t.add("core.interleaved_values", s, &C::interleaved_values, "values", 0, 0, 64,
-          "of those used since the last branch or operation across lanes, that stay in registers besides, as "
-          "compilers take "
-          "code without either a sub-vector at a time in part; of core.broadcasts = register");
+          "how many of those used since the last branch or operation across lanes stay in registers "
+          "besides, as compilers take such code a sub-vector at a time in part; with core.broadcasts = "
+          "register");
     t.add("core.memory_operands", s, &C::memory_operands, "operands", 0, 0, 3,
           "of an operation, that may come from the stack with it: they take no load instruction");
     t.add("core.spill_slots", s, &C::spill_slots, "values", 32, 1, 4096,
