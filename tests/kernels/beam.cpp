@@ -1,8 +1,7 @@
 // The beam of a group of rays: it meets every box that one of them meets and leaves to one side no plane that
 // one of them reaches, and beyond its hull, found here in double precision, it meets nothing.
-#include "test_targets.h"
 #include "tests/kernels/beam_kernel.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 
 #include "razor/frame/scratch.h"
 
@@ -21,26 +20,13 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void beam(BeamArguments& a);                                                                             \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(beam, BeamArguments&)
 
 namespace {
 
 using glm::dvec3;
 
-struct Target {
-    const char* name;
-    void (*run)(BeamArguments&);
-};
-std::vector<Target> probes() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::beam});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return of_targets(std::move(all), all_targets());
-}
+using Target = TargetFunction<BeamArguments&>;
 
 constexpr int rays = RAZOR_WIDTH;
 using Three = std::array<float, 3 * rays>;
@@ -238,7 +224,7 @@ void try_rigs(const Target& target, double reach) {
 }
 
 TEST(Beam, MeetsWhatRaysMeetAndLittleElse) {
-    for (const Target& target : probes())
+    for (const Target& target : beam_of_targets())
         for (const double reach : {1e-6, 1.0, 1e7})
             try_rigs(target, reach);
 }

@@ -1,10 +1,9 @@
 // The steepest chord of a block: no line between two of its points is steeper than is said, wherever rays see
 // its vertices; sheets of which nothing can be said are known; and rays that leave by a steeper way are not
 // tested against it.
-#include "test_targets.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/chords_kernel.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 
 #include "razor/native/render.h"
 
@@ -22,26 +21,13 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void chords(ChordArguments& a);                                                                          \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(chords, ChordArguments&)
 
 namespace {
 
 constexpr float never = 2; // no direction is as steep
 
-struct Target {
-    const char* name;
-    void (*run)(ChordArguments&);
-};
-std::vector<Target> probes() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::chords});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return of_targets(std::move(all), all_targets());
-}
+using Target = TargetFunction<ChordArguments&>;
 
 /// Vertices of quads_u x quads_v quads, row by row.
 struct Sheet {
@@ -131,7 +117,7 @@ TEST(Chords, AreNoSteeperThanIsSaid) {
             glm::dvec3 way{number(random), number(random), number(random)};
             p += way * (sway / std::max(glm::length(way), 1.0));
         }
-        for (const Target& t : probes()) {
+        for (const Target& t : chords_of_targets()) {
             SCOPED_TRACE(std::string(t.name) + ", sheet " + std::to_string(n));
             const Chords c = measured(t, s, sway);
             if (c.slope >= never)
@@ -144,14 +130,14 @@ TEST(Chords, AreNoSteeperThanIsSaid) {
             tightest = std::max(tightest, of_it / c.slope);
         }
     }
-    const auto targets = static_cast<int>(probes().size());
+    const auto targets = static_cast<int>(chords_of_targets().size());
     EXPECT_GT(known, 200 * targets); // most are known
     EXPECT_GT(tightest, 0.5);
 }
 
 TEST(Chords, OfFlatSheetsLieInThem) {
     const Sheet s(8, 8, [](double x, double y) { return glm::dvec3{3 * x + y, 2 * y, x + y}; });
-    for (const Target& t : probes()) {
+    for (const Target& t : chords_of_targets()) {
         SCOPED_TRACE(t.name);
         const Chords c = measured(t, s, 0);
         EXPECT_LT(c.slope, 1e-4);
@@ -166,7 +152,7 @@ TEST(Chords, OfPointedSheetsAreKnown) {
         return glm::dvec3{(x - 0.5) * y * 0.5, y, 0.02 * x * x * y};
     });
     std::mt19937 random(3);
-    for (const Target& t : probes()) {
+    for (const Target& t : chords_of_targets()) {
         SCOPED_TRACE(t.name);
         const Chords c = measured(t, s, 0);
         ASSERT_LT(c.slope, 0.1);
@@ -190,7 +176,7 @@ TEST(Chords, OfSheetsThatOverlapThemselvesAreNotKnown) {
     Sheet far = half;
     far.at(3, 1).y = std::numeric_limits<double>::infinity();
     const Sheet point(2, 2, [](double, double) { return glm::dvec3{1, 2, 3}; });
-    for (const Target& t : probes()) {
+    for (const Target& t : chords_of_targets()) {
         SCOPED_TRACE(t.name);
         EXPECT_EQ(measured(t, ramp, 0).slope, never);
         EXPECT_LT(measured(t, half, 0).slope, 0.5);

@@ -1,9 +1,8 @@
 // Ray and path differentials against finite differences of traced rays in double precision, and against
 // closed forms; what follows from them for shadow rays on a convex shape.
-#include "test_targets.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/differentials_kernel.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 
 #include "razor/frame/frame.h"
 #include "razor/frame/view.h"
@@ -18,26 +17,13 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void differentials(const DifferentialArrays& a);                                                         \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(differentials, const DifferentialArrays&)
 
 namespace {
 
 using glm::dvec3;
 
-struct Target {
-    const char* name;
-    void (*run)(const DifferentialArrays&);
-};
-std::vector<Target> probes() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::differentials});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return of_targets(std::move(all), all_targets());
-}
+using Target = TargetFunction<const DifferentialArrays&>;
 
 /// A camera ray, a surface through its point at distance t, and what lights and lenses need.
 struct Case {
@@ -152,7 +138,7 @@ constexpr double near = 2e-5; // what single precision leaves; cancellation in t
 
 TEST(Differentials, OfAPinholeAreFiniteDifferences) {
     const std::vector<Case> cases = random_cases(1, 4096);
-    for (const Target& target : probes()) {
+    for (const Target& target : differentials_of_targets()) {
         const std::vector<Result> results = run(target, cases);
         for (std::size_t i = 0; i < cases.size(); ++i) {
             const Case& c = cases[i];
@@ -180,7 +166,7 @@ TEST(Differentials, OfAPinholeAreFiniteDifferences) {
 
 TEST(Differentials, OfAnOrthographicCameraAreFiniteDifferences) {
     const std::vector<Case> cases = random_cases(3, 1024);
-    for (const Target& target : probes()) {
+    for (const Target& target : differentials_of_targets()) {
         const std::vector<Result> results = run(target, cases);
         for (std::size_t i = 0; i < cases.size(); ++i) {
             const Case& c = cases[i];
@@ -199,7 +185,7 @@ TEST(Differentials, OfALensAreFiniteDifferencesAndVanishInFocus) {
     std::vector<Case> cases = random_cases(2, 4096);
     for (std::size_t i = 0; i < cases.size(); i += 8)
         cases[i].t = glm::length(cases[i].d); // in focus
-    for (const Target& target : probes()) {
+    for (const Target& target : differentials_of_targets()) {
         const std::vector<Result> results = run(target, cases);
         for (std::size_t i = 0; i < cases.size(); ++i) {
             const Case& c = cases[i];
@@ -232,7 +218,7 @@ TEST(Differentials, LensSamplesCoverTheDiskEvenly) {
     }
     cases.emplace_back().square_u = 0.5; // the middle
     cases.back().square_v = 0.5;
-    for (const Target& target : probes()) {
+    for (const Target& target : differentials_of_targets()) {
         const std::vector<Result> results = run(target, cases);
         std::vector<int> sectors(8);
         double moments[3] = {};
@@ -285,7 +271,7 @@ TEST(Differentials, OneGrowthStandsForAllPixels) {
             }
         const double one = pixel_footprint(camera, settings);
         double squares = 0, least = 1e30, most = 0;
-        for (const Result& r : run(probes().back(), cases)) {
+        for (const Result& r : run(differentials_of_targets().back(), cases)) {
             squares += r.across * r.across;
             least = std::min(least, r.across / one);
             most = std::max(most, r.across / one);
@@ -325,7 +311,7 @@ TEST(Differentials, FootprintsOfLightSamplesFillTheLight) {
         }
         const double expected =
             solid_angle(corner, corner + u, corner + u + v) + solid_angle(corner, corner + u + v, corner + v);
-        for (const Target& target : probes()) {
+        for (const Target& target : differentials_of_targets()) {
             double sum = 0;
             bool falls = false, rises = false;
             const std::vector<Result> results = run(target, cases);
@@ -348,7 +334,7 @@ TEST(Differentials, FootprintsTowardsAPointAreSimilarTriangles) {
     c.base = 0.25;
     c.spacing = 0;
     c.inverse_distance = 1 / 8.0;
-    for (const Target& target : probes())
+    for (const Target& target : differentials_of_targets())
         EXPECT_FLOAT_EQ(static_cast<float>(run(target, {c})[0].growth_to_area), -0.25F / 8) << target.name;
 }
 
@@ -361,7 +347,7 @@ TEST(Differentials, FootprintsOfSkySamplesFillTheHemisphere) {
         c.cosine = std::sqrt(1 - (i + 0.5) / n);
         cases.push_back(c);
     }
-    for (const Target& target : probes()) {
+    for (const Target& target : differentials_of_targets()) {
         double sum = 0;
         for (const Result& r : run(target, cases))
             sum += r.growth_to_sky * r.growth_to_sky;

@@ -1,9 +1,8 @@
 // The fields of rays that leave hits: what a ray shares with others, of its packet or of those before, is
 // never finer than what it asks for where it begins, never grows faster, and lacks little of either.
 #include "razor/frame/scratch.h"
-#include "test_targets.h"
 #include "tests/kernels/leave_kernel.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 
 #include <gtest/gtest.h>
 
@@ -18,24 +17,11 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void leave(LeaveArguments& a);                                                                           \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(leave, LeaveArguments&)
 
 namespace {
 
-struct Target {
-    const char* name;
-    void (*run)(LeaveArguments&);
-};
-std::vector<Target> probes() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::leave});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return of_targets(std::move(all), all_targets());
-}
+using Target = TargetFunction<LeaveArguments&>;
 
 constexpr std::size_t rays = RAZOR_WIDTH;
 
@@ -144,7 +130,7 @@ void share_fields(const Target& target) {
 }
 
 TEST(Leave, FieldsAreSharedByThoseWhomTheySuit) {
-    for (const Target& target : probes()) {
+    for (const Target& target : leave_of_targets()) {
         SCOPED_TRACE(target.name);
         share_fields(target);
     }

@@ -1,9 +1,8 @@
 // Points of lights dealt to packets: each hit has the points of its sequence, all of them and no other, in an
 // order by where they lie; and packets of which the light is large beside the hits hold together.
-#include "test_targets.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/quarters_kernel.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 
 #include "razor/frame/scratch.h"
 #include "razor/native/render.h"
@@ -19,28 +18,12 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void quarter(QuarterArguments& a);                                                                       \
-    void extent(ExtentArguments& a);                                                                         \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(quarter, QuarterArguments&)
+RAZOR_TEST_FUNCTION(extent, ExtentArguments&)
 
 namespace {
 
 constexpr int width = RAZOR_WIDTH;
-
-struct Target {
-    const char* name;
-    void (*run)(QuarterArguments&);
-    void (*extent)(ExtentArguments&);
-};
-std::vector<Target> probes() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::quarter, target::extent});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return of_targets(std::move(all), all_targets());
-}
 
 using SquarePoint = std::pair<float, float>;
 
@@ -104,7 +87,7 @@ private:
 
 // Each four by u, then the halves by v: as sorting does.
 TEST(Quarters, HoldEachHitsOwnPoints) {
-    for (const Target& t : probes())
+    for (const auto& t : quarter_of_targets())
         for (const int samples : {2, 3, 4, 5, 7, 16}) {
             SCOPED_TRACE(std::string(t.name) + ", samples " + std::to_string(samples));
             Hits h(samples);
@@ -131,7 +114,7 @@ TEST(Quarters, HoldEachHitsOwnPoints) {
 }
 
 TEST(Quarters, PayWhereTheLightIsLargeBesideManyHits) {
-    for (const Target& t : probes()) {
+    for (const auto& t : quarter_of_targets()) {
         SCOPED_TRACE(t.name);
         Hits h(4);
         const auto pays = [&](float extent) {
@@ -176,12 +159,12 @@ TEST(Quarters, AreOfLightsAsFarAsTheyReach) {
     light.edge_v[2] = 3;
     light.radius = 0.5F;
     light.versine = 1 - std::cos(0.1F);
-    for (const Target& t : probes()) {
+    for (const auto& t : extent_of_targets()) {
         SCOPED_TRACE(t.name);
         const auto extent = [&](LightShape shape) {
             light.shape = shape;
             ExtentArguments a{&frame, &light, -1};
-            t.extent(a);
+            t.run(a);
             return a.extent;
         };
         EXPECT_FLOAT_EQ(extent(light_rectangle), 3);

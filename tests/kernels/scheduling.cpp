@@ -1,9 +1,8 @@
 // Who renders what: the curve against its definition, stretches against a plain model of them, and that every
 // tile is taken, and every pixel rendered, exactly once.
-#include "test_targets.h"
 #include "tests/kernels/cages.h"
 #include "tests/kernels/scheduling_kernel.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 
 #include "razor/frame/frame.h"
 #include "razor/frame/tree_groups.h"
@@ -27,26 +26,10 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void curve(const CurveArguments& a);                                                                     \
-    void take(TakeArguments& a);                                                                             \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(curve, const CurveArguments&)
+RAZOR_TEST_FUNCTION(take, TakeArguments&)
 
 namespace {
-
-struct Target {
-    const char* name;
-    void (*curve)(const CurveArguments&);
-    void (*take)(TakeArguments&);
-};
-std::vector<Target> probes() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::curve, target::take});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return of_targets(std::move(all), all_targets());
-}
 
 Scene picture_of(int width, int height) {
     Scene scene = scene_of(bilinear(cube_cage()), 4);
@@ -59,14 +42,14 @@ constexpr std::pair<int, int> sizes[] = {{1, 1}, {16384, 1}, {1, 16384}, {17, 33
 
 struct Way {
     std::vector<std::int32_t> column, row;
-    Way(const Target& target, int columns, int rows)
+    Way(const TargetFunction<const CurveArguments&>& target, int columns, int rows)
         : column(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)), row(column.size()) {
-        target.curve({columns, rows, column.data(), row.data()});
+        target.run({columns, rows, column.data(), row.data()});
     }
 };
 
 TEST(ScreenCurve, ComesToEachTileOnceAndNextToTheOneBefore) {
-    for (const Target& target : probes()) {
+    for (const auto& target : curve_of_targets()) {
         const bool all = target.name == std::string("plain") || target.name == std::string("avx512");
         const auto check = [&](int columns, int rows) {
             const Way way(target, columns, rows);
@@ -101,7 +84,7 @@ TEST(ScreenCurve, ComesToEachTileOnceAndNextToTheOneBefore) {
 // What a stretch of n tiles touches is about as wide as high: of rows it would be n wide.
 TEST(ScreenCurve, StretchesAreCompact) {
     for (const auto& [columns, rows] : {std::pair(64, 64), std::pair(128, 68), std::pair(50, 77)}) {
-        const Way way(probes().front(), columns, rows);
+        const Way way(curve_of_targets().front(), columns, rows);
         for (std::size_t length : {16U, 64U, 256U}) {
             double sum = 0;
             int stretches = 0;
@@ -223,7 +206,7 @@ TEST(Stretches, AreDealtEvenly) {
 // Workers take turns in any order, and what each gets is what the model says.
 TEST(Stretches, EqualAModel) {
     std::mt19937 random(3);
-    for (const Target& target : probes())
+    for (const auto& target : take_of_targets())
         for (const auto& [width, height, workers, share] :
              {std::tuple(17, 33, 4, 1), std::tuple(1000, 700, 7, 3), std::tuple(640, 480, 9, 2),
               std::tuple(3000, 3000, 2, 0), std::tuple(16384, 8192, 3, 0)}) {
@@ -244,7 +227,7 @@ TEST(Stretches, EqualAModel) {
                     random() % 2 == 0 ? 0 : static_cast<int>(random() % static_cast<unsigned>(workers));
                 const int least = random() % 8 == 0 ? 1 + static_cast<int>(random() % 6) : 0;
                 TakeArguments a{&frame.header(), worker, &counters, taken.data(), 1, least};
-                target.take(a);
+                target.run(a);
                 const auto [first, end] = least != 0 ? model.take_back(worker, least) : model.take(worker);
                 ASSERT_EQ(a.last, first < end ? end - 1 : -1) << target.name << " " << width;
                 if (first < end) {
@@ -263,7 +246,7 @@ TEST(Stretches, EqualAModel) {
 }
 
 TEST(Stretches, EveryTileIsTakenOnce) {
-    for (const Target& target : probes()) {
+    for (const auto& target : take_of_targets()) {
         if (target.name == std::string("simulated"))
             continue; // its port is of one thread
         for (int workers = 1; workers <= 9; ++workers)
@@ -283,7 +266,7 @@ TEST(Stretches, EveryTileIsTakenOnce) {
                                                 taken.data(), 1};
                                 do {
                                     a.least = a.least == 0 ? 4 : 0;
-                                    target.take(a);
+                                    target.run(a);
                                 } while (a.last >= 0 || a.least != 0);
                             });
                     }
@@ -299,7 +282,7 @@ TEST(Stretches, EveryTileIsTakenOnce) {
 // Small stretches, again and again, so that takes and steals of one word meet.
 TEST(Stretches, EveryTileIsTakenOnceWhereThievesMeet) {
     constexpr int workers = 4, rounds = 400;
-    const Target target = probes().front();
+    const auto target = take_of_targets().front();
     Frame frame(picture_of(128, 128), {.workers = workers});
     std::vector<isa::shared<std::int32_t>> taken(256);
     std::vector<Counters> counters(workers);
@@ -320,7 +303,7 @@ TEST(Stretches, EveryTileIsTakenOnceWhereThievesMeet) {
                     all.arrive_and_wait();
                     TakeArguments a{&frame.header(), w, &counters[static_cast<std::size_t>(w)], taken.data(),
                                     std::numeric_limits<int>::max()};
-                    target.take(a);
+                    target.run(a);
                     all.arrive_and_wait();
                 }
             });
@@ -331,7 +314,7 @@ TEST(Stretches, EveryTileIsTakenOnceWhereThievesMeet) {
 
 // More tiles than a word could number one by one, and a worker that is slow to begin.
 TEST(Stretches, EveryTileOfAHugePictureIsTakenOnce) {
-    const Target target = probes().front();
+    const auto target = take_of_targets().front();
     Frame frame(picture_of(16384, 16384), {.workers = 4});
     EXPECT_GT(frame.header().stride_log2, 0);
     std::vector<isa::shared<std::int32_t>> taken(2048U * 2048U);
@@ -342,7 +325,7 @@ TEST(Stretches, EveryTileOfAHugePictureIsTakenOnce) {
             threads.emplace_back([&, w] {
                 TakeArguments a{&frame.header(), w, &counters[static_cast<std::size_t>(w)], taken.data(),
                                 std::numeric_limits<int>::max()};
-                target.take(a);
+                target.run(a);
             });
     }
     std::int64_t stolen = 0;
@@ -395,7 +378,7 @@ TEST(Scheduling, WhoComesAloneDoesAll) {
     part.take_tiles(4, 11);
     part.render(kernels, 0);
     EXPECT_EQ(part.statistics().tiles, 7);
-    const Way way(probes().front(), 5, 3);
+    const Way way(curve_of_targets().front(), 5, 3);
     std::set<std::pair<int, int>> there;
     for (std::size_t tile = 4; tile < 11; ++tile)
         there.emplace(way.column[tile], way.row[tile]);

@@ -29,12 +29,7 @@ inline std::vector<const KernelTable*> best_target() {
     return {native_targets().back()};
 }
 
-/// A test's own function of kernels, compiled for a target.
-template <class Arrays> struct TargetFunction {
-    const char* name;
-    void (*run)(const Arrays&);
-};
-/// Of such functions, or of anything else that has a target's name, those of these targets.
+/// Of things that have a target's name, those of these targets.
 template <class Named>
 std::vector<Named> of_targets(std::vector<Named> all, const std::vector<const KernelTable*>& targets) {
     std::erase_if(all, [&](const Named& one) {
@@ -43,12 +38,6 @@ std::vector<Named> of_targets(std::vector<Named> all, const std::vector<const Ke
     });
     return all;
 }
-/// Those that this processor runs.
-template <class Arrays>
-std::vector<TargetFunction<Arrays>> runnable(std::vector<TargetFunction<Arrays>> functions) {
-    return of_targets(std::move(functions), native_targets());
-}
-
 /// Those whose fused multiply-add rounds once, or those whose does not.
 inline std::vector<const KernelTable*> targets_with(bool fused) {
     std::vector<const KernelTable*> targets;

@@ -1,7 +1,6 @@
 // Sampling of reflecting lobes: directions come as often as their density says (chi-square), densities
 // integrate to what is reflected at all, and reflectance is the same both ways.
-#include "test_targets.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 #include "tests/materials/lobes_kernel.h"
 
 #include <glm/trigonometric.hpp>
@@ -18,24 +17,14 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void lobes(const LobeArrays& a);                                                                         \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(lobes, const LobeArrays&)
 
 namespace {
 
 using glm::dvec3;
 using std::numbers::pi;
 
-using Target = TargetFunction<LobeArrays>;
-std::vector<Target> targets() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::lobes});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return runnable(std::move(all));
-}
+using Target = TargetFunction<const LobeArrays&>;
 
 struct Lobe {
     float alpha;
@@ -107,7 +96,7 @@ std::vector<double> expected(const Target& target, const Lobe& lobe) {
 
 TEST(Lobes, DirectionsComeAsOftenAsTheirDensitySays) {
     constexpr int samples = 1 << 16;
-    for (const Target& target : targets())
+    for (const Target& target : lobes_of_targets())
         for (const Lobe& lobe : cases) {
             const std::vector<double> p = expected(target, lobe);
             double all = 0;
@@ -158,7 +147,7 @@ TEST(Lobes, DirectionsComeAsOftenAsTheirDensitySays) {
 
 TEST(Lobes, ReflectBothWaysAlike) {
     std::mt19937 random(3);
-    for (const Target& target : targets())
+    for (const Target& target : lobes_of_targets())
         for (const Lobe& lobe : cases) {
             Arrays arrays(1024, lobe);
             for (int i = 0; i < 1024; ++i) {

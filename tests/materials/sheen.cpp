@@ -1,6 +1,5 @@
 // Sheen by itself: equal to its definition, the same both ways, and its table the integral over it.
-#include "test_targets.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 #include "tests/materials/plain_sheen.h"
 #include "tests/materials/sheen_kernel.h"
 
@@ -19,24 +18,14 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void sheen(const SheenArrays& a);                                                                        \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(sheen, const SheenArrays&)
 
 namespace {
 
 using glm::dvec3;
 using std::numbers::pi;
 
-using Target = TargetFunction<SheenArrays>;
-std::vector<Target> targets() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::sheen});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return runnable(std::move(all));
-}
+using Target = TargetFunction<const SheenArrays&>;
 
 constexpr int count = 2048;
 constexpr double roughnesses[] = {0.1, 0.25, 0.5, 0.75, 1};
@@ -93,7 +82,7 @@ Found run(const Target& target, const std::vector<double>& roughness, const Shee
 
 TEST(Sheen, IsThatOfItsDefinition) {
     const std::vector<dvec3> view = directions(1), light = directions(2);
-    for (const Target& target : targets())
+    for (const Target& target : sheen_of_targets())
         for (const double roughness : roughnesses) {
             const Found found = run(target, roughness, view, light);
             const PlainSheen plain = plain_sheen(roughness);
@@ -110,7 +99,7 @@ TEST(Sheen, IsThatOfItsDefinition) {
 
 TEST(Sheen, IsTheSameBothWays) {
     const std::vector<dvec3> view = directions(3), light = directions(4);
-    for (const Target& target : targets())
+    for (const Target& target : sheen_of_targets())
         for (const double roughness : roughnesses) {
             const Found there = run(target, roughness, view, light),
                         back = run(target, roughness, light, view);
@@ -147,7 +136,7 @@ TEST(SheenRows, ShowTheDefinitionBetweenThem) {
     const std::vector<dvec3> view = directions(5), light = directions(6);
     const std::vector<double> roughness = mapped_roughness();
     const SheenRows rows = sheen_albedo_rows(0.1F, 1);
-    for (const Target& target : targets()) {
+    for (const Target& target : sheen_of_targets()) {
         const Found found = run(target, roughness, rows, view, light);
         for (std::size_t i = 0; i < count; ++i) {
             const PlainSheen plain = plain_sheen(roughness[i]);
@@ -162,7 +151,7 @@ TEST(SheenRows, ShowTheDefinitionBetweenThem) {
 TEST(SheenRows, EndAtWhatHasNone) {
     const std::vector<dvec3> view = directions(7), light = directions(8);
     const SheenRows rows = sheen_albedo_rows(0.25F, 0.75F);
-    for (const Target& target : targets())
+    for (const Target& target : sheen_of_targets())
         for (const double roughness : {0.25, 0.75}) {
             const Found mapped = run(target, std::vector<double>(count, roughness), rows, view, light),
                         plain = run(target, roughness, view, light);
@@ -177,7 +166,7 @@ TEST(SheenRows, AreTheSameBothWays) {
     const std::vector<dvec3> view = directions(9), light = directions(10);
     const std::vector<double> roughness = mapped_roughness();
     const SheenRows rows = sheen_albedo_rows(0.1F, 1);
-    for (const Target& target : targets()) {
+    for (const Target& target : sheen_of_targets()) {
         const Found there = run(target, roughness, rows, view, light),
                     back = run(target, roughness, rows, light, view);
         for (std::size_t i = 0; i < count; ++i) {

@@ -1,9 +1,8 @@
 // Skies that maps show: sampled as often as their density says, seen where they are, and their light is the
 // integral over them.
 #include "razor/frame/sky_distribution.h"
-#include "test_targets.h"
 #include "tests/kernels/cages.h"
-#include "tests/kernels/targets.h"
+#include "tests/kernels/target_functions.h"
 #include "tests/materials/floor.h"
 #include "tests/materials/plain_surface.h"
 #include "tests/materials/skies.h"
@@ -23,24 +22,14 @@
 
 namespace razor::test {
 
-#define RAZOR_DECLARE(target)                                                                                \
-    namespace target {                                                                                       \
-    void sky(const SkyArrays& a);                                                                            \
-    }
-RAZOR_TEST_TARGETS(RAZOR_DECLARE)
+RAZOR_TEST_FUNCTION(sky, const SkyArrays&)
 
 namespace {
 
 using glm::dvec3;
 using std::numbers::pi;
 
-using Target = TargetFunction<SkyArrays>;
-std::vector<Target> targets() {
-    std::vector<Target> all;
-#define RAZOR_LIST(target) all.push_back({#target, target::sky});
-    RAZOR_TEST_TARGETS(RAZOR_LIST)
-    return runnable(std::move(all));
-}
+using Target = TargetFunction<const SkyArrays&>;
 
 struct Map {
     const char* name;
@@ -106,7 +95,7 @@ TEST(SkyMap, ChancesAddUpAndLeaveNothingOut) {
 TEST(SkyMap, DirectionsComeAsOftenAsTheirDensitySays) {
     constexpr int samples = 1 << 17, rings = 16, sectors = 32;
     for (const Map& map : maps())
-        for (const Target& target : targets()) {
+        for (const Target& target : sky_of_targets()) {
             Sampled sky(map.texture);
             std::vector<float> u(samples), v(samples), to(3 * samples), density(samples), there(samples);
             std::mt19937 random(11);
