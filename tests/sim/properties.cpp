@@ -281,7 +281,7 @@ TEST(Properties, RandomMachinesKeepTheLaws) {
 TEST(Properties, SomeRandomMachinesSnoopAboveASharedCache) {
     std::mt19937 random(2027);
     int fast = 0, reference = 0, several_buses = 0;
-    for (int trial = 0; trial < 2000; ++trial) {
+    for (int trial = 0; trial < 6000; ++trial) {
         const Config c = random_machine(random);
         if (!c.coherence.snoops() || !c.beyond_tiles(c.cache_levels() - 1))
             continue;
