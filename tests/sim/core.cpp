@@ -225,25 +225,38 @@ TEST(Core, StretchesAreTakenAPieceAtATime) {
     c.core.lanes = ISA_WIDTH / 4;
     c.core.vector_registers = 1;
     c.core.broadcasts = "register";
-    const auto spilled = [&](integer interleaved, const std::function<void()>& between) {
+    const auto spilled = [&](integer interleaved, const std::function<void(std::byte*)>& between) {
         c.core.interleaved_values = interleaved;
         return run_on(c,
-                      [&](std::byte*, int) {
+                      [&](std::byte* p, int) {
                           stamp a = vector_op(operation::add, stamp{});
                           stamp b = vector_op(operation::add, stamp{}); // a is out
-                          between();
+                          between(p);
                           vector_op(operation::add, a, b);
                       })
             .core.spill_loads;
     };
-    const auto nothing = [] {};
+    const auto nothing = [](std::byte*) {};
     EXPECT_EQ(spilled(0, nothing), 2U); // b too, once a is back
     EXPECT_EQ(spilled(1, nothing), 2U);
     EXPECT_EQ(spilled(2, nothing), 0U);
-    EXPECT_EQ(spilled(2, [] { isa::timing::branch(here, stamp{}, true); }), 2U);
-    EXPECT_EQ(spilled(2, [] { isa::timing::cross_op(operation::shuffle, stamp{}, stamp{}); }), 2U);
-    EXPECT_EQ(spilled(8, [] { isa::timing::cross_op(operation::shuffle, stamp{}, stamp{}); }), 2U);
-    EXPECT_EQ(spilled(2, [] { isa::timing::cross_to_scalar(operation::reduce, stamp{}, stamp{}); }), 0U);
+    EXPECT_EQ(spilled(2, [](std::byte*) { isa::timing::branch(here, stamp{}, true); }), 2U);
+    EXPECT_EQ(spilled(2, [](std::byte*) { isa::timing::cross_op(operation::shuffle, stamp{}, stamp{}); }),
+              2U);
+    EXPECT_EQ(spilled(8, [](std::byte*) { isa::timing::cross_op(operation::shuffle, stamp{}, stamp{}); }),
+              2U);
+    EXPECT_EQ(
+        spilled(2, [](std::byte*) { isa::timing::cross_to_scalar(operation::reduce, stamp{}, stamp{}); }),
+        0U);
+    // Of gathers only those that go lane by lane.
+    const auto gathers = [](std::byte* p) {
+        const std::array<std::int32_t, ISA_WIDTH> index{};
+        isa::timing::gather(here, p, index.data(), all_lanes, stamp{}, stamp{}, stamp{});
+    };
+    EXPECT_EQ(spilled(8, gathers), 0U);
+    c.core.gather = "lane";
+    c.lanes.piece_instructions = 4;
+    EXPECT_EQ(spilled(8, gathers), 2U);
 }
 
 TEST(Core, MispredictsCostTheirPenalty) {
