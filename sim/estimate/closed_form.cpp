@@ -1,6 +1,9 @@
 #include "sim/estimate/closed_form.h"
 
+#include "sim/estimate/line_traffic.h"
 #include "sim/estimate/mean_value.h"
+#include "sim/estimate/real.h"
+#include "sim/estimate/screen_schedule.h"
 #include "sim/machine/describe.h"
 #include "sim/network/figures.h"
 
@@ -13,10 +16,6 @@
 
 namespace sim {
 namespace {
-
-double real(auto x) {
-    return static_cast<double>(x);
-}
 
 double sum(const PhaseWork& w) {
     return std::accumulate(w.begin(), w.end(), 0.0);
@@ -39,7 +38,9 @@ struct Demands {
     double stretch = 1;       // of what the seed says of phases
 };
 
-Demands demands_of(const Seed& s, const Config& seed_machine, const Config& machine, double alone) {
+/// `alone`: of a lone worker on the seed's machine. `lines`: of memory.
+Demands demands_of(const Seed& s, const Config& seed_machine, const Config& machine, double alone,
+                   double lines) {
     Demands d;
     const unsigned levels = machine.cache_levels();
     double waits = 0, seen = 0, crowd = 0;
@@ -62,8 +63,7 @@ Demands demands_of(const Seed& s, const Config& seed_machine, const Config& mach
         // Half of all ways cross the middle.
         d.network =
             s.network_bytes / 2 / (network.bisection_bytes_per_second * real(machine.chip.clock_ps) * 1e-12);
-    if (s.lines > 0)
-        d.memory = s.lines * line_service_cycles(machine, s.activates / s.lines);
+    d.memory = lines * line_service_cycles(machine, s.lines > 0 ? s.activates / s.lines : 0);
     return d;
 }
 
@@ -129,20 +129,6 @@ private:
 
 } // namespace
 
-double written_lines(const Config& seed_machine, double seed_reads, double seed_writes, const Config& machine,
-                     double reads) {
-    const auto held = [](const Config& c) {
-        const unsigned last = c.cache_levels() - 1;
-        return real(c.cache(last).size_bytes / c.cache(last).line_bytes) *
-               real(c.all_cores() / c.cores_sharing(last));
-    };
-    const double pushed_out = seed_reads - held(seed_machine);
-    // A seed whose lines all fit says only what is written whatever fits.
-    if (pushed_out <= 0)
-        return seed_writes;
-    return std::max(reads - held(machine), 0.0) * seed_writes / pushed_out;
-}
-
 double line_service_cycles(const Config& c, double activates_a_line) {
     const MemoryConfig& m = c.memory;
     const double bursts = std::max(1.0, real(c.last_cache().line_bytes) / real(m.bus_bytes * m.burst_length));
@@ -170,7 +156,11 @@ Prediction predict(const Seed& seed, const Config& seed_machine, const Config& m
     double alone = 0;
     for (std::size_t i = 0; i < all.size(); ++i)
         alone += all[i] * seed.phases[i].alone;
-    const Demands d = demands_of(seed, seed_machine, machine, alone / p.instructions);
+    const LineTraffic lines = predict_lines(seed, seed_machine, machine, work, seats);
+    p.reads = lines.reads;
+    p.writes = lines.writes;
+    const Demands d = demands_of(seed, seed_machine, machine, alone / p.instructions,
+                                 (lines.reads + lines.writes) / p.instructions);
     const auto cycles = [&](const PhaseWork& w) {
         double c = 0;
         for (std::size_t i = 0; i < w.size(); ++i)
@@ -199,14 +189,6 @@ Prediction predict(const Seed& seed, const Config& seed_machine, const Config& m
     p.cycles = p.once_cycles + rendered.cycles;
     p.threads = rendered.busy / std::max(rendered.cycles, 1.0);
     p.waiting = rendered.waiting / std::max(rendered.cycles, 1.0);
-    double seed_reads = 0, seed_writes = 0;
-    for (std::size_t i = 0; i < seed.phases.size(); ++i) {
-        const SeedPhase& s = seed.phases[i];
-        seed_reads += s.reads;
-        seed_writes += s.writes;
-        p.reads += i >= all.size() ? s.reads : s.instructions > 0 ? s.reads * all[i] / s.instructions : 0;
-    }
-    p.writes = written_lines(seed_machine, seed_reads, seed_writes, machine, p.reads);
     const double time = std::max(rendered.cycles, 1.0);
     const auto use = [&](const char* name, const char* meaning, double demand, double servers) {
         if (demand > 0)

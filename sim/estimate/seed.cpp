@@ -1,6 +1,7 @@
 #include "sim/estimate/seed.h"
 
 #include "sim/config/parameters.h"
+#include "sim/estimate/real.h"
 #include "sim/machine/derived.h"
 
 #include <nlohmann/json.hpp>
@@ -12,10 +13,6 @@ namespace sim {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-double real(auto x) {
-    return static_cast<double>(x);
-}
 
 double over(double part, double whole) {
     return whole > 0 ? part / whole : 0;
@@ -58,9 +55,47 @@ double core_cycles(const Report& r) {
     return std::max({real(r.core.instructions) / real(r.config.core.issue_width), ports, l1});
 }
 
+/// Lines of memory that a phase of this use reads.
+double reads_of(const Report& r, const std::vector<PhaseUse>& uses, PhaseUse use) {
+    double sum = 0;
+    for (const TrafficRow& row : r.traffic)
+        if (const std::size_t p = r.labels.phase(row.column); p < uses.size() && uses[p] == use)
+            sum += real(row.traffic.memory_reads);
+    return sum;
+}
+
+/// Lines belong to the first phase that touched them; whatever is done once comes before those.
+void count_lines(const Report& r, std::vector<SeedPhase>& phases) {
+    for (const TouchedLines& t : r.touched_last) {
+        std::size_t first = phases.size();
+        bool once = false;
+        for (std::size_t c = 0; c < r.labels.columns(); ++c) {
+            if ((t.columns >> c & 1U) == 0)
+                continue;
+            const std::size_t p = r.labels.phase(c);
+            if (phases[p].use == PhaseUse::once)
+                once = true;
+            else
+                first = std::min(first, p);
+        }
+        if (first == phases.size())
+            continue;
+        phases[first].lines += real(t.lines);
+        phases[first].before += once ? real(t.lines) : 0;
+    }
+}
+
 /// Lines that come from below a level, for one instruction.
 double fills(const Report& r, unsigned level) {
     return over(real(r.cache_total(level).misses), real(r.core.instructions));
+}
+
+constexpr std::array<const char*, 4> use_names = {"once", "builds", "renders", "end"};
+PhaseUse use_of(const std::string& name) {
+    const auto found = std::find(use_names.begin(), use_names.end(), name);
+    if (found == use_names.end())
+        throw json::other_error::create(501, "no use of a phase: " + name, nullptr);
+    return static_cast<PhaseUse>(found - use_names.begin());
 }
 
 /// Every number of a seed beside its phases: visit(name, number).
@@ -71,6 +106,8 @@ template <class AnySeed, class Visit> void each_number(AnySeed& s, Visit visit) 
     visit("memory_lines", s.lines);
     visit("row_activates", s.activates);
     visit("word_wait_cycles", s.word_wait);
+    visit("workers_at_work", s.at_work);
+    visit("memory_reads_of_a_worker", s.worker_reads);
     static constexpr std::array<const char*, most_levels> banks = {
         "l1_bank_cycles", "l2_bank_cycles", "l3_bank_cycles", "l4_bank_cycles", "l5_bank_cycles"};
     static constexpr std::array<const char*, most_levels> crowding = {
@@ -88,20 +125,21 @@ template <class AnySeed, class Visit> void each_number(AnySeed& s, Visit visit) 
 
 } // namespace
 
-Seed seed_of(const Report& crowded, const Report& lone, const std::vector<bool>& once, int at_work) {
+Seed seed_of(const Report& crowded, const Report& lone, const std::vector<PhaseUse>& uses, int at_work) {
     Seed s;
     const double all = real(crowded.core.instructions);
     s.phases.resize(crowded.labels.phases.size());
     double lone_instructions = 0, waited = 0;
     for (std::size_t p = 0; p < s.phases.size(); ++p) {
         SeedPhase& phase = s.phases[p];
+        phase.use = p < uses.size() ? uses[p] : PhaseUse::end;
         phase.instructions = instructions_of(crowded, p);
         const bool known = p < lone.labels.phases.size();
         const double there = known ? instructions_of(lone, p) : 0;
         lone_instructions += there;
         if (there > 0)
             phase.alone = real(work_cycles(stack_of(lone, p))) / there;
-        if (p >= once.size() || !once[p])
+        if (phase.use != PhaseUse::once)
             waited += real(stack_of(crowded, p)[static_cast<std::size_t>(Cause::synchronise)]);
     }
     // Phases that the lone run did not come to are as the others.
@@ -116,6 +154,12 @@ Seed seed_of(const Report& crowded, const Report& lone, const std::vector<bool>&
         phase.reads += real(row.traffic.memory_reads);
         phase.writes += real(row.traffic.memory_writes);
     }
+    count_lines(crowded, s.phases);
+    s.at_work = at_work;
+    if (crowded.workers > lone.workers)
+        s.worker_reads =
+            std::max(reads_of(crowded, uses, PhaseUse::once) - reads_of(lone, uses, PhaseUse::once), 0.0) /
+            (crowded.workers - lone.workers);
     s.core = over(core_cycles(crowded), all);
     for (const std::uint64_t cycles : crowded.shared_unit_cycles)
         s.unit += over(real(cycles), all);
@@ -148,7 +192,10 @@ json json_of_seed(const Seed& seed) {
         out["phases"].push_back({{"instructions", p.instructions},
                                  {"alone_cycles", p.alone},
                                  {"memory_reads", p.reads},
-                                 {"memory_writes", p.writes}});
+                                 {"memory_writes", p.writes},
+                                 {"lines", p.lines},
+                                 {"lines_touched_before", p.before},
+                                 {"use", use_names[static_cast<std::size_t>(p.use)]}});
     return out;
 }
 
@@ -157,7 +204,9 @@ Seed seed_of_json(const json& from) {
     each_number(s, [&](const char* name, double& value) { value = from.at(name).get<double>(); });
     for (const json& p : from.at("phases"))
         s.phases.push_back({p.at("instructions").get<double>(), p.at("alone_cycles").get<double>(),
-                            p.at("memory_reads").get<double>(), p.at("memory_writes").get<double>()});
+                            p.at("memory_reads").get<double>(), p.at("memory_writes").get<double>(),
+                            p.at("lines").get<double>(), p.at("lines_touched_before").get<double>(),
+                            use_of(p.at("use").get<std::string>())});
     return s;
 }
 

@@ -8,16 +8,24 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace sim {
 
+/// What a phase's work is: done once a frame, by all workers together; builds of what several may need; of
+/// one screen tile alone; the end of the frame.
+enum class PhaseUse : std::uint8_t { once, builds, renders, end };
+
 struct SeedPhase {
     double instructions = 0;      // of the crowded run
     double alone = 0;             // cycles of a lone worker for one, waits for shared words not counted
     double reads = 0, writes = 0; // lines of memory, of the crowded run
+    double lines = 0;  // different ones that no phase touched before it, but for those done once ...
+    double before = 0; // ... and of these, those that one of the latter did
+    PhaseUse use = PhaseUse::renders;
 };
 
 struct Seed {
@@ -29,15 +37,17 @@ struct Seed {
     double network_bytes = 0;                // ... bytes ...
     double lines = 0, activates = 0;         // ... from and to memory, and rows that they open
     double word_wait = 0;                    // cycles that a worker waited for what others built
+    double at_work = 1;                      // workers that had something to do
+    double worker_reads = 0;                 // lines that each worker reads in phases done once, for itself
     // Of the lone run, cycles of waiting for one instruction, by where data came from: levels, then memory.
     std::array<double, most_levels + 1> waits{};
     /// How many more lines come from below each level where threads share the caches, as a ratio.
     std::array<double, most_levels> crowding{};
 };
 
-/// `once`: by phase, whether its work is done once, by all workers (waits for others in it are not those of
+/// `uses`: of phases, but for the end of the frame (waits for others in those done once are not those of
 /// builds). `at_work`: workers of the crowded run that had something to do.
-Seed seed_of(const Report& crowded, const Report& lone, const std::vector<bool>& once, int at_work);
+Seed seed_of(const Report& crowded, const Report& lone, const std::vector<PhaseUse>& uses, int at_work);
 
 /// With all numbers by name. Throws nlohmann::json::exception where they are not there.
 nlohmann::ordered_json json_of_seed(const Seed& seed);

@@ -44,6 +44,8 @@ Report Engine::report() const {
         attributions.push_back(&tile.attribution);
     r.traffic = Attribution::traffic(attributions);
     r.touched = lines_.touched();
+    r.touched_last = lines_.touched(static_cast<std::size_t>(
+        std::max(config_.last_cache().line_bytes / config_.l1.line_bytes, integer{1})));
     r.network = beyond_->network().report();
     r.memory = beyond_->counters();
     r.memory_by_rank = beyond_->rank_counters();

@@ -144,7 +144,8 @@ struct Report {
     MemoryCounters memory;
     std::vector<MemoryCounters> memory_by_rank; // rank r of channel c at c x ranks + r
     std::vector<TrafficRow> traffic;            // where there was any
-    std::vector<TouchedLines> touched;          // of the structures but `spill`
+    std::vector<TouchedLines> touched;          // lines of the L1s, of the structures but `spill`
+    std::vector<TouchedLines> touched_last;     // ... of the last caches
     std::vector<OwnerSum> owners;               // none without RunOptions::owners
     cycle interval = 0;                         // cycles of an interval; 0: none were kept
     std::vector<Interval> intervals; // of the run, the last one from its end until memory was quiet

@@ -114,12 +114,14 @@ void LineMap::forget_touched() {
                 lines[i].touched_.store(0, std::memory_order_relaxed);
 }
 
-std::vector<TouchedLines> LineMap::touched() const {
+std::vector<TouchedLines> LineMap::touched(std::size_t together) const {
     std::map<std::pair<std::size_t, std::uint64_t>, std::uint64_t> counts;
     for (std::size_t g = 0; g < granule_count_; ++g) {
         const Line* lines = granules_[g].lines.load(std::memory_order_relaxed);
-        for (std::size_t i = 0; lines != nullptr && i < lines_in_granule(); ++i) {
-            const std::uint64_t columns = lines[i].touched_.load(std::memory_order_relaxed);
+        for (std::size_t i = 0; lines != nullptr && i < lines_in_granule(); i += together) {
+            std::uint64_t columns = 0;
+            for (std::size_t k = i; k < std::min(i + together, lines_in_granule()); ++k)
+                columns |= lines[k].touched_.load(std::memory_order_relaxed);
             if (columns != 0)
                 ++counts[{granules_[g].structure, columns}];
         }

@@ -93,8 +93,9 @@ public:
     std::size_t kind_count() const { return structures_.size() << level_bits; }
     static std::size_t structure_of(LineKind kind) { return kind >> level_bits; }
     static std::optional<int> level_of(LineKind kind);
-    /// Lines of the structures but `spill`, by structure and by which columns touched them.
-    std::vector<TouchedLines> touched() const;
+    /// Lines of the structures but `spill`, by structure and by which columns touched them; longer ones, of
+    /// so many (a power of two), likewise.
+    std::vector<TouchedLines> touched(std::size_t together = 1) const;
     /// None has been touched so far.
     void forget_touched();
 

@@ -1,5 +1,6 @@
 #include "sim/program/closed_form_run.h"
 
+#include "razor/frame/frame.h"
 #include "razor/image/output_file.h"
 #include "razor/scene/error.h"
 #include "sim/config/placement.h"
@@ -80,8 +81,13 @@ ClosedForm compute_closed_form(const Config& machine, int workers, const razor::
         if (!seed_file.empty())
             write_seed(seed_file, out.seed);
     }
+    if (const int tiles = razor::screen_tiles(built.settings);
+        out.seed.needs.size() != static_cast<std::size_t>(tiles))
+        throw razor::UserError(fmt::format(
+            "--seed-report: {}: needs are of {} screen tiles, but the picture has {}; make it anew",
+            seed_file, out.seed.needs.size(), tiles));
     const std::vector<Seat> seats = seats_of(machine, workers);
-    out.counted = count_screen(built, seats, out.seed.seed, out.seed.drivers, interrupted);
+    out.counted = count_screen(built, seats, out.seed.seed, out.seed.drivers, out.seed.needs, interrupted);
     const auto model = std::chrono::steady_clock::now();
     out.prediction = predict(out.seed.seed, out.seed.machine, machine, out.counted.work, seats);
     out.model_seconds = seconds_since(model);

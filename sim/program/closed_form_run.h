@@ -13,12 +13,9 @@
 
 namespace sim {
 
-/// Relative error of cycles, and of bytes from and to DRAM, that most computed runs stay below: 34 and 30 of
-/// 36 beside simulated ones (README.md, Measured).
+/// Relative error of cycles, and of bytes from and to DRAM, that all of 63 computed runs stayed below beside
+/// simulated ones (README.md, Measured).
 inline constexpr double closed_form_error = 0.2;
-
-/// ... that 35 of the 36 stay below: what --fidelity auto takes for 95 %.
-inline constexpr double closed_form_cycles_bound = 0.23, closed_form_bytes_bound = 0.34;
 
 struct ClosedForm {
     KeptSeed seed;

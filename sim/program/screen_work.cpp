@@ -4,6 +4,7 @@
 #include "razor/frame/phases.h"
 #include "razor/native/render.h"
 #include "razor/native/targets.h"
+#include "sim/estimate/screen_schedule.h"
 
 #include <algorithm>
 #include <chrono>
@@ -35,30 +36,22 @@ std::vector<Part> parts_of(int tiles, const std::vector<Seat>& seats) {
     return out;
 }
 
-/// What each tile of the part counts where those behind it on the curve were rendered before.
-std::vector<razor::Counters> counted_backward(razor::Frame& frame, const razor::KernelTable& kernels,
-                                              const Part& part, const std::atomic<bool>& cancel) {
-    frame.reset();
-    for (int tile = part.end; tile-- > part.first;) {
-        frame.take_tiles(tile, tile + 1);
-        razor::run_workers(frame, kernels, {}, &cancel);
-    }
-    std::vector<razor::Counters> out;
-    for (const razor::TileCost& tile : frame.tile_costs(kernels))
-        out.push_back(tile.counters.sum());
-    return out;
+double need(const ScreenNeed& n, std::size_t phase) {
+    return phase == razor::phase_build ? n.nodes : n.surfaces;
 }
 
-/// The part of a tree's builds that one of `tiles` does. Whoever comes first builds what several need: with
-/// tiles in one order and the other, a tile's mean share nears that of all orders (the Shapley value). Half
-/// of the work is spread evenly instead: who finds something being built turns to what nobody builds yet.
-double share(const razor::Counters& forward, const razor::Counters& backward, const razor::Counters& tree,
-             std::size_t tiles, std::size_t phase) {
-    const auto count = [phase](const razor::Counters& c) {
-        return real(phase == razor::phase_build ? c.patches_opened + c.blocks_made : c.vertices_made);
-    };
-    const double even = 1 / static_cast<double>(tiles), all = count(tree);
-    return all > 0 ? 0.5 * even + 0.25 * (count(forward) + count(backward)) / all : even;
+/// The part of its tree's builds that each screen tile of the part does: by what it needs. What several need
+/// is built by whoever comes first, most likely by one that is long at it.
+std::vector<double> build_shares(const std::vector<ScreenNeed>& needs, const Part& part, std::size_t phase) {
+    std::vector<double> out;
+    double all = 0;
+    for (int t = part.first; t < part.end; ++t) {
+        out.push_back(need(needs[static_cast<std::size_t>(t)], phase));
+        all += out.back();
+    }
+    for (double& share : out)
+        share = all > 0 ? share / all : 1 / static_cast<double>(out.size());
+    return out;
 }
 
 } // namespace
@@ -66,7 +59,8 @@ double share(const razor::Counters& forward, const razor::Counters& backward, co
 std::vector<double> drivers(const razor::Counters& c, double nodes) {
     std::vector<double> d(razor::phase_count, 1);
     d[razor::phase_build] = nodes;
-    d[razor::phase_tessellate] = real(c.vertices_made);
+    // A block takes what its patch does to evaluate, and vectors of its points.
+    d[razor::phase_tessellate] = real(c.patches_opened + c.blocks_made) + real(c.vertices_made) / ISA_WIDTH;
     d[razor::phase_shade] = real(c.rays);
     d[razor::phase_traverse] = real(c.node_visits);
     d[razor::phase_intersect] = real(c.block_tests + c.cell_tests + c.quad_tests);
@@ -76,14 +70,33 @@ std::vector<double> drivers(const razor::Counters& c, double nodes) {
     return d;
 }
 
-std::vector<bool> once_a_frame() {
-    std::vector<bool> once(razor::phase_count);
-    once[razor::phase_animate] = true;
-    return once;
+std::vector<PhaseUse> uses_of_phases() {
+    std::vector<PhaseUse> uses(razor::phase_count, PhaseUse::renders);
+    uses[razor::phase_animate] = PhaseUse::once;
+    for (std::size_t p = 0; p < uses.size(); ++p)
+        if (is_built(p))
+            uses[p] = PhaseUse::builds;
+    return uses;
+}
+
+std::vector<ScreenNeed> count_needs(const razor::Scene& scene, const std::atomic<bool>& cancel) {
+    const razor::KernelTable& kernels = razor::native_target("auto");
+    razor::Frame frame(scene, {.workers = 1});
+    std::vector<ScreenNeed> out;
+    for (int tile = 0; tile < razor::screen_tiles(scene.settings); ++tile) {
+        frame.reset();
+        frame.take_tiles(tile, tile + 1);
+        razor::run_workers(frame, kernels, {}, &cancel);
+        const razor::FrameStatistics s = frame.statistics();
+        const std::vector<double> d = drivers(s.counters, real(s.inner_nodes));
+        out.push_back({d[razor::phase_build], d[razor::phase_tessellate]});
+    }
+    return out;
 }
 
 CountedScreen count_screen(const razor::Scene& scene, const std::vector<Seat>& seats, const Seed& seed,
-                           const std::vector<double>& seed_drivers, const std::atomic<bool>& cancel) {
+                           const std::vector<double>& seed_drivers, const std::vector<ScreenNeed>& needs,
+                           const std::atomic<bool>& cancel) {
     const auto begin = std::chrono::steady_clock::now();
     CountedScreen out;
     ScreenWork& work = out.work;
@@ -100,24 +113,24 @@ CountedScreen count_screen(const razor::Scene& scene, const std::vector<Seat>& s
     for (const Part& part : parts_of(razor::screen_tiles(scene.settings), seats)) {
         if (part.first == part.end)
             continue;
-        const std::vector<razor::Counters> backward = counted_backward(frame, kernels, part, cancel);
         frame.reset();
         frame.take_tiles(part.first, part.end);
         razor::run_workers(frame, kernels, {}, &cancel);
         const razor::FrameStatistics s = frame.statistics();
         const PhaseWork all = instructions(drivers(s.counters, real(s.inner_nodes)));
-        const std::vector<razor::TileCost> forward = frame.tile_costs(kernels);
-        for (std::size_t t = 0; t < forward.size(); ++t) {
-            const razor::Counters counted = forward[t].counters.sum();
-            PhaseWork own = instructions(drivers(counted, 0)), built(own.size());
-            for (std::size_t p = 0; p < own.size(); ++p) {
+        const std::size_t first = work.tiles.size();
+        for (const razor::TileCost& tile : frame.tile_costs(kernels)) {
+            work.tiles.push_back(instructions(drivers(tile.counters.sum(), 0)));
+            work.built.emplace_back(razor::phase_count);
+        }
+        for (std::size_t p = 0; p < razor::phase_count; ++p) {
+            const std::vector<double> shares = build_shares(needs, part, p);
+            for (std::size_t t = 0; t < shares.size(); ++t) {
                 if (is_built(p))
-                    built[p] = all[p] * share(counted, backward[t], s.counters, forward.size(), p);
+                    work.built[first + t][p] = all[p] * shares[t];
                 if (is_built(p) || p == razor::phase_animate)
-                    own[p] = 0;
+                    work.tiles[first + t][p] = 0;
             }
-            work.tiles.push_back(std::move(own));
-            work.built.push_back(std::move(built));
         }
         out.rays += real(s.counters.rays);
         out.grid_bytes += real(s.grid_bytes);

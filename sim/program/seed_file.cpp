@@ -38,6 +38,28 @@ std::string impossible_number(const json& seed) {
     return "";
 }
 
+json json_of_needs(const std::vector<ScreenNeed>& needs) {
+    json out = {{"nodes", json::array()}, {"surfaces", json::array()}};
+    for (const ScreenNeed& n : needs) {
+        out["nodes"].push_back(n.nodes);
+        out["surfaces"].push_back(n.surfaces);
+    }
+    return out;
+}
+
+/// Throws json::exception.
+std::vector<ScreenNeed> needs_of_json(const json& from) {
+    std::vector<ScreenNeed> out;
+    const auto nodes = from.at("nodes").get<std::vector<double>>();
+    for (std::size_t t = 0; t < nodes.size(); ++t)
+        out.push_back({nodes[t], from.at("surfaces").at(t).get<double>()});
+    return out;
+}
+
+bool counted(const ScreenNeed& n) {
+    return counted(n.nodes) && counted(n.surfaces);
+}
+
 } // namespace
 
 void write_seed(const std::string& file, const KeptSeed& seed) {
@@ -47,6 +69,7 @@ void write_seed(const std::string& file, const KeptSeed& seed) {
                       {"machine", print_machine(seed.machine)},
                       {"scene", seed.scene},
                       {"drivers", seed.drivers},
+                      {"needs", json_of_needs(seed.needs)},
                       {"seed", json_of_seed(seed.seed)},
                       {"host", {{"processor_seconds", seed.processor_seconds}}}};
     razor::write_json_file(file, out);
@@ -66,11 +89,14 @@ KeptSeed read_seed(const std::string& option, const std::string& file) {
         out.machine = parse_machine(from.at("machine").get<std::string>(), file);
         out.scene = from.at("scene").get<std::string>();
         out.drivers = from.at("drivers").get<std::vector<double>>();
+        out.needs = needs_of_json(from.at("needs"));
         out.seed = seed_of_json(from.at("seed"));
         out.processor_seconds = from.at("host").at("processor_seconds").get<double>();
         std::string wrong = impossible_number(from.at("seed"));
-        if (!std::all_of(out.drivers.begin(), out.drivers.end(), counted))
+        if (!std::all_of(out.drivers.begin(), out.drivers.end(), [](double d) { return counted(d); }))
             wrong = "drivers";
+        if (!std::all_of(out.needs.begin(), out.needs.end(), [](const ScreenNeed& n) { return counted(n); }))
+            wrong = "needs";
         if (!counted(out.processor_seconds))
             wrong = "processor_seconds";
         if (!wrong.empty())

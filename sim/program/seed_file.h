@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/estimate/seed.h"
+#include "sim/program/screen_work.h"
 
 #include <string>
 #include <vector>
@@ -12,8 +13,9 @@ struct KeptSeed {
     Config machine;    // of one tile
     std::string scene; // as TOML
     Seed seed;
-    std::vector<double> drivers;  // of the crowded run: screen_work.h
-    double processor_seconds = 0; // of the host, to make it
+    std::vector<double> drivers;   // of the crowded run: screen_work.h
+    std::vector<ScreenNeed> needs; // of screen tiles
+    double processor_seconds = 0;  // of the host, to make it
 };
 
 void write_seed(const std::string& file, const KeptSeed& seed);

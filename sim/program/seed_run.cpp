@@ -23,8 +23,9 @@ KeptSeed make_seed(const Config& machine, const razor::Scene& scene, const std::
     // The middle of the curve shows more than its ends; an eighth says what instructions take.
     const int some = std::max(1, tiles / 8), first = (tiles - some) / 2;
     const FrameRun lone = run_frame(out.machine, scene, 1, first, first + some, interrupted);
-    out.seed = seed_of(crowded.report, lone.report, once_a_frame(), std::min(threads, tiles));
+    out.seed = seed_of(crowded.report, lone.report, uses_of_phases(), std::min(threads, tiles));
     out.drivers = drivers(crowded.statistics.counters, static_cast<double>(crowded.statistics.inner_nodes));
+    out.needs = count_needs(scene, interrupted);
     out.processor_seconds = crowded.report.processor_seconds + lone.report.processor_seconds;
     return out;
 }

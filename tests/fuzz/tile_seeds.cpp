@@ -23,7 +23,11 @@ std::string sound() {
     out.machine = sim::parse_machine("[chip]\ntiles = 1\ncores = 2\nthreads = 2\n", "seed");
     out.scene = "samples = 1\n";
     out.drivers.assign(razor::phase_count, 1000);
-    out.seed.phases.assign(razor::phase_count + 1, {20000, 2.5, 30, 4});
+    out.needs.assign(4, {5, 6});
+    out.seed.phases.assign(razor::phase_count + 1, {20000, 2.5, 30, 4, 20, 3, sim::PhaseUse::renders});
+    out.seed.phases[razor::phase_animate].use = sim::PhaseUse::once;
+    out.seed.phases[razor::phase_build].use = sim::PhaseUse::builds;
+    out.seed.phases.back().use = sim::PhaseUse::end;
     out.seed.core = 1;
     out.seed.banks.fill(0.1);
     out.seed.waits.fill(0.2);

@@ -83,7 +83,9 @@ TEST(Attribution, LinesHaveTheLevelNotedLast) {
     std::vector<int> level(lines, unknown);
     std::vector<std::vector<std::uint64_t>> expected(3, std::vector<std::uint64_t>(100));
     std::vector<std::uint64_t> touched(lines);
-    Report r = Machine(simple()).run(memory.space, 1, labels, [&](int) {
+    Config machine = simple();
+    machine.l2.line_bytes = 256;
+    Report r = Machine(machine).run(memory.space, 1, labels, [&](int) {
         std::mt19937 random(5);
         auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
         for (int i = 0; i < 5000; ++i) {
@@ -132,6 +134,17 @@ TEST(Attribution, LinesHaveTheLevelNotedLast) {
                                       return n + static_cast<std::ptrdiff_t>(t.lines);
                                   }),
               lines);
+    // The last cache's lines are of four.
+    std::vector<std::uint64_t> longer(lines / 4);
+    for (std::size_t line = 0; line < lines; ++line)
+        longer[line / 4] |= touched[line];
+    EXPECT_GT(std::count(longer.begin(), longer.end(), 0U), 0);
+    std::ptrdiff_t any = 0;
+    for (const TouchedLines& t : r.touched_last) {
+        EXPECT_EQ(t.lines, u(std::count(longer.begin(), longer.end(), t.columns)));
+        any += static_cast<std::ptrdiff_t>(t.lines);
+    }
+    EXPECT_EQ(any + std::count(longer.begin(), longer.end(), 0U), lines / 4);
 }
 
 // The report for programs says the same in words.

@@ -3,6 +3,7 @@
 #include "sim/estimate/closed_form.h"
 #include "sim/config/machine_file.h"
 #include "sim/estimate/mean_value.h"
+#include "sim/estimate/screen_schedule.h"
 #include "sim/estimate/seed.h"
 
 #include <gtest/gtest.h>
@@ -166,9 +167,8 @@ TEST(ClosedForm, SchedulesWithinBounds) {
 /// A seed of one instruction a cycle, of which so many cycles wait for memory.
 Seed plain_seed(double memory) {
     Seed s;
-    s.phases = {{1000, 1 + memory, 100, 50}};
+    s.phases = {{1000, 1 + memory, 1, 0}};
     s.core = 1;
-    s.lines = 0.001;
     s.waits[most_levels] = memory;
     s.crowding.fill(1);
     return s;
@@ -228,7 +228,7 @@ TEST(ClosedForm, MemoryBindsWhereItIsSlow) {
     many.chip.tiles = 8;
     many.chip.threads = 4;
     Seed s = plain_seed(3);
-    s.lines = 0.1;
+    s.phases.front().reads = 100;
     const double service = 0.1 * line_service_cycles(many, 0);
     const Prediction p = predict(s, one, many, even_work(64, 1e6), seats(8, 4));
     EXPECT_GE(p.cycles, 64e6 * service * (1 - 1e-3));
@@ -244,17 +244,6 @@ TEST(ClosedForm, MemoryBindsWhereItIsSlow) {
     const double slow_cycles = predict(plain_seed(3), one, slow, even_work(4, 1e6), seats(1, 1)).cycles;
     EXPECT_LT(slow_cycles, 0.9 * fast_cycles);
     EXPECT_GT(4 * slow_cycles, fast_cycles);
-}
-
-TEST(ClosedForm, WritesWhatIsPushedOut) {
-    Config small = machine_of("[l2]\nsize_bytes = 65536\nline_bytes = 64\n"); // 1024 lines
-    // 976 of 2000 lines read are pushed out, half of them dirty.
-    EXPECT_NEAR(written_lines(small, 2000, 488, small, 2000), 488, 1e-9);
-    EXPECT_NEAR(written_lines(small, 2000, 488, small, 3024), 1000, 1e-9);
-    Config four = small;
-    four.chip.tiles = 4;
-    EXPECT_EQ(written_lines(small, 2000, 488, four, 4000), 0);
-    EXPECT_EQ(written_lines(small, 1000, 7, four, 9000), 7); // says nothing of what is pushed out
 }
 
 TEST(ClosedForm, SeedsSayWhatTheyKnow) {
@@ -276,11 +265,21 @@ TEST(ClosedForm, SeedsSayWhatTheyKnow) {
     s.banks[2] = 0.25;
     s.crowding[1] = 1.5;
     s.word_wait = 1e6;
+    s.at_work = 12;
+    s.worker_reads = 34;
+    s.phases.push_back({5, 6, 7, 8, 9, 10, PhaseUse::builds});
+    s.phases.push_back({0, 1, 2, 3, 0, 0, PhaseUse::end});
     const Seed back = seed_of_json(nlohmann::ordered_json::parse(json_of_seed(s).dump()));
     EXPECT_EQ(json_of_seed(back).dump(), json_of_seed(s).dump());
     EXPECT_EQ(back.waits, s.waits);
     EXPECT_EQ(back.phases.front().alone, 3.5);
     EXPECT_EQ(back.banks, s.banks);
+    EXPECT_EQ(back.worker_reads, 34);
+    EXPECT_EQ(back.phases[1].use, PhaseUse::builds);
+    EXPECT_EQ(back.phases[1].before, 10);
+    nlohmann::ordered_json odd = json_of_seed(s);
+    odd["phases"][0]["use"] = "never";
+    EXPECT_THROW(seed_of_json(odd), nlohmann::json::exception);
 }
 
 } // namespace
