@@ -4,6 +4,7 @@
 #include "sim/estimate/screen_schedule.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -84,64 +85,95 @@ double beyond(double held, double touched) {
     return touched > held ? 1 - held / touched : 0;
 }
 
+/// What the seed says of lines, by its last caches at work.
+class SeedLines {
+public:
+    SeedLines(const Seed& seed, const Config& machine) : seed_(seed) {
+        const unsigned last = last_level(machine);
+        const double caches =
+            std::max(1.0, std::min(real(machine.all_cores() / machine.cores_sharing(last)), seed.at_work));
+        threads_ = std::max(seed.at_work / caches, 1.0);
+        const double crowding = last == 0 ? 1 : seed.crowding[last];
+        groups_ = {group_of(seed, PhaseUse::builds, crowding), group_of(seed, PhaseUse::renders, crowding)};
+        double reads = 0, touched = 0;
+        for (const SeedPhase& p : seed.phases) {
+            writes_ += p.writes;
+            (p.use == PhaseUse::once ? once_ : p.use == PhaseUse::end ? end_reads_ : reads) += p.reads;
+            end_writes_ += p.use == PhaseUse::end ? p.writes : 0;
+            touched += p.use == PhaseUse::once ? 0 : p.lines;
+        }
+        beyond_ = beyond(lines_held(machine), touched / caches);
+        const double pushed = pushed_out(machine, (reads + once_) / caches) * caches;
+        tells_writes_ = pushed >= 1;
+        once_ -= seed.worker_reads * real(machine.all_threads());
+        dirty_ = tells_writes_ ? (writes_ - end_writes_) / pushed : 0;
+    }
+
+    /// Lines that all of so many workers read in phases done once.
+    double once(double workers) const { return std::max(once_ + seed_.worker_reads * workers, 0.0); }
+    double at_the_end() const { return end_reads_; }
+
+    /// Lines that other phases read for one of so many last caches.
+    double reads(const CacheShare& share, double held, double caches) const {
+        double touched = 0;
+        for (std::size_t p = 0; p < share.work.size(); ++p)
+            if (seed_.phases[p].use != PhaseUse::once)
+                touched += seed_.phases[p].lines * part(share, p);
+        const double room = beyond_ > 0 ? beyond(held, touched) / beyond_ : 1;
+        const double crowd = threads_ > 1 ? std::max(share.at_work - 1, 0.0) / (threads_ - 1) : 0;
+        double sum = 0;
+        for (std::size_t p = 0; p < share.work.size(); ++p) {
+            const SeedPhase& phase = seed_.phases[p];
+            if (phase.use != PhaseUse::builds && phase.use != PhaseUse::renders)
+                continue;
+            const Group& g = groups_[phase.use == PhaseUse::builds ? 0 : 1];
+            const double again = (g.alone + (g.again - g.alone) * crowd) * room;
+            const double spared = g.spared * (1 - 1 / caches);
+            if (g.reads > 0)
+                sum += phase.reads * part(share, p) * (g.reads - g.again + again + spared) / g.reads;
+        }
+        return sum;
+    }
+
+    /// ... written, of so many that are pushed out. A seed whose lines all fit says only what is written
+    /// whatever fits.
+    double writes(double pushed) const { return tells_writes_ ? end_writes_ + pushed * dirty_ : writes_; }
+
+private:
+    /// Of the seed's work in a phase.
+    double part(const CacheShare& share, std::size_t p) const {
+        const double all = seed_.phases[p].instructions;
+        return all > 0 ? share.work[p] / all : 0;
+    }
+
+    const Seed& seed_;
+    std::array<Group, 2> groups_;           // builds, and what renders
+    double once_ = 0;                       // lines read in phases done once, but for those of each worker
+    double end_reads_ = 0, end_writes_ = 0; // at the frame's end
+    double writes_ = 0;
+    double threads_ = 1;        // at work, by cache
+    double beyond_ = 0;         // the part of lines touched that had no room
+    bool tells_writes_ = false; // some lines were pushed out ...
+    double dirty_ = 0;          // ... and this part of them written
+};
+
 } // namespace
 
 LineTraffic predict_lines(const Seed& seed, const Config& seed_machine, const Config& machine,
                           const ScreenWork& work, const std::vector<Seat>& seats) {
+    const SeedLines lines(seed, seed_machine);
     const std::vector<CacheShare> shares = shares_of(machine, work, seats);
-    const unsigned last = last_level(machine);
-    const double seed_caches = std::max(
-        1.0, std::min(real(seed_machine.all_cores() / seed_machine.cores_sharing(last)), seed.at_work));
-    const double seed_threads = std::max(seed.at_work / seed_caches, 1.0);
-    const double crowding = last == 0 ? 1 : seed.crowding[last];
-    double seed_reads = 0, seed_writes = 0, seed_touched = 0, once = 0;
-    for (const SeedPhase& p : seed.phases) {
-        seed_reads += p.reads;
-        seed_writes += p.writes;
-        if (p.use == PhaseUse::once)
-            once += p.reads;
-        else
-            seed_touched += p.lines;
-    }
-    const SeedPhase& end = seed.phases.back();
-    const double workers = real(seats.size());
-    once = std::max(once + seed.worker_reads * (workers - real(seed_machine.all_threads())), 0.0);
-
+    const double caches = real(shares.size());
+    const double once = lines.once(real(seats.size()));
     LineTraffic out;
-    out.reads = end.use == PhaseUse::end ? end.reads : 0;
-    out.writes = end.use == PhaseUse::end ? end.writes : 0;
-    const double held = lines_held(machine),
-                 seed_beyond = beyond(lines_held(seed_machine), seed_touched / seed_caches);
-    const double seed_pushed = pushed_out(seed_machine, (seed_reads - out.reads) / seed_caches) * seed_caches;
-    const bool says = seed_pushed >= 1; // what becomes of lines that are pushed out
-    const double dirty = says ? (seed_writes - out.writes) / seed_pushed : 0;
+    out.reads = lines.at_the_end();
+    double pushed = 0;
     for (const CacheShare& share : shares) {
-        double reads = once / real(shares.size()), touched = 0;
-        const auto part = [&](std::size_t p) {
-            const SeedPhase& phase = seed.phases[p];
-            return phase.instructions > 0 ? share.work[p] / phase.instructions : 0;
-        };
-        for (std::size_t p = 0; p < share.work.size(); ++p)
-            if (seed.phases[p].use != PhaseUse::once)
-                touched += seed.phases[p].lines * part(p);
-        const double room = seed_beyond > 0 ? beyond(held, touched) / seed_beyond : 1;
-        const double crowd = seed_threads > 1 ? std::max(share.at_work - 1, 0.0) / (seed_threads - 1) : 0;
-        for (const PhaseUse use : {PhaseUse::builds, PhaseUse::renders}) {
-            const Group g = group_of(seed, use, crowding);
-            if (g.reads <= 0)
-                continue;
-            const double again = (g.alone + (g.again - g.alone) * crowd) * room;
-            const double spared = g.spared * (1 - 1 / real(shares.size()));
-            const double factor = (g.reads - g.again + again + spared) / g.reads;
-            for (std::size_t p = 0; p < share.work.size(); ++p)
-                if (seed.phases[p].use == use)
-                    reads += seed.phases[p].reads * part(p) * factor;
-        }
+        const double reads = once / caches + lines.reads(share, lines_held(machine), caches);
         out.reads += reads;
-        out.writes += pushed_out(machine, reads) * dirty;
+        pushed += pushed_out(machine, reads);
     }
-    if (!says) // but only what is written whatever fits
-        out.writes = seed_writes;
+    out.writes = lines.writes(pushed);
     return out;
 }
 
