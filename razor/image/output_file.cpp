@@ -23,10 +23,10 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
     std::error_code error;
     // A link stays a link: what it names is replaced.
     path_ = std::filesystem::is_symlink(path, error) ? std::filesystem::weakly_canonical(path, error) : path;
-    // Renaming would put a file in the place of a device.
-    if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error))
+    // Renaming would put a file in the place of a device, or beside a pipe (which has no canonical name).
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
         throw UserError(
-            fmt::format("{}: is not a regular file; choose another name", printable(path_.string(), 1000)));
+            fmt::format("{}: is not a regular file; choose another name", printable(path.string(), 1000)));
     if (is_input(path_))
         throw UserError(fmt::format("{}: is one of the files that this is made of; name another output",
                                     printable(path_.string(), 1000)));

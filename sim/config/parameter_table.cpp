@@ -135,7 +135,8 @@ void add_core(Table& t) {
           "one at "
           "the least (arithmetic has no masks: idle lanes compute)");
     t.add("core.spin_period", s, &C::spin_period, "cycles", 16, 1, 100000,
-          "between two looks of a waiting thread");
+          "between two looks of a waiting thread, of two instructions each; no less than these take if all "
+          "threads of a core take turns");
 }
 
 void add_lanes(Table& t) {

@@ -73,6 +73,9 @@ Engine::Engine(const Config& config, const isa::address_space& space, int worker
       piece_lanes_(width / pieces_), piece_shift_(log2(piece_lanes_ * 4)),
       issue_shift_(Calendar::log2_group(narrow(config.core.issue_width))),
       port_shift_(Calendar::log2_group(narrow(config.l1.ports))),
+      spin_cycles_(
+          wide(std::max(config.core.spin_period,
+                        (2 * config.chip.threads + config.core.issue_width - 1) / config.core.issue_width))),
       issue_width_(narrow(config.core.issue_width)), line_bytes_(narrow(config.l1.line_bytes)),
       whole_lines_(lines_of_all_lanes(config)), line_shift_(log2(config.l1.line_bytes)),
       port_byte_shift_(log2(config.l1.port_bytes)), l1_latency_(wide(config.l1.latency)),

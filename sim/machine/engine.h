@@ -448,6 +448,9 @@ private:
     std::uint32_t piece_lanes_; // logical lanes of one of them, a power of two
     unsigned piece_shift_;      // of their bytes
     unsigned issue_shift_, port_shift_;
+    /// Between two looks of a waiting thread: those of all take turns, so that others get their part of the
+    /// slots.
+    std::uint64_t spin_cycles_;
     std::uint32_t issue_width_, line_bytes_;
     std::uint32_t whole_lines_; // that all lanes take, where they are one or two whole lines; else 0
     unsigned line_shift_, port_byte_shift_;

@@ -212,10 +212,10 @@ void Engine::look(Hart& sleeper, cycle end) {
     sleeper.looks.clear();
     cycle earliest = sleeper.tile->earliest;
     if (sleeper.next_look < earliest) { // nothing happened for long: nobody asks for these slots
-        auto period = wide(config_.core.spin_period);
+        const std::uint64_t period = spin_cycles_;
         sleeper.next_look += (earliest - sleeper.next_look + period - 1) / period * period;
     }
-    for (; sleeper.next_look < end; sleeper.next_look += wide(config_.core.spin_period)) {
+    for (; sleeper.next_look < end; sleeper.next_look += spin_cycles_) {
         Calendar::Span s = sleeper.core->issue.take(sleeper.next_look << issue_shift_, 2);
         sleeper.looks.push_back(s.first);
         sleeper.looks.push_back(s.last);
@@ -232,7 +232,7 @@ void Engine::stop_looking(Hart& sleeper, cycle woken) {
 
 /// These looks are counted now: those of earlier intervals belong there.
 void Engine::move_looks(const Hart& sleeper, cycle since, std::uint64_t looks) {
-    const auto period = wide(config_.core.spin_period);
+    const std::uint64_t period = spin_cycles_;
     std::vector<std::int64_t>& moved = sleeper.tile->intervals.looks;
     moved.resize(intervals_.open() + 1);
     std::uint64_t before = 0; // of them
@@ -254,7 +254,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         ++h.counters.waits;
         cycle since = std::max(h.acting.at(), h.accounted);
         h.waits_for = p;
-        h.next_look = since + wide(config_.core.spin_period);
+        h.next_look = since + spin_cycles_;
         h.tile->sleepers.push_back(&h);
         if (!warming_)
             look(h, window_end_);
@@ -266,7 +266,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         cycle woken = h.acting.at();
         stop_looking(h, woken);
         if (woken > h.accounted) {
-            std::uint64_t looks = (woken - since) / wide(config_.core.spin_period);
+            std::uint64_t looks = (woken - since) / spin_cycles_;
             h.counters.spins += looks;
             h.at->instructions += 2 * looks;
             if (h.interval != 0) [[unlikely]]

@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -25,6 +26,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <tuple>
+#include <unistd.h>
 
 namespace razor {
 namespace {
@@ -278,6 +280,21 @@ TEST(Tone, ExposureIsInStops) {
     const glm::vec3 a = display_colour(glm::vec3(0.5F), {.exposure = -3, .curve = ToneCurve::aces});
     const glm::vec3 b = display_colour(glm::vec3(0.0625F), {.exposure = 0, .curve = ToneCurve::aces});
     EXPECT_EQ(a, b);
+}
+
+// Which has a link, but no name of its own.
+TEST(Image, PipesAreNoOutputs) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const std::string name = fmt::format("/proc/self/fd/{}", ends[1]);
+    try {
+        check_writable(name);
+        ADD_FAILURE() << name;
+    } catch (const UserError& e) {
+        EXPECT_EQ(std::string(e.what()), name + ": is not a regular file; choose another name");
+    }
+    ::close(ends[0]);
+    ::close(ends[1]);
 }
 
 } // namespace

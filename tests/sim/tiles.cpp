@@ -182,6 +182,32 @@ TEST(Tiles, SpinningSlowsTheOtherThreadOfTheCore) {
     EXPECT_NEAR(static_cast<double>(cycles(2, 10, 5000).cycles - spinning.cycles), 5000, 150);
 }
 
+// However often they would look, and however many they are: waiting threads take turns with the one that
+// works.
+TEST(Tiles, SpinningLeavesOthersTheirPart) {
+    for (const int threads : {2, 16, 64})
+        for (const integer width : {1, 2})
+            for (const integer period : {1, 16}) {
+                Config c = tiled(1, 1, threads);
+                c.core.spin_period = period;
+                c.core.issue_width = width;
+                c.core.predictor = "perfect";
+                Shared s;
+                const Report r = s.run(c, threads, [&](int w) { // whose laws hold
+                    if (w != 0) {
+                        await(s.at(0));
+                        return;
+                    }
+                    for (int i = 0; i < 5000; ++i)
+                        scalar_op(operation::integer, stamp{});
+                    release_after(s.at(0), 4);
+                });
+                EXPECT_LE(static_cast<double>(r.cycles), 5000.0 * threads * 1.1 + 2000)
+                    << threads << " threads, period " << period << ", width " << width;
+                EXPECT_GT(r.core.spins, 100U);
+            }
+}
+
 // A quantum that is no shorter than a window does not cut it, wherever its multiples lie.
 TEST(Tiles, LongQuantaAreWholeWindows) {
     std::map<integer, std::string> reports;
