@@ -157,11 +157,13 @@ struct EmitterChoice {
     return l;
 }
 
-/// Whether rays meet the triangles that they hit from their front.
+/// Whether rays meet the triangles that they hit from their front. What is kept of blended blocks is made
+/// once, for whoever comes later too: with all that `Mapped` ones have.
+template <bool Mapped>
 [[gnu::noinline]] inline vmask hits_front(const Context& c, const Rays& r, const Hits& h, const vmask& hit,
                                           const vint& instance) {
     Shaded none_known = nothing_shaded();
-    Corners k = find_triangles<false, false>(c, r, h, hit, false, none_known);
+    Corners k = find_triangles<Mapped, false>(c, r, h, hit, false, none_known);
     vvec edge_u = k.b - k.a;
     vvec edge_v = k.c - k.a;
     vvec area = cross(edge_u, edge_v);
@@ -177,7 +179,7 @@ struct EmitterChoice {
 struct Arrivals {
     vmask all, seen;
 };
-inline Arrivals arriving(const Context& c, const EmitterRays& l, const Hits& h) {
+template <bool Mapped> inline Arrivals arriving(const Context& c, const EmitterRays& l, const Hits& h) {
     vmask hit = l.rays.active & (h.patch >= vint(0));
     vmask open = l.rays.active & !hit;
     constexpr int instance_word = offsetof(BlockHeader, instance) / 4;
@@ -194,7 +196,7 @@ inline Arrivals arriving(const Context& c, const EmitterRays& l, const Hits& h) 
     vmask near = same & (h.t + margin >= l.distance);
     if (branch(none(near)))
         return {open, near};
-    vmask other_side = hits_front(c, l.rays, h, near, instance) ^ l.front;
+    vmask other_side = hits_front<Mapped>(c, l.rays, h, near, instance) ^ l.front;
     vmask seen = near & !other_side;
     return {open | seen, seen};
 }
@@ -221,7 +223,7 @@ template <bool Mapped> struct TowardsEmitters {
     /// Of rays traced to their closest hits, which arrive; their colours multiplied by what maps show there,
     /// or the mean of them where what a ray sees is not quite there.
     vmask arrive(EmitterRays& l, const Hits& h) const {
-        Arrivals of = arriving(context, l, h);
+        Arrivals of = arriving<Mapped>(context, l, h);
         vmask arrives = of.all;
         if constexpr (Mapped) {
             sint maps = load(field(context.frame, &FrameHeader::emitter_maps));
