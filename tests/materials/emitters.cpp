@@ -8,11 +8,14 @@
 #include "razor/frame/emitters.h"
 #include "razor/frame/frame.h"
 #include "razor/native/render.h"
+#include "razor/scene/description.h"
+#include "razor/scene/scene_file.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -185,6 +188,80 @@ TEST(Emitters, CostNothingWhereNoneIsDeclared) {
     Frame frame(s, {});
     EXPECT_EQ(frame.header().emitter_count, 0);
     EXPECT_EQ(frame.header().emitters.get(), nullptr);
+}
+
+/// All that a frame shows, whatever was made before it.
+std::vector<float> picture_of(Frame& frame, const KernelTable& kernels) {
+    run_workers(frame, kernels);
+    const FrameHeader& h = frame.header();
+    return {h.film.get(), h.film.get() + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes};
+}
+
+// A curved lamp whose map follows texture coordinates, close to what it lights: what is kept of its blended
+// blocks is the same whether a ray to the lamp or one that hit it made it, in whatever memory.
+TEST(Emitters, MapsOfTextureCoordinatesShowTheSameWhateverWasMadeBefore) {
+    const Scene scene = build_scene(parse_scene_file(R"(
+[settings]
+size = [64, 48]
+samples = 4
+[camera]
+position = [0, 6, 10]
+target = [0, 0.6, 0]
+fov = 40
+[sky]
+radiance = 0
+[[texture]]
+name = "checks"
+pattern = "checker"
+space = "texture"
+size = 0.1
+high = [1, 0.3, 0.1]
+[[material]]
+name = "floor"
+albedo = 0.5
+[[material]]
+name = "lamp"
+emission_map = "checks"
+emission = 2
+light = true
+[[mesh]]
+name = "floor"
+shape = "plane"
+scheme = "bilinear"
+material = "floor"
+[mesh.parameters]
+width = 30
+depth = 30
+[[mesh]]
+name = "box"
+shape = "box"
+[[object]]
+mesh = "box"
+material = "lamp"
+translate = [1, 0.7, 2]
+rotate = [0, 25, 0]
+[[object]]
+mesh = "floor"
+[[object]]
+mesh = "box"
+material = "floor"
+translate = [1, 0.7, 0]
+rotate = [0, 25, 0]
+)",
+                                                     "lamp.toml", {}));
+    for (const KernelTable* target : best_target()) {
+        Frame frame(scene, {.workers = 1});
+        const std::vector<float> first = picture_of(frame, *target);
+        frame.reset();
+        EXPECT_TRUE(picture_of(frame, *target) == first) << "in memory that was used before";
+        Frame eager(scene, {.workers = 1});
+        eager.build_all(*target);
+        EXPECT_TRUE(picture_of(eager, *target) == first) << "with everything built";
+        float most = 0;
+        for (const float x : first)
+            most = std::max(most, std::isfinite(x) ? x : 0);
+        EXPECT_GT(most, 1);
+    }
 }
 
 } // namespace
