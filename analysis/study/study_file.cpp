@@ -77,7 +77,6 @@ public:
         const std::vector<const toml::table*> curves = top.tables("curve");
         for (const toml::table* const curve : curves)
             read_curve(*curve);
-        study_.rank = top.texts("rank");
         read_rank(top);
         const std::vector<const toml::table*> rivals = top.tables("rival");
         top.table("full");

@@ -91,11 +91,12 @@ double fills(const Report& r, unsigned level) {
 }
 
 constexpr std::array<const char*, 4> use_names = {"once", "builds", "renders", "end"};
+/// Throws json::exception where there is none of this name.
 PhaseUse use_of(const std::string& name) {
-    const auto found = std::find(use_names.begin(), use_names.end(), name);
-    if (found == use_names.end())
-        throw json::other_error::create(501, "no use of a phase: " + name, nullptr);
-    return static_cast<PhaseUse>(found - use_names.begin());
+    json numbers = json::object();
+    for (std::size_t use = 0; use < use_names.size(); ++use)
+        numbers[use_names[use]] = use;
+    return static_cast<PhaseUse>(numbers.at(name).get<int>());
 }
 
 /// Every number of a seed beside its phases: visit(name, number).

@@ -161,17 +161,18 @@ int DramTable::run() const {
 
     const Units unit(config);
     const double peak = dram_peak(m), line = static_cast<double>(config.last_cache().line_bytes);
-    fmt::print(
-        "{}: {} channels of {} ranks of {} banks, {:.2f} GB/s at most; {} lines of {} bytes a row, {} reads "
-        "under way at most\n",
-        m.preset, m.channels, m.ranks, m.bank_groups * m.banks, unit.gigabytes(peak), load.requests,
-        config.last_cache().line_bytes, load.in_flight);
+    fmt::print("{}: {} channels of {} ranks of {} banks, {:.2f} GB/s at most; each figure is of {} lines of "
+               "{} bytes, {} reads "
+               "under way at most\n",
+               m.preset, m.channels, m.ranks, m.bank_groups * m.banks, unit.gigabytes(peak), load.requests,
+               config.last_cache().line_bytes, load.in_flight);
     std::vector<Row> rows;
     json bounds = json::array();
     for (const std::string& s : streams) {
         const DramBound bound = dram_bandwidth_bound(config, s);
-        fmt::print("\n{}: no more than {:.2f} GB/s by the {}", s, unit.gigabytes(bound.bytes_per_clock),
-                   bound.by);
+        const bool by_rows = std::string_view(bound.by).substr(0, 3) != "bus"; // where each line opens one
+        fmt::print("\n{}: no more than {:.2f} GB/s by the {}{}", s, unit.gigabytes(bound.bytes_per_clock),
+                   bound.by, by_rows ? " where no row is hit" : "");
         json closed{
             {"stream", s}, {"gigabytes_per_second", unit.gigabytes(bound.bytes_per_clock)}, {"by", bound.by}};
         if (s == "random" && m.page_policy == "open" && m.refresh == "all-bank") {

@@ -88,7 +88,7 @@ void StudyOptions::add_to(CLI::App& command, StudyKind kind) {
                     "folder")
         ->type_name("N/M");
     command.add_flag("--again", again_, "measure points anew that failed");
-    command.add_flag("--quiet", quiet_, "show no progress");
+    command.add_flag("--quiet", quiet_, "show no progress and no summary, but what failed");
 }
 
 void StudyOptions::add_steps(CLI::App& command) {
@@ -253,8 +253,13 @@ int StudyOptions::collect(const StudyProgram& program, const analysis::Study& st
     if (code != 0)
         fmt::print(stderr, "{}: all that was measured of {} failed; {}\n",
                    program.name.substr(0, program.name.find(' ')), study.file, first_failure(points, store));
-    if (quiet_)
+    if (quiet_) {
+        if (all.failed > 0 && code == 0)
+            fmt::print(stderr, "{}: {} of {} points failed; {}\n",
+                       program.name.substr(0, program.name.find(' ')), all.failed, points.size(),
+                       first_failure(points, store));
         return code;
+    }
     fmt::print("{} points: {} measured, {} failed, {} missing{}\n", points.size(),
                points.size() - all.failed - all.missing, all.failed, all.missing,
                all.failed == 0 ? "" : again_hint);
