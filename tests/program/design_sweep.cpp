@@ -165,7 +165,7 @@ TEST_F(DesignSweep, FailingDesignsStopNoOther) {
               std::string::npos)
         << odd.out;
     EXPECT_NE(text("s/study.csv").find("failed: "), std::string::npos);
-    const auto quiet = sweep("sweep.toml -o s --quiet");
+    const auto quiet = sweep("odd.toml -o s --quiet");
     EXPECT_EQ(quiet.code, 0);
     EXPECT_EQ(quiet.out, "");
     EXPECT_EQ(quiet.err.find("razor-sim: 3 of 4 points failed; razor-sim run failed"), 0U) << quiet.err;
