@@ -109,7 +109,7 @@ int CheckCommand::run() const {
     }
     options.cancel = convergence_options.cancel = &watch_interrupts();
 
-    SceneDescription description = scene_.describe();
+    SceneDescription description = scene_.describe_alone(); // a floor is no part of a model
     options.seed = convergence_options.seed = static_cast<unsigned>(description.settings.seed);
     if (!scene_.lod_given()) {
         description.settings.lod = Lod::recursive;
@@ -117,23 +117,26 @@ int CheckCommand::run() const {
     const std::vector<std::string> notes = notes_of(description);
     Scene scene = build_scene(description);
     const std::vector<check::MeshReport> meshes = naming_files(description, [&] { return examine(scene); });
-    const std::vector<check::SceneFinding> findings = check::findings_of(scene);
-    const std::vector<check::PrecisionBudget> precision = check::precision_of(scene);
-    const check::MemoryEstimate memory =
-        naming_files(description, [&] { return check::estimate_memory(scene, kernels); });
-    std::optional<check::EscapeReport> escapes;
+    std::optional<Scene> closed;
     if (shoots) {
-        Scene closed = check::closed_part(scene, meshes);
-        if (closed.meshes.empty()) {
+        closed = check::closed_part(scene, meshes);
+        if (closed->meshes.empty()) {
             throw UserError(
                 fmt::format("{}: nothing in it is closed, so no ray can be kept inside: {}; close it, "
                             "or leave out --escape",
                             printable(scene.name), check::why_open(meshes)));
         }
+    }
+    const std::vector<check::SceneFinding> findings = check::findings_of(scene);
+    const std::vector<check::PrecisionBudget> precision = check::precision_of(scene);
+    const check::MemoryEstimate memory =
+        naming_files(description, [&] { return check::estimate_memory(scene, kernels); });
+    std::optional<check::EscapeReport> escapes;
+    if (closed) {
         Progress progress(!quiet_, "checking");
         options.progress = [&](double fraction) { progress.show(fraction); };
-        Frame frame(closed, {});
-        escapes = check::shoot_from_inside(frame, kernels, closed.settings.lod.lod, options);
+        Frame frame(*closed, {});
+        escapes = check::shoot_from_inside(frame, kernels, closed->settings.lod.lod, options);
         if (escapes->cancelled) {
             fmt::print(stderr, "{}razor: interrupted; nothing written\n", progress.shown() ? "\r\x1b[K" : "");
             return interrupted_exit;
@@ -142,7 +145,7 @@ int CheckCommand::run() const {
             throw UserError(fmt::format(
                 "{}: no point inside was found that {} level of detail has inside; the "
                 "bodies are too thin for rays from inside",
-                printable(scene.name), check::sees_one_surface(closed.settings.lod.lod) ? "its" : "every"));
+                printable(scene.name), check::sees_one_surface(closed->settings.lod.lod) ? "its" : "every"));
         }
     }
     std::optional<check::ConvergenceReport> convergence;

@@ -208,6 +208,10 @@ TEST_F(CheckScene, SaysWhatIsInUseAndEndsAsScriptsNeed) {
     EXPECT_EQ(razor("check bad.obj --size 32x32 --scheme bilinear --no-floor").code, 0);
     EXPECT_EQ(razor("check bad.obj --size 32x32 --scheme bilinear --no-floor --strict").code, 1);
     EXPECT_EQ(razor("check good.obj --size 32x32 --scheme bilinear --no-floor --strict").code, 0);
+    // The floor under pictures of models is no part of them.
+    const Outcome bare = razor("check good.obj --size 32x32 --scheme bilinear --strict");
+    EXPECT_EQ(bare.code, 0);
+    EXPECT_EQ(bare.out.find("floor"), std::string::npos) << bare.out;
 }
 
 } // namespace
