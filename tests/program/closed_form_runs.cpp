@@ -57,6 +57,23 @@ TEST_F(Simulator, ComputesRunsFromOneTile) {
     }
 }
 
+// Of sixteen screen tiles one sees something: whoever has it builds all of it.
+TEST_F(Simulator, ComputesWhoBuildsByWhatScreenTilesNeed) {
+    folder_.file("s.toml", "[camera]\nposition = [0, 0, 10]\ntarget = [0, 0, 0]\nfov = 40\n"
+                           "[[mesh]]\nname = \"m\"\nshape = \"urchin\"\n"
+                           "[[object]]\nmesh = \"m\"\ntranslate = [0.91, -0.91, 0]\nscale = 0.3\n");
+    const std::string run = "run --quiet --no-native --scene s.toml --size 32x32 --spp 1 --sky-samples 1 "
+                            "--light-samples 1 --edge-pixels 0.25 -g chip.tiles=1 --machine " +
+                            tiny;
+    ASSERT_EQ(simulator(run + " --json whole.json").code, 0);
+    ASSERT_EQ(simulator(run + " --estimate closed-form --seed-report seed.json --json a.json").code, 0);
+    const auto needs =
+        nlohmann::json::parse(text("seed.json"))["needs"]["surfaces"].get<std::vector<double>>();
+    ASSERT_EQ(needs.size(), 16U);
+    EXPECT_EQ(std::count(needs.begin(), needs.end(), 0), 15);
+    EXPECT_NEAR(cycles(report("a.json")) / cycles(report("whole.json")), 1, 0.1);
+}
+
 /// Calls visit(path) for every value in it that is no object or array, with [] for places in arrays.
 void each_path(const nlohmann::json& json, const std::string& path,
                const std::function<void(const std::string&)>& visit) {
