@@ -227,10 +227,10 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         std::size_t n = 1;
         while (i + n < end && goes_on_[block.classes[i + n]] == leads_[number])
             ++n;
-        std::uint64_t high = low + a.size - 1;
-        if (n != 1)
-            high = low + (block.addresses[i + n - 1] - block.addresses[i]) +
-                   actions_[block.classes[i + n - 1]].size - 1;
+        const std::uint64_t last = block.addresses[i + n - 1]; // beyond the last of all there is none
+        const std::uint32_t size = std::max(actions_[block.classes[i + n - 1]].size, 1U);
+        const std::uint64_t high =
+            low + (last - block.addresses[i]) + std::min<std::uint64_t>(size - 1, ~last);
         i += n;
         const auto accesses = static_cast<std::uint32_t>(n);
         if (a.what > ReplayAction::What::write || a.modifies || low >> shift != high >> shift) [[unlikely]] {
@@ -285,7 +285,9 @@ void Replay::touch_lines(const ReplayAction& a, std::uint32_t stream, std::uint6
                          cycle t) {
     const std::uint64_t line_bytes = std::uint64_t{1} << machine_.line_shift();
     ReplayAction each = a;
-    for (std::uint64_t at = low; at <= high; at = (at | (line_bytes - 1)) + 1) {
+    for (std::uint64_t at = low, last = 0; at >= last && at <= high; at = (last | (line_bytes - 1)) + 1) {
+        traces::check_interrupts();
+        last = at;
         const auto bytes = static_cast<std::uint32_t>(std::min(high, at | (line_bytes - 1)) - at + 1);
         t = std::max(t, machine_.earliest());
         perform(each, stream, at, bytes, 1, t);

@@ -190,6 +190,15 @@ TEST_F(ReplayTool, WhatIsLeftOfACutTraceCounts) {
     EXPECT_EQ(folder_.count(), before);
 }
 
+// As analyses have it.
+TEST_F(ReplayTool, ReferencesEndWithTheLastAddress) {
+    folder_.file("end.din", "0 ffffffffffffffff 4\n1 ffffffffffffffc0 300\n");
+    const nlohmann::json all = json_of("end.din --machine " + machine("tiny"));
+    EXPECT_EQ(all.at("machines").at(0).at("l1").at("misses"), 1);
+    const Outcome curve = tool("curve end.din");
+    EXPECT_NE(curve.out.find("2 touches of 1 lines"), std::string::npos) << curve.out;
+}
+
 TEST_F(ReplayTool, OutputsAreNoMachineFiles) {
     folder_.file("a.din", "0 10 4\n");
     const std::string base = text_of_machine("tiny"), over = "inherit = \"base.toml\"\n[l2]\nways = 16\n";
