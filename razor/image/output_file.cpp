@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cerrno>
+#include <fcntl.h>
 #include <set>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -15,6 +18,29 @@ namespace {
 
 std::string reason() {
     return std::generic_category().message(errno);
+}
+
+/// Whether standard output or error goes to this file, by whatever name (say, /dev/stdout): what they get
+/// after a file of that name took its place would be lost.
+bool is_standard(const std::filesystem::path& path) {
+    struct stat file, standard; // NOLINT: as of POSIX
+    if (::stat(path.c_str(), &file) != 0)
+        return false;
+    for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
+        if (::fstat(descriptor, &standard) == 0 && standard.st_dev == file.st_dev &&
+            standard.st_ino == file.st_ino)
+            return true;
+    return false;
+}
+
+/// A file in a folder that has no name yet, so that nothing is left of it whatever ends the program; null:
+/// the file system has none of these.
+std::FILE* nameless_file(const std::filesystem::path& folder) {
+    if (::access("/proc/self/fd", X_OK) != 0) // by which it gets its name
+        return nullptr;
+    const int file = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, // NOLINT
+                            0666);
+    return file < 0 ? nullptr : ::fdopen(file, "wb");
 }
 
 } // namespace
@@ -30,9 +56,16 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
     if (is_input(path_))
         throw UserError(fmt::format("{}: is one of the files that this is made of; name another output",
                                     printable(path_.string(), 1000)));
+    if (is_standard(path_))
+        throw UserError(fmt::format("{}: is where standard output or error goes; name another file",
+                                    printable(path.string(), 1000)));
+    static std::atomic<unsigned> made = 0; // several in a folder, of names as long as there may be
     temporary_ = path_;
-    temporary_.replace_filename(fmt::format(".{}.{}.tmp", path_.filename().string(), ::getpid()));
-    file_ = std::fopen(temporary_.c_str(), "wbx");
+    temporary_.replace_filename(fmt::format(".{}-{}.tmp", ::getpid(), ++made));
+    file_ = nameless_file(path_.parent_path());
+    nameless_ = file_ != nullptr;
+    if (!nameless_)
+        file_ = std::fopen(temporary_.c_str(), "wbx");
     if (file_ == nullptr && errno == EEXIST) { // left by a killed process of the same number
         std::filesystem::remove(temporary_, error);
         file_ = std::fopen(temporary_.c_str(), "wbx");
@@ -46,7 +79,8 @@ OutputFile::~OutputFile() {
     if (file_ != nullptr) {
         std::fclose(file_);
         std::error_code error;
-        std::filesystem::remove(temporary_, error);
+        if (!nameless_)
+            std::filesystem::remove(temporary_, error);
     }
 }
 
@@ -72,6 +106,14 @@ void OutputFile::commit() {
     }
     if (std::fflush(file_) != 0 || std::ferror(file_) != 0) {
         fail("cannot be written");
+    }
+    if (nameless_) {
+        std::error_code error;
+        std::filesystem::remove(temporary_, error); // left by a killed process of the same number
+        if (::linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", ::fileno(file_)).c_str(), AT_FDCWD,
+                     temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+            fail("cannot be written");
+        nameless_ = false;
     }
     const int closed = std::fclose(file_);
     file_ = nullptr;

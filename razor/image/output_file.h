@@ -1,4 +1,5 @@
-// Output files that are whole or not there: written under a temporary name in the same folder, then renamed.
+// Output files that are whole or not there: written in the same folder without a name (or under a temporary
+// one, where the file system can't do that), then named.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@ namespace razor {
 
 class OutputFile {
 public:
-    /// Opens a temporary file beside `path`. Throws UserError where that is impossible.
+    /// Opens a file beside `path`. Throws UserError where that is impossible.
     explicit OutputFile(const std::filesystem::path& path);
-    /// Removes the temporary file unless it was committed.
+    /// Nothing is left of it unless it was committed.
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
@@ -33,6 +34,7 @@ private:
     std::string failure_;
     std::filesystem::path path_, temporary_;
     std::FILE* file_ = nullptr;
+    bool nameless_ = false;
 };
 
 /// Throws UserError if a file could not be written to `path` later: wrong kind of file, no such folder, no

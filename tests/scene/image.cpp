@@ -18,6 +18,8 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fcntl.h>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -295,6 +297,53 @@ TEST(Image, PipesAreNoOutputs) {
     }
     ::close(ends[0]);
     ::close(ends[1]);
+}
+
+// What is printed afterwards would be lost with the file whose place is taken.
+TEST(Image, FilesOfStandardOutputAreNoOutputs) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "standard.txt";
+    std::fflush(stdout);
+    const int before = ::dup(STDOUT_FILENO);
+    const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666); // NOLINT: as of POSIX
+    ASSERT_GE(file, 0);
+    ::dup2(file, STDOUT_FILENO);
+    ::close(file);
+    std::string told;
+    for (const std::string& output : {name, std::string("/dev/stdout")}) {
+        try {
+            write_text_file(output, "some");
+        } catch (const UserError& e) {
+            told += e.what();
+            told += "\n";
+        }
+    }
+    ::dup2(before, STDOUT_FILENO);
+    ::close(before);
+    const std::string why = ": is where standard output or error goes; name another file\n";
+    EXPECT_EQ(told, name + why + "/dev/stdout" + why);
+    EXPECT_TRUE(std::filesystem::is_symlink("/dev/stdout"));
+}
+
+// Whatever ends the program meanwhile; and names may be as long as the file system has them.
+TEST(Image, NothingIsSeenOfFilesBeforeTheyAreWhole) {
+    const TemporaryFolder folder;
+    const std::filesystem::path name = folder / std::string(255, 'x');
+    for (std::size_t turn = 0; turn < 2; ++turn) {
+        OutputFile first(name);
+        OutputFile second(name);
+        first.write("first", 5);
+        second.write("second", 6);
+        const int unnamed = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY, 0666); // NOLINT: as of POSIX
+        if (unnamed >= 0) {
+            ::close(unnamed);
+            EXPECT_EQ(folder.count(), turn);
+        }
+        first.commit();
+        second.commit();
+        EXPECT_EQ(folder.count(), 1U);
+        EXPECT_EQ(std::filesystem::file_size(name), 6U);
+    }
 }
 
 } // namespace

@@ -12,9 +12,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <unistd.h>
 
 namespace traces {
 namespace {
@@ -321,6 +323,42 @@ TEST(TraceFormat, WhatIsNotCommittedIsNotThere) {
     EXPECT_THROW(open_sink(folder), Error);
     EXPECT_THROW(open_source(folder), Error);
     EXPECT_THROW(open_source(folder + "/none"), Error);
+    std::filesystem::remove_all(folder);
+}
+
+// What standard output gets there comes behind, as with `-`; and links stay links.
+TEST(TraceFormat, OutputsMayBeWhereStandardOutputGoes) {
+    const std::string folder = testing::TempDir() + "/traces_standard";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directory(folder);
+    const std::string name = folder + "/x", link = folder + "/link";
+    std::filesystem::create_symlink("x", link);
+    const auto text = [&] {
+        std::ifstream written(name);
+        return std::string(std::istreambuf_iterator<char>(written), {});
+    };
+    std::fflush(stdout);
+    const int before = dup(STDOUT_FILENO);
+    const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666); // NOLINT: as of POSIX
+    ASSERT_GE(file, 0);
+    dup2(file, STDOUT_FILENO);
+    close(file);
+    std::fputs("one ", stdout);
+    for (const std::string& output : {link, std::string("/dev/stdout")}) {
+        const auto sink = open_sink(output);
+        sink->write("two ");
+        sink->commit();
+    }
+    std::fputs("three", stdout);
+    std::fflush(stdout);
+    dup2(before, STDOUT_FILENO);
+    close(before);
+    EXPECT_EQ(text(), "one two two three");
+    const auto sink = open_sink(link);
+    sink->write("four");
+    sink->commit();
+    EXPECT_EQ(text(), "four");
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
     std::filesystem::remove_all(folder);
 }
 

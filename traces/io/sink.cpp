@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <set>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace traces {
@@ -23,6 +24,8 @@ class FileSink final : public Sink {
 public:
     explicit FileSink(const std::string& path) : path_(path) {
         std::error_code ignored;
+        if (fs::is_symlink(path_, ignored) && fs::is_regular_file(path_, ignored)) // it stays a link
+            path_ = fs::canonical(path_, ignored);
         const fs::file_status status = fs::status(path_, ignored);
         if (fs::exists(status) && !fs::is_regular_file(status)) {
             if (fs::is_directory(status))
@@ -79,6 +82,8 @@ private:
     /// A file in a folder that has no name yet, so that nothing is left of it whatever ends the program;
     /// null: the file system has none of these.
     static std::FILE* nameless(const fs::path& folder) {
+        if (access("/proc/self/fd", X_OK) != 0) // by which it gets its name
+            return nullptr;
         const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666); // NOLINT: as of POSIX
         return file < 0 ? nullptr : fdopen(file, "wb");
     }
@@ -122,10 +127,17 @@ private:
     std::string& bytes_;
 };
 
+/// By another name, say /dev/stdout: a new file in its place would be lost.
+bool is_standard_output(const std::string& path) {
+    struct stat file, standard; // NOLINT: as of POSIX
+    return stat(path.c_str(), &file) == 0 && fstat(STDOUT_FILENO, &standard) == 0 && S_ISREG(file.st_mode) &&
+           file.st_dev == standard.st_dev && file.st_ino == standard.st_ino;
+}
+
 } // namespace
 
 std::unique_ptr<Sink> open_sink(const std::string& path) {
-    if (path == "-")
+    if (path == "-" || is_standard_output(path))
         return std::make_unique<StandardOutput>();
     return compressing(std::make_unique<FileSink>(path), path);
 }
