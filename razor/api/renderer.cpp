@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -111,6 +112,8 @@ const Scene& Renderer::scene() const {
     return state_->scene;
 }
 void Renderer::go_to(double seconds) {
+    if (!std::isfinite(seconds))
+        throw UserError(fmt::format("go_to: {:g} seconds; give a finite time", seconds));
     state_->seconds = seconds;
 }
 void Renderer::go_to_frame(int frame) {

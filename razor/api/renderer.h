@@ -80,7 +80,8 @@ public:
     /// transforms are posed anew; whatever else is edited has the scene analysed anew.
     Scene& scene();
     const Scene& scene() const;
-    /// The moment of the next picture, counted from the scene's beginning; 0 unless set.
+    /// The moment of the next picture, counted from the scene's beginning; 0 unless set. Throws UserError
+    /// where it is not finite.
     void go_to(double seconds);
     void go_to_frame(int frame);
 

@@ -16,6 +16,10 @@ using integer = std::int64_t;
 inline std::uint64_t wide(integer x) {
     return static_cast<std::uint64_t>(x);
 }
+/// Of a count, for a model or a figure.
+constexpr double real(auto count) {
+    return static_cast<double>(count);
+}
 
 struct ChipConfig {
     integer clock_ps = 0, tiles = 0, cores = 0, threads = 0; // cores of a tile, threads of a core

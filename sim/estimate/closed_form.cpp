@@ -2,7 +2,6 @@
 
 #include "sim/estimate/line_traffic.h"
 #include "sim/estimate/mean_value.h"
-#include "sim/estimate/real.h"
 #include "sim/estimate/screen_schedule.h"
 #include "sim/machine/describe.h"
 #include "sim/network/figures.h"

@@ -1,6 +1,5 @@
 #include "sim/estimate/line_traffic.h"
 
-#include "sim/estimate/real.h"
 #include "sim/estimate/screen_schedule.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "sim/estimate/seed.h"
 
 #include "sim/config/parameters.h"
-#include "sim/estimate/real.h"
 #include "sim/machine/derived.h"
 
 #include <nlohmann/json.hpp>

@@ -7,10 +7,6 @@
 namespace sim {
 namespace {
 
-double real(auto x) {
-    return static_cast<double>(x);
-}
-
 /// Hops of all who ask to all whom they may ask.
 class Mean {
 public:

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace razor {
@@ -197,6 +198,9 @@ TEST(Edits, ComeAtAnyMoment) {
     expect_same_bits(renderer.render(), anew(renderer.scene(), 0.5), "several");
     renderer.scene() = Scene::parse(small_scene);
     expect_same_bits(renderer.render(), half, "as it was");
+    EXPECT_THROW(renderer.go_to(std::numeric_limits<double>::quiet_NaN()), UserError);
+    EXPECT_THROW(renderer.go_to(std::numeric_limits<double>::infinity()), UserError);
+    expect_same_bits(renderer.render(), half, "no other moment");
 }
 
 TEST(Edits, OfCopiesAreTheirOwn) {

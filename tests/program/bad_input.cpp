@@ -233,8 +233,8 @@ TEST_F(Razor, NamesTheFileOfAMesh) {
 
 TEST_F(Razor, SaysWhichLibraryIsNotThere) {
     folder_.file("red.obj", "mtllib none.mtl\nusemtl red\n" + std::string(triangle));
-    const std::string note =
-        (folder_ / "red.obj").string() + ": no material library 'none.mtl'; put it beside the model\n";
+    const std::string note = (folder_ / "red.obj").string() +
+                             ": goes on without its material library 'none.mtl'; put it beside the model\n";
     for (const char* command : {"info red.obj", "check red.obj --json c.json"})
         EXPECT_NE(razor(command).out.find("not read: " + note), std::string::npos) << command;
     std::ifstream file(folder_ / "c.json");

@@ -313,10 +313,12 @@ TEST_F(Mtl, WhatNoLibraryHasIsNoted) {
     const std::string file = (folder_ / "o.obj").string();
     EXPECT_EQ(notes("mtllib l.mtl\nusemtl red\n"), std::vector<std::string>{});
     EXPECT_EQ(notes("usemtl red\n"), std::vector<std::string>{}) << "it names none";
-    EXPECT_EQ(notes("mtllib none.mtl\nusemtl red\n"),
-              std::vector{file + ": no material library 'none.mtl'; put it beside the model"});
-    EXPECT_EQ(notes("mtllib l.mtl none.mtl\nusemtl red\n"),
-              std::vector{file + ": no material library 'none.mtl'; put it beside the model"});
+    EXPECT_EQ(
+        notes("mtllib none.mtl\nusemtl red\n"),
+        std::vector{file + ": goes on without its material library 'none.mtl'; put it beside the model"});
+    EXPECT_EQ(
+        notes("mtllib l.mtl none.mtl\nusemtl red\n"),
+        std::vector{file + ": goes on without its material library 'none.mtl'; put it beside the model"});
     EXPECT_EQ(notes("mtllib l.mtl\nusemtl red\nf 1 2 3\nusemtl blue\n"),
               std::vector{file + ": its libraries have no material 'blue'; add it to one"});
     EXPECT_EQ(notes("mtllib l.mtl\nusemtl blue\n"),

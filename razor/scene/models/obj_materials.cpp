@@ -75,8 +75,9 @@ Mesh read_obj(const std::filesystem::path& path, TextureCache& textures) {
                 reader.read(file);
         own = reader.finish();
         if (!missing.empty())
-            own.notes.push_back(fmt::format("{}: no material library {}; put it beside the model",
-                                            printable(path.string(), 1000), quoted(missing)));
+            own.notes.push_back(
+                fmt::format("{}: goes on without its material library {}; put it beside the model",
+                            printable(path.string(), 1000), quoted(missing)));
         else if (!stated.libraries.empty())
             note_unknown(own, stated.names, path.string());
     }
