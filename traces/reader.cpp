@@ -16,7 +16,7 @@
 namespace traces {
 
 std::size_t Reader::usual_ahead() {
-    return std::thread::hardware_concurrency() == 1 ? 1 : most_ahead;
+    return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_ahead);
 }
 
 Reader::Reader(std::unique_ptr<Source> source, std::size_t ahead)

@@ -18,8 +18,8 @@ namespace traces {
 /// say, of errors too, is said in their turn, as if nothing had been read ahead.
 class Reader {
 public:
-    /// Blocks that are decoded before they are asked for, unless there is but one processor.
-    static constexpr std::size_t most_ahead = 2;
+    /// Blocks that are decoded before they are asked for, one a processor: more would be memory without use.
+    static constexpr std::size_t most_ahead = 8;
 
     /// Reads the beginning. Throws Error where that is not a trace of this format.
     explicit Reader(std::unique_ptr<Source> source, std::size_t ahead = usual_ahead());

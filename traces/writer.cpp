@@ -10,8 +10,8 @@
 
 namespace traces {
 
-Writer::Writer(std::unique_ptr<Sink> sink, const Description& description)
-    : sink_(std::move(sink)), encoder_(coding_for(description.level)) {
+Writer::Writer(std::unique_ptr<Sink> sink, const Description& description, std::optional<Coding> coding)
+    : sink_(std::move(sink)), encoder_(coding.value_or(coding_for(description.level))) {
     std::string prologue(magic);
     append_fixed(prologue, format_version);
     sink_->write(prologue);

@@ -7,13 +7,15 @@
 #include "traces/io/sink.h"
 
 #include <memory>
+#include <optional>
 
 namespace traces {
 
 class Writer {
 public:
-    /// Begins the file with the description, whose sites are left out: add_sites() gives them.
-    Writer(std::unique_ptr<Sink> sink, const Description& description);
+    /// Begins the file with the description, whose sites are left out: add_sites() gives them. `coding`: of
+    /// blocks; without it, as coding_for() has it of the description's level.
+    Writer(std::unique_ptr<Sink> sink, const Description& description, std::optional<Coding> coding = {});
 
     /// Names of sites, which get the next numbers, 1 being the first. Before the blocks that use them.
     void add_sites(const std::vector<std::string>& names);

@@ -1,6 +1,7 @@
 // razor-trace: files and pipes, exit codes, one line for each mistake, and nothing half-written.
 #include "tests/program/run.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace razor {
@@ -113,6 +114,24 @@ TEST_F(TraceTool, SaysWhatIsInATrace) {
     EXPECT_NE(saved.err.find("cut off"), std::string::npos);
 }
 
+// Columns of what is predicted by itself, and the other way round.
+TEST_F(TraceTool, CodesBlocksAsItIsAsked) {
+    std::string din;
+    std::uint32_t state = 1;
+    for (int i = 0; i < 5000; ++i) {
+        state = state * 1664525U + 1013904223U;
+        din += fmt::format("{} {:x} 4\n", state >> 31U, (state >> 20U) * 64);
+    }
+    folder_.file("a.din", din);
+    for (const char* step :
+         {"a.din columns.rzt", "a.din predicted.rzt --coding predicted",
+          "predicted.rzt again.rzt --coding columns", "columns.rzt a.csv", "predicted.rzt b.csv"})
+        ASSERT_EQ(tool(std::string("convert ") + step).code, 0) << step;
+    EXPECT_EQ(text("a.csv"), text("b.csv"));
+    EXPECT_EQ(text("again.rzt"), text("columns.rzt"));
+    EXPECT_LT(text("predicted.rzt").size(), text("columns.rzt").size());
+}
+
 TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
     folder_.file("a.din", "0 10 4\n0 xy 4\n");
     folder_.file("unknown", "0 10 4\n");
@@ -131,6 +150,8 @@ TEST_F(TraceTool, MistakesAreALineAndLeaveNothing) {
              {"convert a.din b.csv.gz", "a.din, line 2"},
              {"convert a.din b", "--to"},
              {"convert a.din b.rzt --from dim", "--from dim"},
+             {"convert a.din b.csv --coding columns", "--coding is of rzt; csv has none, leave it out"},
+             {"convert a.din b.rzt --coding small", "--coding small: give columns or predicted"},
              {"convert unknown no/b.rzt --from din", "no/b.rzt: cannot be written"},
              {"convert unknown b.rzt --from champsim", "7 of 64 bytes"}}) {
         const Outcome result = tool(arguments);

@@ -138,8 +138,9 @@ TEST_F(Md3Materials, WhatIsMissingIsNotedAndMatte) {
               std::vector{imp("head.md3").string() +
                           ": no picture 'models/none.tga'; put it beside the model, or where its path leads "
                           "from there or from a folder above"});
-    put_model({"a"}, {"b"});
-    EXPECT_NE(notes().at(0).find("no picture 'a', 'b'; put"), std::string::npos) << notes().at(0);
+    put_model({"no_one_has_a"}, {"no_one_has_b"}); // not in the folders above either
+    EXPECT_NE(notes().at(0).find("no picture 'no_one_has_a', 'no_one_has_b'; put"), std::string::npos)
+        << notes().at(0);
 }
 
 TEST_F(Md3Materials, SurfacesWithoutShadersAreCalledAsTheyAre) {

@@ -1,6 +1,7 @@
 // Formats of memory traces as streams of references: what reads one, what writes one, and the table of all.
 #pragma once
 
+#include "traces/codec.h"
 #include "traces/description.h"
 #include "traces/io/sink.h"
 #include "traces/io/source.h"
@@ -85,6 +86,7 @@ void check_own_name(const std::string& path);
 
 std::unique_ptr<Input> read_own(std::unique_ptr<Source> source);
 std::unique_ptr<Output> write_own(std::unique_ptr<Sink> sink);
+std::unique_ptr<Output> write_own(std::unique_ptr<Sink> sink, Coding coding);
 std::unique_ptr<Input> read_din(std::unique_ptr<Source> source);
 std::unique_ptr<Output> write_din(std::unique_ptr<Sink> sink);
 std::unique_ptr<Input> read_csv(std::unique_ptr<Source> source);

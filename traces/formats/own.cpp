@@ -22,10 +22,11 @@ private:
 
 class OwnOutput final : public Output {
 public:
-    explicit OwnOutput(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) {}
+    OwnOutput(std::unique_ptr<Sink> sink, std::optional<Coding> coding)
+        : sink_(std::move(sink)), coding_(coding) {}
     void describe(const Description& d) override {
         if (!writer_)
-            writer_.emplace(std::move(sink_), d);
+            writer_.emplace(std::move(sink_), d, coding_);
         writer_->add_names(d);
         if (d.sites.size() == sites_)
             return;
@@ -59,6 +60,7 @@ private:
     }
 
     std::unique_ptr<Sink> sink_;
+    std::optional<Coding> coding_;
     std::optional<Writer> writer_;
     std::size_t sites_ = 0;
     BlockBuilder builder_;
@@ -71,7 +73,10 @@ std::unique_ptr<Input> read_own(std::unique_ptr<Source> source) {
     return std::make_unique<OwnInput>(std::move(source));
 }
 std::unique_ptr<Output> write_own(std::unique_ptr<Sink> sink) {
-    return std::make_unique<OwnOutput>(std::move(sink));
+    return std::make_unique<OwnOutput>(std::move(sink), std::nullopt);
+}
+std::unique_ptr<Output> write_own(std::unique_ptr<Sink> sink, Coding coding) {
+    return std::make_unique<OwnOutput>(std::move(sink), coding);
 }
 
 } // namespace traces

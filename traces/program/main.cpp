@@ -58,18 +58,28 @@ struct Info {
 };
 
 struct Convert {
-    std::string in, out, from, to;
+    std::string in, out, from, to, coding;
 
+    std::unique_ptr<traces::Output> output(const traces::Format& target) const {
+        if (coding.empty())
+            return target.write(traces::open_sink(out));
+        if (&target != traces::formats().data())
+            throw traces::Error(fmt::format("--coding is of rzt; {} has none, leave it out", target.name));
+        if (coding != "columns" && coding != "predicted")
+            throw traces::Error(fmt::format("--coding {}: give columns or predicted", coding));
+        return traces::write_own(traces::open_sink(out),
+                                 coding == "columns" ? traces::Coding::columns : traces::Coding::predicted);
+    }
     int run() const {
         auto source = traces::open_source(in);
         const traces::Format& source_format = traces::format_of_input(from, in, *source);
         const traces::Format& target = traces::format_of_output(to, out);
         const auto input = source_format.read(std::move(source));
-        const auto output = target.write(traces::open_sink(out)); // maybe `in`, whose name it gets at the end
-        traces::Conversion conversion(*input, *output, target.holds);
+        const auto to_file = output(target); // maybe `in`, whose name it gets at the end
+        traces::Conversion conversion(*input, *to_file, target.holds);
         while (conversion.step())
             traces::check_interrupts();
-        output->finish();
+        to_file->finish();
         if (!input->note().empty())
             fmt::print(stderr, "razor-trace: {}\n", input->note());
         if (const std::string lost = conversion.lost(); !lost.empty())
@@ -123,6 +133,11 @@ int main(int argc, char** argv) {
         ->type_name("FORMAT");
     converting.add_option("--to", convert.to, "the format of OUT; without it, as it is named")
         ->type_name("FORMAT");
+    converting
+        .add_option("--coding", convert.coding,
+                    "how rzt has its blocks: columns, which are read soon, or predicted, which are small; "
+                    "without it, columns of cores and L1s, else predicted")
+        ->type_name("CODING");
     const std::vector<std::unique_ptr<traces::AnalysisCommand>> analyses = traces::analyses();
     for (const auto& analysis : analyses)
         analysis->add_to(app);
