@@ -141,7 +141,7 @@ inline sint part_number(const Part& part) {
 /// Boxes of the parts of a block as it lies now, its sides on the surface.
 inline void bound_parts(const Block& b, const Shape& s) {
     bound_block(b, s.cells_at);
-    pointer<float> out = b.words + (s.normals_at - parts_words);
+    pointer<float> out = b.words + parts_at(s.normals_at);
     sint columns = select(s.quads_u == block_quads, sint(2), sint(1));
     sint rows = select(s.quads_v == block_quads, sint(2), sint(1));
     for (sint j = 0; branch(j < rows); ++j) {
@@ -163,8 +163,8 @@ inline Box surface_of(pointer<BlockHeader> block, const Part& part) {
     if (branch(hangs == 0))
         return vertices_of(block, part);
     sint normals_at = load(field(block, &BlockHeader::normals_at));
-    sint before = part_number(part) * 6 - parts_words;
-    pointer<float> at = as<float>(block) + (normals_at + before);
+    pointer<float> at = as<float>(block) + parts_at(normals_at);
+    at = at + part_number(part) * 6;
     Box box;
     box.low = load_svec(at);
     box.high = load_svec(at + 3);

@@ -9,6 +9,11 @@ inline namespace tessellate_kernel {
 /// Before normals: of displaced blocks kept_deviation(), and see chords_at().
 inline constexpr int words_before_normals = 6;
 
+/// Where boxes of parts are kept, of a block that has some and whose normals lie at word `normals_at`.
+inline sint parts_at(sint normals_at) {
+    return normals_at - (words_before_normals + parts_words);
+}
+
 /// How the blocks of a patch at one level look.
 struct Shape {
     sint quads_u, quads_v;

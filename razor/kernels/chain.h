@@ -23,9 +23,27 @@ struct Chain {
     sint level = 0; // of that
 };
 
+/// Whether a group that goes beyond the leaf's list would have gone beyond all coarser ones before it, too,
+/// from `head` on. All of these are too coarse for some ray if this is, in a box that theirs hold. What is
+/// finer is bounded there for coarsest_target(): edges at least twice as long as here, and what growth adds
+/// along the box; so it is if no ray asks for more than twice as long ones near this box.
+inline sbool others_are_passed(const Group& g, pointer<ItemList> head, pointer<ItemList> list,
+                               const svec& low, const svec& high, sfloat coarse) {
+    if (branch(g.fields.sloped)) {
+        svec widest_low = load_svec(field(head, &ItemList::low));
+        svec widest_high = load_svec(field(head, &ItemList::high));
+        sfloat bound = load(field(list, &ItemList::coarsest)); // the least
+        return most_target_in(g.fields, widest_low, widest_high, g.slack) <= bound;
+    }
+    sfloat twice = coarse * 2.0F;
+    return most_near(g.fields, low, high, g.slack) < twice;
+}
+
 /// Whether all rays of the group go beyond a leaf's list: it is too coarse for some, in the box of all that
-/// is finer or can move, and what is finer is bounded for what any of them asks.
-[[gnu::noinline]] inline sbool all_go_beyond(const Group& g, pointer<ItemList> list) {
+/// is finer or can move, and what is finer is bounded for what any of them asks. What is asked of lists
+/// between `head`, the chain's first, and this one is the same, so that it does not matter whether somebody
+/// has kept the way.
+[[gnu::noinline]] inline sbool all_go_beyond(const Group& g, pointer<ItemList> head, pointer<ItemList> list) {
     svec low = load_svec(field(list, &ItemList::low));
     svec high = load_svec(field(list, &ItemList::high));
     sfloat coarse = load(field(list, &ItemList::coarse));
@@ -33,7 +51,9 @@ struct Chain {
     if (branch(!too_coarse))
         return false;
     sfloat bound = load(field(list, &ItemList::coarsest));
-    return most_target_in(g.fields, low, high, g.slack) <= bound;
+    if (branch(most_target_in(g.fields, low, high, g.slack) > bound))
+        return false;
+    return others_are_passed(g, head, list, low, high, coarse);
 }
 
 /// The node that a group goes to at once which goes beyond the list at `line` and asks for `least` or more in
@@ -48,7 +68,7 @@ struct Chain {
     if (branch(least >= finest))
         return -1;
     pointer<ItemList> deep = as<ItemList>(c.lists + (beyond & ((1 << beyond_line_bits) - 1)));
-    if (branch(!all_go_beyond(g, deep)))
+    if (branch(!all_go_beyond(g, list, deep)))
         return -1;
     return load(field(deep, &ItemList::finer));
 }

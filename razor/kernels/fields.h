@@ -27,6 +27,7 @@ struct FieldBounds {
     svec least_slope, most_slope;
     sbool sloped; // whether any slope is not 0
     sfloat least_radius, most_radius, least_base, most_base, least_growth, most_growth;
+    sfloat spread; // how far origins are apart, and radii
 };
 
 /// All ask for the same everywhere.
@@ -285,6 +286,21 @@ inline CommonBlur common_blur_in(const FieldBounds& f, const svec& low, const sv
         return most * up;
     sfloat distance = furthest_in(f, low, high, slack);
     return fma(f.most_growth, distance, most) * up;
+}
+
+/// In any box that holds this one most_target_in() is no more than this and what the growth makes of that
+/// box's diagonal: a place there is no further from a field's origin than this box is from the nearest, the
+/// spread of origins and that diagonal together. Of fields that are not sloped. A quarter of this box is
+/// allowed for: that of a finer block may be outside its parent's by as much as its own finer vertices may be
+/// off it, of which announce_block() allows half.
+inline sfloat most_near(const FieldBounds& f, const svec& low, const svec& high, sfloat slack) {
+    if (branch(f.most_growth <= 0.0F))
+        return f.most_base;
+    svec extent = high - low;
+    sfloat distance = nearest_in(f, low, high, slack) + f.spread;
+    distance = fma(sqrt(dot(extent, extent)), 0.25F, distance);
+    distance = fma(slack, 4.0F, distance);
+    return fma(f.most_growth, distance, f.most_base);
 }
 
 } // namespace intersect_kernel

@@ -427,6 +427,9 @@ inline FieldBounds bound_fields(const Rays& r, const vmask& m) {
     bound_component(r.radius, m, f.least_radius, f.most_radius);
     bound_component(r.base * level_rounding, m, f.least_base, f.most_base);
     bound_component(r.growth * level_rounding, m, f.least_growth, f.most_growth);
+    svec apart = f.high - f.low;
+    f.spread = sqrt(dot(apart, apart)) + f.most_radius;
+    f.spread = f.spread - f.least_radius;
     return f;
 }
 
