@@ -15,7 +15,7 @@ Errors errors(const LinearImage& picture, const LinearImage& reference, const st
             if (counted[i]) {
                 const double r = double{reference.planes[c][i]};
                 const double difference = double{picture.planes[c][i]} - r;
-                const double fraction = std::abs(difference) / std::abs(r + offset);
+                const double fraction = std::abs(difference) / (std::max(r, 0.0) + offset);
                 squares += difference * difference;
                 relative_squares += fraction * fraction;
                 fractions += fraction;

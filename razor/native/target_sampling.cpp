@@ -133,7 +133,7 @@ void TargetSampling::add(const Film& film) {
                 // batch - before = (mean - before) / (1 - share)
                 off[c] = mean[c] - mean_[3 * i + c];
                 mean_[3 * i + c] = mean[c];
-                relative += squared(off[c] / (mean[c] + offset)) / 3;
+                relative += squared(off[c] / (std::max(mean[c], 0.0) + offset)) / 3; // lobes may be negative
             }
             const double light = luminance(mean[0], mean[1], mean[2]);
             if (!std::isfinite(relative) || !std::isfinite(light))

@@ -47,6 +47,15 @@ TEST(Errors, OfOnePixel) {
     EXPECT_NEAR(result.mape, 600.0 / 36, 1e-12);
 }
 
+// Filters with negative lobes make such references: as black ones.
+TEST(Errors, OfReferencesBelowBlack) {
+    const LinearImage reference = constant(4, 2, -0.01F, -0.01F, -0.02F);
+    const LinearImage picture = constant(4, 2, 0, 0, 0);
+    const Errors result = errors(picture, reference, all_of(reference));
+    EXPECT_NEAR(result.relative_mse, (1 + 1 + 4) / 3.0, 1e-6);
+    EXPECT_NEAR(result.mape, (1 + 1 + 2) / 3.0, 1e-6);
+}
+
 TEST(Errors, LeaveOutWhatIsNoNumber) {
     LinearImage reference = constant(4, 2, 1, 1, 1), picture = constant(4, 2, 2, 2, 2);
     picture.planes[0][0] = nan;

@@ -198,6 +198,16 @@ TEST(Deform, WavesTravelAlongTheirAxis) {
     EXPECT_EQ(deformed(d, 1.25, p), deformed(d, 9.25, p));
 }
 
+// By less than one can differ by.
+TEST(Deform, WavesBarelyBeforeTheirBeginningAreAtIt) {
+    Deformer d{
+        .kind = DeformerKind::wave, .axis = {0, 0, 1}, .direction = {1, 0, 0}, .amount = 1, .wavelength = 4};
+    for (const double phase : {-1e-20, -1e-17, 0.0, 1e-20, 1.0, -1.0}) {
+        d.phase = phase;
+        expect_near(deformed(d, 0, {{0, 0, 0}})[0], {0, 0, 0});
+    }
+}
+
 TEST(Deform, TwistsTurnAboutTheirAxis) {
     const Deformer d{.kind = DeformerKind::twist, .origin = {1, 0, 0}, .axis = {0, 5, 0}, .amount = 45};
     expect_near(deformed(d, 3, {{3, 2, 0}})[0], {1, 2, -2});

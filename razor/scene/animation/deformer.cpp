@@ -11,6 +11,8 @@ namespace {
 /// sin(2 pi x), exact at multiples of a quarter however large.
 double sine_of_turns(double x) {
     x -= std::floor(x);
+    if (x >= 1) // of what is below zero by less than one can differ by
+        x = 0;
     const double quarters = std::floor(4 * x), rest = (x - quarters / 4) * 2 * std::numbers::pi;
     switch (static_cast<int>(quarters)) {
     case 0:
