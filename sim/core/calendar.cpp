@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 
@@ -32,6 +33,36 @@ void Calendar::move_on(std::uint64_t number) {
     for (; next <= earliest + mask_; ++next)
         words_[next & mask_] = absent_;
     first_ = earliest;
+}
+
+Calendar::Slot Calendar::last_taken_before(Slot end) const {
+    if (end == 0)
+        return 0;
+    for (std::uint64_t number = std::min((end - 1) / 64, first_ + mask_) + 1; number-- > first_;) {
+        std::uint64_t taken = words_[number & mask_] & ~absent_;
+        if (number == (end - 1) / 64)
+            taken &= ~std::uint64_t{0} >> (63 - (end - 1) % 64);
+        if (taken != 0)
+            return last_of(number, taken);
+    }
+    return 0;
+}
+
+bool Calendar::take_two_before(Slot from, Slot end) {
+    std::array<Slot, 2> found{};
+    std::size_t count = 0;
+    for (Slot s = from; s < end && count < found.size(); ++s) {
+        const std::uint64_t number = s / 64;
+        if (number - first_ > mask_)
+            return true;
+        if ((words_[number & mask_] >> s % 64 & 1) == 0)
+            found[count++] = s;
+    }
+    if (count < found.size())
+        return false;
+    for (const Slot s : found)
+        mark(s);
+    return true;
 }
 
 /// The first run from `from` on, when it is known that none begins before `next`. Where many wait for a unit,

@@ -62,7 +62,7 @@ public:
     /// Where a cycle is one slot: which of the 64 around `t`, from a multiple of 64 on, are `t` or later and
     /// free.
     std::uint64_t free_around(Slot t) { return ~word(t / 64) & ~std::uint64_t{0} << (t % 64); }
-    /// Takes the first `count` free slots, 64 at most, from `from` on, adjacent or not.
+    /// Takes the first `count` free slots from `from` on, adjacent or not.
     Span take(Slot from, std::uint32_t count) {
         const Start s = start(from);
         std::uint64_t& w = word(s.number);
@@ -89,6 +89,11 @@ public:
     }
     /// Its bits from cycle `t` on come to the host's caches.
     void prefetch(cycle t) const { __builtin_prefetch(&words_[((t << shift_) / 64) & mask_]); }
+    /// The last slot before `end` that is taken, of those that are still remembered; 0: none is.
+    Slot last_taken_before(Slot end) const;
+    /// Takes the first two free slots from `from` on and before `end`, which may be earlier than anybody asks
+    /// for; false: there are not two (of what is forgotten, there are).
+    bool take_two_before(Slot from, Slot end);
     /// Frees a slot that was taken.
     void release(Slot slot) {
         word(slot / 64) &= ~(std::uint64_t{1} << (slot % 64));
@@ -141,10 +146,10 @@ private:
         ++full_count_;
     }
 
-    /// The lowest `count` bits, 1 to 64, that are set in `free`, or all.
+    /// The lowest `count` bits, 1 or more, that are set in `free`, or all.
     static std::uint64_t lowest(std::uint64_t free, std::uint32_t count) {
 #ifdef __BMI2__
-        return _pdep_u64(~std::uint64_t{0} >> (64 - count), free);
+        return _pdep_u64(~std::uint64_t{0} >> (64 - std::min(count, 64U)), free);
 #else
         std::uint64_t rest = free; // what stays free
         for (; count != 0 && rest != 0; --count)

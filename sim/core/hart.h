@@ -101,6 +101,7 @@ struct alignas(64) Hart {
     std::uint64_t slept = 0;           // cycles, so far
     cycle next_look = 0;               // at the word, in issue slots taken in advance ...
     std::vector<Calendar::Slot> looks; // ... these, of the window at hand
+    std::uint64_t missed_looks = 0;    // others had all slots
 
     void account(cycle from, cycle to, Cause why) {
         if (to > boundary) [[unlikely]] {

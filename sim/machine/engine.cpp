@@ -260,9 +260,12 @@ void Engine::fail(const std::exception_ptr& why) {
 }
 
 void Engine::run_tile(Tile& tile) {
-    if (!warming_)
+    if (!warming_) {
+        for (Hart* sleeper : tile.sleepers)
+            pass_looks(*sleeper);
         for (Hart* sleeper : tile.sleepers)
             look(*sleeper, window_end_);
+    }
     if (tile.scheduler.next() < window_end_)
         tile.scheduler.run(window_end_);
     if (tile.events)

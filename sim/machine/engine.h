@@ -381,6 +381,7 @@ private:
     cycle move_line(const Hart& h, std::uint64_t address, cycle t, cycle service);
     void publish(Hart& h, std::uint64_t address, cycle written, cycle done, bool chip);
     void check_visible(Hart& h, std::uint64_t address, cycle t, Due& ready);
+    void pass_looks(Hart& sleeper) const;
     void look(Hart& sleeper, cycle end);
     void stop_looking(Hart& sleeper, cycle woken);
     std::uint64_t address(const void* p) const {

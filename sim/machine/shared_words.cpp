@@ -207,14 +207,26 @@ stamp Engine::after_atomic(Hart& h, isa::timing::atomic kind, const void* p, boo
     return r;
 }
 
+/// Looks of before anybody asks for slots any more, as nothing happened for long, take none. But what was
+/// begun before may have taken all until later: then there were no looks.
+void Engine::pass_looks(Hart& sleeper) const {
+    const cycle earliest = sleeper.tile->earliest;
+    const std::uint64_t period = spin_cycles_;
+    Calendar& issue = sleeper.core->issue;
+    if (sleeper.next_look >= earliest)
+        return;
+    const cycle busy = issue.last_taken_before(earliest << issue_shift_) >> issue_shift_;
+    for (; sleeper.next_look <= busy && sleeper.next_look < earliest; sleeper.next_look += period)
+        if (!issue.take_two_before(sleeper.next_look << issue_shift_, (sleeper.next_look + period)
+                                                                          << issue_shift_))
+            ++sleeper.missed_looks;
+    if (sleeper.next_look < earliest)
+        sleeper.next_look += (earliest - sleeper.next_look + period - 1) / period * period;
+}
+
 /// Takes the issue slots of a waiting thread's looks at the word before cycle `end`: two instructions each.
 void Engine::look(Hart& sleeper, cycle end) {
     sleeper.looks.clear();
-    cycle earliest = sleeper.tile->earliest;
-    if (sleeper.next_look < earliest) { // nothing happened for long: nobody asks for these slots
-        const std::uint64_t period = spin_cycles_;
-        sleeper.next_look += (earliest - sleeper.next_look + period - 1) / period * period;
-    }
     for (; sleeper.next_look < end; sleeper.next_look += spin_cycles_) {
         Calendar::Span s = sleeper.core->issue.take(sleeper.next_look << issue_shift_, 2);
         sleeper.looks.push_back(s.first);
@@ -255,6 +267,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         cycle since = std::max(h.acting.at(), h.accounted);
         h.waits_for = p;
         h.next_look = since + spin_cycles_;
+        h.missed_looks = 0;
         h.tile->sleepers.push_back(&h);
         if (!warming_)
             look(h, window_end_);
@@ -267,6 +280,7 @@ stamp Engine::wait_while(Hart& h, const std::int32_t* p, std::int32_t value, Due
         stop_looking(h, woken);
         if (woken > h.accounted) {
             std::uint64_t looks = (woken - since) / spin_cycles_;
+            looks -= std::min(looks, h.missed_looks);
             h.counters.spins += looks;
             h.at->instructions += 2 * looks;
             if (h.interval != 0) [[unlikely]]

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <iterator>
 #include <random>
 #include <set>
+#include <vector>
 
 namespace sim::test {
 namespace {
@@ -54,7 +56,7 @@ TEST(Calendar, EqualsASetOfSlots) {
                     }
                 }
             } else {
-                auto count = static_cast<std::uint32_t>(1 + random() % 64);
+                auto count = static_cast<std::uint32_t>(1 + random() % (i % 8 == 0 ? 300 : 64));
                 Calendar::Span span{};
                 if (random() % 2 == 0) { // only if they are near
                     count = 1 + count / 8;
@@ -119,6 +121,36 @@ TEST(Calendar, EqualsASetOfSlotsWhereManyWait) {
             }
         }
         earliest += random() % 3;
+    }
+}
+
+// What is earlier than anybody asks for is remembered for a while, and may be taken; of what is forgotten it
+// is said that it was free.
+TEST(Calendar, TakesWhatHasPassedAsFarAsItRemembers) {
+    std::mt19937 random(13);
+    for (const unsigned per_cycle : {1U, 3U}) {
+        cycle earliest = 0;
+        Calendar calendar("test", earliest, per_cycle);
+        const unsigned shift = Calendar::log2_group(per_cycle);
+        std::set<std::uint64_t> taken;
+        for (int i = 0; i < 1500; ++i)
+            taken.insert(calendar.take(random() % 600 << shift));
+        earliest = 600; // and nobody has asked for anything since
+        for (int i = 0; i < 400; ++i) {
+            const std::uint64_t from = random() % 700 << shift, end = from + (random() % 12 << shift);
+            const auto before = taken.lower_bound(end);
+            ASSERT_EQ(calendar.last_taken_before(end), before == taken.begin() ? 0 : *std::prev(before));
+            std::vector<std::uint64_t> free;
+            for (std::uint64_t s = from; s < end && free.size() < 2; ++s)
+                if (s % (1U << shift) < per_cycle && taken.count(s) == 0)
+                    free.push_back(s);
+            ASSERT_EQ(calendar.take_two_before(from, end), free.size() == 2) << i;
+            if (free.size() == 2)
+                taken.insert(free.begin(), free.end());
+        }
+        calendar.take(100000 << shift);
+        EXPECT_EQ(calendar.last_taken_before((600U << shift) / 64 * 64), 0U);
+        EXPECT_TRUE(calendar.take_two_before(0, 1));
     }
 }
 

@@ -208,6 +208,24 @@ TEST(Tiles, SpinningLeavesOthersTheirPart) {
             }
 }
 
+// Others that take all slots for many windows leave none for looks.
+TEST(Tiles, LooksAreCountedWhereThereAreSlots) {
+    Config c = tiled(1, 1, 4);
+    c.instructions[class_of(vector_kind(static_cast<std::size_t>(operation::multiply)))] = 1000;
+    Shared s;
+    const Report r = s.run(c, 4, [&](int w) { // whose laws hold
+        if (w != 0) {
+            await(s.at(0));
+            return;
+        }
+        for (int i = 0; i < 50; ++i)
+            vector_op(operation::multiply, stamp{});
+        release_after(s.at(0), 4);
+    });
+    EXPECT_GT(r.core.spins, 0U);
+    EXPECT_LE(r.core.instructions, r.cycles * static_cast<std::uint64_t>(c.core.issue_width));
+}
+
 // A quantum that is no shorter than a window does not cut it, wherever its multiples lie.
 TEST(Tiles, LongQuantaAreWholeWindows) {
     std::map<integer, std::string> reports;
