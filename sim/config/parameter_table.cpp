@@ -533,7 +533,7 @@ void add_simulation(Table& t) {
         "write over it first; write: something else would have it written back");
     t.add("sim.jitter", s, &C::jitter, "", 0, 0, (integer{1} << 31) - 1,
           "seed of noise: each line that an L1 asks for is asked for 0 or 1 cycle later, by this; 0: none");
-    t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 64, 65536, "host stack of a simulated thread");
+    t.add("sim.stack_kib", s, &C::stack_kib, "KiB", 1024, 128, 65536, "host stack of a simulated thread");
 }
 
 } // namespace

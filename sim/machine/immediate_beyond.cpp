@@ -12,23 +12,15 @@ bool later(const Request& a, const Request& b) {
     return a.sequence > b.sequence;
 }
 
-/// Requests of one exit that wait until it is known when an MSHR or a place in the buffer is free, in the
-/// order in which they left.
-void hold(std::vector<Request>& held, const Request& r) {
-    auto later = std::upper_bound(held.begin(), held.end(), r,
-                                  [](const Request& a, const Request& b) { return a.sequence < b.sequence; });
-    held.insert(later, r);
+void put(std::vector<Request>& heap, const Request& r) {
+    heap.push_back(r);
+    std::push_heap(heap.begin(), heap.end(), later);
 }
-/// The first that waits for a place in the buffer (or an MSHR) tries again at `free`, when one is.
-std::optional<Request> release(std::vector<Request>& held, bool buffer, cycle free) {
-    auto first = std::find_if(held.begin(), held.end(),
-                              [&](const Request& r) { return (r.write != Request::nothing) == buffer; });
-    if (first == held.end())
-        return std::nullopt;
-    Request r = *first;
-    held.erase(first);
-    r.at = std::max(r.at, free);
-    return r;
+Request take_first(std::vector<Request>& heap) {
+    std::pop_heap(heap.begin(), heap.end(), later);
+    const Request first = heap.back();
+    heap.pop_back();
+    return first;
 }
 
 } // namespace
@@ -103,8 +95,7 @@ void ImmediateBeyond::wait(Queue& queue, Request r, cycle until) {
         queue.first = r.sequence;
         return push(r);
     }
-    queue.behind.push_back(r);
-    std::push_heap(queue.behind.begin(), queue.behind.end(), later);
+    put(queue.behind, r);
 }
 
 /// It has its entry, or needs none: if it was first, another is.
@@ -114,9 +105,7 @@ void ImmediateBeyond::leave(Queue& queue, const Request& r, OrderedPool& pool) {
     queue.first = no_sequence;
     if (queue.behind.empty())
         return;
-    std::pop_heap(queue.behind.begin(), queue.behind.end(), later);
-    Request next = queue.behind.back();
-    queue.behind.pop_back();
+    const Request next = take_first(queue.behind);
     wait(queue, next, std::max(next.at, pool.take(r.at).at));
 }
 
@@ -131,8 +120,7 @@ bool ImmediateBeyond::serves_alone(const Request& r) {
         reply_(r.tile, r.ticket, {r.at, Cause::coherence});
         // It may have been the one that an MSHR was free for.
         leave(ports_[port_of(r)].for_mshr, r, ports_[port_of(r)].mshrs);
-        if (std::optional<Request> next = release(ports_[port_of(r)].held, false, r.at))
-            push(*next);
+        let_next_try(ports_[port_of(r)].until_mshr, r.at);
         return true;
     }
     if (r.stage != Request::writes || !caches_.empty())
@@ -186,14 +174,24 @@ std::optional<std::size_t> ImmediateBeyond::take(OrderedPool& pool, const Reques
         pool.hold_open(grant.entry);
         return grant.entry;
     }
-    Request later = request;
     if (pool.open()) {
-        hold(ports_[port_of(later)].held, later);
+        Port& port = ports_[port_of(request)];
+        put(request.write != Request::nothing ? port.until_buffer : port.until_mshr, request);
     } else {
+        Request later = request;
         later.at = grant.at;
         push(later);
     }
     return std::nullopt;
+}
+
+/// The first of those that wait, at `free`, when there is something free.
+void ImmediateBeyond::let_next_try(std::vector<Request>& waiting, cycle free) {
+    if (waiting.empty())
+        return;
+    Request next = take_first(waiting);
+    next.at = std::max(next.at, free);
+    push(next);
 }
 
 void ImmediateBeyond::arrive(Request r) {
@@ -232,8 +230,7 @@ void ImmediateBeyond::write(Request r) {
         return;
     Port& port = ports_[port_of(r)];
     port.write_backs.close(r.mshr, answer.ready);
-    if (std::optional<Request> next = release(port.held, true, answer.ready))
-        push(*next);
+    let_next_try(port.until_buffer, answer.ready);
 }
 
 void ImmediateBeyond::read(Request r) {
@@ -291,8 +288,7 @@ void ImmediateBeyond::answer(const Request& r, const Answer& a) {
     Port& port = ports_[port_of(r)];
     port.mshrs.close(r.mshr, a.ready);
     reply_(r.tile, r.ticket, a);
-    if (std::optional<Request> next = release(port.held, false, a.ready))
-        push(*next);
+    let_next_try(port.until_mshr, a.ready);
 }
 
 } // namespace sim

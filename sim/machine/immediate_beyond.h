@@ -58,7 +58,9 @@ private:
     struct Port {
         OrderedPool mshrs, write_backs;
         Queue for_mshr{}, for_buffer{};
-        std::vector<Request> held{}; // until it is known when an MSHR is free
+        // Heaps by sequence, as requests left: of those that wait until it is known when a place in the
+        // buffer, or an MSHR, is free.
+        std::vector<Request> until_buffer{}, until_mshr{};
     };
     MemoryPort& memory_below(std::uint32_t cache) override { return below_.emplace_back(*this, cache); }
     /// A line that is at memory at cycle `t`.
@@ -91,6 +93,7 @@ private:
     /// The request's entry of the pool, held until it is closed; nothing: the request comes again when one is
     /// free.
     std::optional<std::size_t> take(OrderedPool& pool, const Request& request);
+    void let_next_try(std::vector<Request>& waiting, cycle free);
     void write(Request r);
     void read(Request r);
     void look_for_owner(Request r);

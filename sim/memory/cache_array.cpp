@@ -1,5 +1,9 @@
 #include "sim/memory/cache_array.h"
 
+#include "sim/config/error.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace sim {
@@ -28,6 +32,13 @@ Replacement replacement_of(std::string_view name) {
            : name == "srrip"  ? Replacement::srrip
            : name == "random" ? Replacement::random
                               : Replacement::lru;
+}
+
+void CacheArray::too_far(std::uint64_t line) const {
+    throw ConfigError(fmt::format(
+        "a cache of {} set{} has no tag for line {}: frames have that many addresses; give it more sets (its "
+        "size_bytes, ways) or longer lines (line_bytes)",
+        mask_ + 1, mask_ == 0 ? "" : "s", line));
 }
 
 /// srrip has a tag more, which is never anybody's: where the first byte points after a fill, for a line that

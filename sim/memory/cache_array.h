@@ -196,6 +196,8 @@ private:
     void touch_other(std::byte* order, std::uint32_t way);
     Entry other_victim(std::uint64_t line) const;
     void note_fill(Entry e);
+    /// Tags do not tell this line from others.
+    [[noreturn]] void too_far(std::uint64_t line) const;
     static constexpr std::size_t state_at = 8; // from the first byte, of plru and srrip
 
     std::byte* set_of(std::uint64_t line) const { return base_ + (line & mask_) * stride_; }
@@ -205,7 +207,7 @@ private:
     std::uint32_t tag(std::uint64_t line) const {
         std::uint64_t t = line >> set_bits_;
         if (t >= empty) [[unlikely]]
-            throw std::length_error("frame memory is larger than the simulated caches' tags can tell apart");
+            too_far(line);
         return static_cast<std::uint32_t>(t);
     }
     /// Which of four consecutive tags are `wanted`: one bit each.

@@ -113,6 +113,8 @@ void DramSlots::renew(Bits* w, std::uint64_t number) {
 
 Clock DramSlots::find_room_to_write(Clock from, std::uint64_t length) {
     std::uint32_t kind = no_column_ + 1; // rank 0 stands for all
+    if (t_.tREFI != 0)                   // there is no longer stretch without a refresh
+        length = std::min(length, t_.tREFI - t_.tRFC - (t_.tRP + t_.precharge[1]) + 1);
     Clock begin = from;
     for (Clock end = from; end < begin + length;) {
         Bits taken = word(end / 64)[kind] & all << (end % 64);

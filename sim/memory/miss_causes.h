@@ -2,7 +2,8 @@
 // replacement, which sees the same references, prefetches and invalidations:
 // * compulsory: nobody has asked this cache for the line before;
 // * coherence: the line was there, or would have been in the other cache, until a write elsewhere dropped it;
-// * conflict: the fully associative cache has the line;
+// * conflict: the fully associative cache has the line; also where a level below, which has all of this one's
+//   lines, dropped it;
 // * capacity: it has not either.
 // (Hill and Smith, IEEE ToC 1989.) Exact, for references in the order in which the cache sees them.
 #pragma once
@@ -52,6 +53,7 @@ public:
             lines_.push_back({line});
         if (lines_[found->second].there)
             unlink(found->second);
+        lines_[found->second].invalidated = false; // it is elsewhere by the cache's own rule from now on
     }
     /// The line is dropped because it was written elsewhere; `present`: it was in the cache.
     void invalidate(std::uint64_t line, bool present) {

@@ -457,6 +457,18 @@ TEST_F(Simulator, WritesOverNoFileThatItsMachineInherits) {
     }
 }
 
+// 32 bits of a line's number besides its set's.
+TEST_F(Simulator, CachesOfFewSetsMayLackTags) {
+    folder_.file("box.toml", "[[mesh]]\nshape = \"box\"\n");
+    const Outcome result =
+        simulator("run --quiet --scene box.toml --size 8x8 --spp 1 --no-native --machine " + tiny +
+                  " -g l1.line_bytes=16 -g l1.size_bytes=256 -g l1.ways=16 --report r.txt");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.err.find("a cache of 1 set has no tag for line"), std::string::npos) << result.err;
+    EXPECT_EQ(result.error_lines(), 1);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r.txt"));
+}
+
 TEST_F(Simulator, RefusesBadMachinesAndOptions) {
     folder_.file("good.toml", "[chip]\ncores = 2\n");
     folder_.file("empty.toml", "");

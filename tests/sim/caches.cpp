@@ -148,6 +148,24 @@ std::vector<Config> machines() {
     return out;
 }
 
+// A write elsewhere explains the next miss alone, also in caches that lines leave when they are asked for.
+TEST(MissCauses, CoherenceIsOfOneMiss) {
+    for (const bool exclusive : {false, true}) {
+        MissCauses causes(4);
+        causes.use(7, true);
+        EXPECT_EQ(causes.of(7), MissCause::conflict); // the other cache has it
+        causes.invalidate(7, true);
+        EXPECT_EQ(causes.of(7), MissCause::coherence);
+        if (exclusive) {
+            causes.leave(7);
+            EXPECT_EQ(causes.of(7), MissCause::capacity);
+        } else {
+            causes.use(7, true);
+            EXPECT_EQ(causes.of(7), MissCause::conflict);
+        }
+    }
+}
+
 TEST(CacheOracle, SyntheticStream) {
     const char* text = std::getenv("RAZOR_CACHE_REFERENCES");
     const std::vector<Reference> stream = synthetic(text != nullptr ? std::stoull(text) : 200000);

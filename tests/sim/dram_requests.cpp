@@ -180,6 +180,19 @@ TEST(DramRows, TheCalendarGrowsWithWhatIsBooked) {
     }
 }
 
+// No stretch between two refreshes has room for all writes that are sent together.
+TEST(DramRows, WritesOfManyRefreshesAreSent) {
+    const Config c = memory_of("ddr4-2400r", [](MemoryConfig& m) {
+        m.channels = 1, m.row_bytes = 65536, m.write_queue = m.write_high = 4096, m.write_low = 0;
+    });
+    sim::Memory memory(c, 0);
+    cycle t = 0;
+    for (std::uint64_t line = 0; line < 6000; ++line)
+        t = std::max(t, memory.write(64 * line, 2 * line));
+    EXPECT_GT(memory.counters().write_bursts, 4000U);
+    EXPECT_GT(t, 2 * u(c.memory.tREFI));
+}
+
 TEST(DramRows, LookBackGoesBeforeTheClosing) {
     Config c = ddr4();
     const MemoryConfig& m = c.memory;
