@@ -133,7 +133,8 @@ double line_service_cycles(const Config& c, double activates_a_line) {
     const double bursts = std::max(1.0, real(c.last_cache().line_bytes) / real(m.bus_bytes * m.burst_length));
     const double bus = bursts * real(m.burst_clocks());
     const double rows = activates_a_line * std::max(real(m.tRRD_S), real(m.tFAW) / 4) / real(m.ranks);
-    const double refreshed = m.refresh == "none" || m.tREFI == 0 ? 0 : real(m.tRFC) / real(m.tREFI);
+    const integer blocked = m.refresh == "per-bank" ? m.tRFCpb : m.tRFC; // a bank, of each that long
+    const double refreshed = m.tREFI == 0 ? 0 : real(blocked) / real(m.tREFI);
     return std::max(bus, rows) / (1 - std::min(refreshed, 0.5)) * real(m.clock_ps) / real(c.chip.clock_ps);
 }
 

@@ -90,9 +90,9 @@ double Sampler::ratio(std::size_t first, std::size_t last, const SampledCosts& c
     return all > 0 ? spent / all : 1;
 }
 
-double Estimate::count_error() const {
+double Estimate::count_error(double standard_error) const {
     const boost::math::normal normal;
-    return unseen * boost::math::quantile(normal, 0.5 + confidence / 2);
+    return standard_error * boost::math::quantile(normal, 0.5 + confidence / 2);
 }
 
 Estimate Sampler::estimate(cycle end, const WorkByCore& work) const {

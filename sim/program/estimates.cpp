@@ -47,8 +47,10 @@ Sampling parse_sampling(std::string_view option, std::string_view text) {
 }
 
 std::vector<EstimatedFigure> sampled_figures(const Report& r, const Estimate& e) {
-    const double counts = e.detailed < static_cast<double>(r.cycles) ? e.count_error() : 0;
-    const auto of = [&](std::uint64_t count) { return counted(static_cast<double>(count), counts); };
+    const bool sampled = e.detailed < static_cast<double>(r.cycles);
+    const auto of = [&](std::uint64_t count, double unseen = Estimate::unseen) {
+        return counted(static_cast<double>(count), sampled ? e.count_error(unseen) : 0);
+    };
     const std::uint64_t line = static_cast<std::uint64_t>(r.config.last_cache().line_bytes);
     std::vector<EstimatedFigure> out{
         {"cycles", "cycles", e.cycles},
@@ -61,7 +63,9 @@ std::vector<EstimatedFigure> sampled_figures(const Report& r, const Estimate& e)
                                                                              {"l4_misses", "misses of L4s"},
                                                                              {"l5_misses", "misses of L5s"}}};
     for (unsigned level = 0; level < r.config.cache_levels(); ++level)
-        out.push_back({misses[level][0], misses[level][1], of(r.cache_total(level).misses)});
+        out.push_back(
+            {misses[level][0], misses[level][1],
+             of(r.cache_total(level).misses, level == 0 ? Estimate::unseen_of_l1 : Estimate::unseen)});
     return out;
 }
 

@@ -105,6 +105,9 @@ KeptSeed read_seed(const std::string& option, const std::string& file) {
         if (out.drivers.size() != razor::phase_count || out.seed.phases.size() < out.drivers.size())
             throw razor::UserError(
                 fmt::format("{}: {} is of another version's phases; make it anew", option, file));
+        if (std::all_of(out.seed.phases.begin(), out.seed.phases.end(),
+                        [](const SeedPhase& p) { return p.instructions == 0; }))
+            throw razor::UserError(fmt::format("{}: {} counts no instructions; make it anew", option, file));
         return out;
     } catch (const nlohmann::json::exception&) {
         throw razor::UserError(

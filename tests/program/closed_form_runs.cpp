@@ -121,6 +121,10 @@ TEST_F(Simulator, RefusesWhatASeedCannotKnow) {
     nlohmann::json minus = nlohmann::json::parse(text("seed.json"));
     minus["seed"]["phases"][1]["alone_cycles"] = -2;
     folder_.file("minus.json", minus.dump());
+    nlohmann::json none = nlohmann::json::parse(text("seed.json"));
+    for (nlohmann::json& phase : none["seed"]["phases"])
+        phase["instructions"] = 0;
+    folder_.file("none.json", none.dump());
     nlohmann::json needs = nlohmann::json::parse(text("seed.json"));
     ASSERT_EQ(needs.at("needs").at("nodes").size(), 1U); // screen tiles
     EXPECT_GT(needs["needs"]["surfaces"][0], 0);
@@ -140,6 +144,7 @@ TEST_F(Simulator, RefusesWhatASeedCannotKnow) {
         {spp + how + "--seed-report bad.json", "bad.json is no seed"},
         {spp + how + "--seed-report s.toml", "made of"},
         {spp + how + "--seed-report minus.json", "minus.json: alone_cycles is below 0"},
+        {spp + how + "--seed-report none.json", "none.json counts no instructions"},
         {spp + how + "--seed-report needless.json", "needless.json: needs is below 0"},
         {spp + how + "--seed-report needs.json",
          "needs.json: needs are of 2 screen tiles, but the picture has 1"},
