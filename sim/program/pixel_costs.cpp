@@ -68,6 +68,9 @@ void PixelCostOptions::check(const std::vector<std::string>& outputs, unsigned c
 
 void PixelCostOptions::add_layers(razor::Film& film, const OwnerCosts& costs, const Config& config) {
     const auto line = static_cast<std::uint64_t>(config.last_cache().line_bytes);
+    // Pixels have the numbers of the whole picture; some beside the film are of its screen tiles.
+    const razor::PictureWindow whole =
+        film.window.value_or(razor::PictureWindow{0, 0, film.width, film.height});
     std::vector<std::uint64_t> sums(film.pixel_count());
     for (const char* group : groups) {
         std::vector<std::uint64_t> bytes(film.pixel_count());
@@ -79,7 +82,10 @@ void PixelCostOptions::add_layers(razor::Film& film, const OwnerCosts& costs, co
         for (const OwnerFigure& figure : owner_figures(config.cache_levels())) {
             std::fill(sums.begin(), sums.end(), 0);
             costs.share(figure, group == groups[1], [&](std::int32_t pixel, std::uint64_t amount) {
-                sums.at(static_cast<std::size_t>(pixel)) += amount;
+                const int x = pixel % whole.width - whole.x, y = pixel / whole.width - whole.y;
+                if (x >= 0 && x < film.width && y >= 0 && y < film.height)
+                    sums[static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) +
+                         static_cast<std::size_t>(x)] += amount;
             });
             add(figure.name, sums);
             if (figure.of_traffic == &Traffic::memory_reads || figure.of_traffic == &Traffic::memory_writes)

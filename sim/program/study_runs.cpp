@@ -178,12 +178,12 @@ std::string MachineStudy::own_body(const Settings& settings, int seeds, bool of_
     if (of_tile)
         std::erase_if(known, [](const auto& setting) { return find_parameter(setting.first) != nullptr; });
     const auto threads = settings.find("host_threads");
-    return fmt::format(
-        "# A point of razor-sim study.\nkind = \"machine\"\nprogram = {}\nscene_digest = {}\nseeds = {}\n"
-        "repeats = {}\nhost_threads = {}\n\n[settings]\n{}\n{}{}",
-        toml_text(Value(machine_study_program().name)), toml_text(Value(scene.digest)), seeds, study_.repeats,
-        threads == settings.end() ? "1" : plain_text(threads->second), toml_text(known), machine_title,
-        config);
+    return fmt::format("# A point of a study or sweep of razor-sim.\nkind = \"machine\"\nprogram = "
+                       "{}\nscene_digest = {}\nseeds = {}\n"
+                       "repeats = {}\nhost_threads = {}\n\n[settings]\n{}\n{}{}",
+                       toml_text(Value(machine_study_program().name)), toml_text(Value(scene.digest)), seeds,
+                       study_.repeats, threads == settings.end() ? "1" : plain_text(threads->second),
+                       toml_text(known), machine_title, config);
 }
 
 Point MachineStudy::reference_of(const Point& point) const {

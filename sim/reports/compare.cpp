@@ -68,6 +68,9 @@ std::map<std::string, std::string> settings_of(const json& report) {
     std::map<std::string, std::string> all = flat_words(report.value("machine", json::object()));
     all.merge(flat_words(report.value("options", json::object()), "run"));
     all["run.mode"] = report.value("mode", std::string());
+    const json estimate = report.value("estimate", json::object()); // else all was simulated
+    if (const auto how = estimate.find("how"); how != estimate.end() && how->is_string())
+        all["run.estimate"] = how->get<std::string>();
     all.erase("sim.jitter");
     return all;
 }
@@ -99,10 +102,24 @@ std::vector<SettingChange> changes(const std::map<std::string, std::string>& fir
     return all;
 }
 
+using Pointer = json::json_pointer;
+
+/// Of memory: the last cache's.
+double line_bytes_of(const json& report) {
+    double bytes = 64;
+    for (int level = 1;; ++level) {
+        const Pointer cache(fmt::format("/machine/l{}", level));
+        if (!report.contains(cache))
+            return bytes;
+        if (level == 1 || report.at(cache).value("size_bytes", 0.0) > 0)
+            bytes = report.at(cache).value("line_bytes", bytes);
+    }
+}
+
 std::map<std::string, double> memory_bytes_of(const json& report) {
     std::map<std::string, double> bytes;
     const json traffic = report.value("traffic", json::array());
-    const double line = report.value("machine", json::object()).value("/l1/line_bytes"_json_pointer, 64.0);
+    const double line = line_bytes_of(report);
     for (const json& row : traffic)
         bytes[row.value("structure", std::string("unknown"))] +=
             line * (row.value("memory_reads", 0.0) + row.value("memory_writes", 0.0));
@@ -137,8 +154,6 @@ void check_one_design(std::span<const ReportFile> reports) {
     }
 }
 
-using Pointer = json::json_pointer;
-
 /// What is read of a report has the type it is read by, where it is there: the first part that has not, or
 /// none.
 std::string misfit(const json& report) {
@@ -148,14 +163,20 @@ std::string misfit(const json& report) {
     constexpr auto object = [](const json& j) { return j.is_object(); };
     constexpr auto text = [](const json& j) { return j.is_string(); };
     constexpr auto number = [](const json& j) { return j.is_number(); };
-    for (const char* part : {"/machine", "/options", "/stack"})
+    for (const char* part : {"/machine", "/options", "/stack", "/estimate"})
         if (wrong(Pointer(part), object))
             return part;
     for (const char* part : {"/scene", "/mode"})
         if (wrong(Pointer(part), text))
             return part;
-    if (wrong("/machine/l1/line_bytes"_json_pointer, number))
-        return "/machine/l1/line_bytes";
+    for (int level = 1; report.contains(Pointer(fmt::format("/machine/l{}", level))); ++level) {
+        const std::string cache = fmt::format("/machine/l{}", level);
+        if (wrong(Pointer(cache), object))
+            return cache;
+        for (const char* const key : {"/size_bytes", "/line_bytes"})
+            if (wrong(Pointer(cache + key), number))
+                return cache + key;
+    }
     if (!report.contains("traffic"))
         return {};
     if (!report.at("traffic").is_array())

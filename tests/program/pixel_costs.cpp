@@ -90,6 +90,22 @@ TEST_F(PixelCosts, AreThoseOfWhatPixelsShow) {
     EXPECT_GT(model.built / model.pixels, 5 * sky.built / sky.pixels);
 }
 
+// A crop's pixels have the numbers of the whole picture; those of its screen tiles that it does not show are
+// in no file.
+TEST_F(PixelCosts, AreOfCropsToo) {
+    for (const std::string crop : {"16,8,16,8", "19,3,10,7"}) {
+        ASSERT_EQ(simulator(start("--costs -o a.exr --json a.json --crop " + crop)).code, 0) << crop;
+        const Film film = read_exr(folder_ / "a.exr");
+        for (const float cost : film.find("cost.instructions")->values)
+            EXPECT_GT(cost, 0) << crop;
+        const double all = report("a.json").at("owners").at("instructions").at("owners");
+        if (crop.starts_with("16"))
+            EXPECT_EQ(sum(film, "cost.instructions"), all);
+        else
+            EXPECT_LT(sum(film, "cost.instructions"), all);
+    }
+}
+
 TEST_F(PixelCosts, AreShownInColours) {
     const Outcome result = simulator(start("--false-colour cost.cycles --range 0:1000 -o a.png -o a.exr"));
     ASSERT_EQ(result.code, 0) << result.err;

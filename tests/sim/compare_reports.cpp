@@ -72,6 +72,26 @@ TEST(CompareReports, FindSettingsScenesAndFigures) {
     EXPECT_EQ(json::parse(comparison_json(c))["figures"][0]["ratio"], 1.5);
 }
 
+TEST(CompareReports, TellEstimatesFromRuns) {
+    ReportFile sampled = report(1000);
+    sampled.json["estimate"] = {{"how", "sampled"}};
+    const ReportComparison c = compare({report(1000)}, {sampled});
+    ASSERT_EQ(c.settings.size(), 1u);
+    EXPECT_EQ(c.settings[0].name, "run.estimate");
+    EXPECT_EQ(c.settings[0].first, "");
+    EXPECT_EQ(c.settings[0].second, "sampled");
+}
+
+// Memory has lines of the last cache that there is.
+TEST(CompareReports, TakeBytesOfMemoryByItsLines) {
+    ReportFile larger = report(1000);
+    larger.json["machine"]["l2"] = {{"size_bytes", 65536}, {"line_bytes", 256}};
+    larger.json["machine"]["l3"] = {{"size_bytes", 0}, {"line_bytes", 64}};
+    const ReportComparison c = compare({report(1000)}, {larger});
+    EXPECT_EQ(c.memory_bytes[0].first.median, 32 * 104);
+    EXPECT_EQ(c.memory_bytes[0].second.median, 256 * 104);
+}
+
 TEST(CompareReports, KnowWhatRunsOfOneDesignDifferBy) {
     const ReportComparison c = compare({report(1000, 90), report(1100, 90), report(1050, 90)},
                                        {report(1090, 80), report(1200, 80), report(1150, 80)});
