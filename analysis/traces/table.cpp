@@ -36,7 +36,11 @@ std::string quoted(const std::string& text) {
 } // namespace
 
 std::string text_of(const Table::Cell& cell) {
-    return plain(cell, "{:.4f}");
+    const auto* const number = std::get_if<double>(&cell);
+    const double size = number != nullptr ? std::abs(*number) : 1;
+    if (size != 0 && size < 0.01) // three digits at least
+        return plain(cell, "{:.4g}");
+    return plain(cell, size >= 1000 && size == std::floor(size) ? "{:.0f}" : "{:.4f}");
 }
 
 std::string Table::text() const {

@@ -334,6 +334,7 @@ TEST(TraceFormats, RefusesByOneLineThatSaysWhere) {
         {"csv", "address,detail\n10,x\n", "sample, line 2: ", "detail"},
         {"csv", "address,kind\n10\n", "sample, line 2: ", "1 fields instead of 2"},
         {"csv", "address,kind\n10,\"read\n", "sample, line 2: ", "without an end"},
+        {"csv", "address,kind\n10,\"read\"s\n", "sample, line 2: ", "goes on behind a quotation"},
         {"dramsim3", "0x10 READ\n", "sample, line 1: ", "'' is no cycle"},
         {"dramsim3", "0x10 REED 3\n", "sample, line 1: ", "neither READ nor WRITE"},
         {"ramulator", "0x10\n", "sample, line 1: ", "neither READ nor WRITE"},

@@ -33,7 +33,10 @@ enum Column : std::size_t {
     unread
 };
 
-std::string quoted(const std::string& text) {
+/// A line's end in a name, which no name of ours has, becomes a space.
+std::string quoted(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     if (text.find_first_of(",\"") == std::string::npos)
         return text;
     std::string out = "\"";
@@ -85,6 +88,8 @@ private:
                 if (i >= line.size())
                     refuse("has a quotation without an end", "end it by a \"");
                 line.remove_prefix(i + 1);
+                if (!line.empty() && line.front() != ',')
+                    refuse("goes on behind a quotation", "put a comma there, or write \" as \"\"");
             } else {
                 const std::size_t end = std::min(line.find(','), line.size());
                 field = line.substr(0, end);

@@ -61,6 +61,9 @@ public:
     void commit() override {
         if (std::fflush(file_) != 0)
             fail();
+        std::error_code none;
+        if (nameless_) // left by a killed process of the same number
+            fs::remove(temporary_, none);
         if (nameless_ && linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", fileno(file_)).c_str(), AT_FDCWD,
                                 temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
             fail();

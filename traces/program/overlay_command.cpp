@@ -59,8 +59,8 @@ void OverlayCommand::run() const {
         std::string names;
         for (const analysis::Channel& c : file.channels)
             names += (names.empty() ? "" : ", ") + c.name;
-        throw Error(fmt::format("{}: has no layer {}; render it with --layers {}, or give one of {}",
-                                picture_, layer_, layer_.substr(0, layer_.find('.')), names));
+        throw Error(fmt::format("{}: has no layer {}; render it with one (--layers), or give one of {}",
+                                picture_, layer_, names));
     }
     std::vector<double> values;
     for (std::size_t i = 0; i < picture.size(); ++i)
