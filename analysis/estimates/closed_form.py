@@ -40,9 +40,10 @@ def run(program, arguments):
         sys.exit(130 if done.returncode == 130 else 1)
 
 
-def kept(folder, name, arguments):
-    """A file's name by the command that makes it."""
-    return os.path.join(folder, f"{name}-{hashlib.sha256(chr(0).join(arguments).encode()).hexdigest()[:12]}.json")
+def kept(folder, name, inputs, arguments):
+    """A file's name by the command that makes it and what that reads."""
+    key = chr(0).join([inputs, *arguments])
+    return os.path.join(folder, f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.json")
 
 
 def figures(report):
@@ -59,13 +60,14 @@ def main():
     for machine in found.machines.split(","):
         for scene in found.scenes.split(","):
             size = found.forest_size if scene == "forest" else found.size
-            common = ["--quiet", "--no-native", "--no-calibration", "--machine", f"configs/machines/{machine}.toml", "--scene",
-                      f"configs/scenes/{scene}.toml", "--size", size, "--spp", "1", "-g", "sim.mode=reference", "-g",
-                      "memory.controller=queued", *more]
-            seed = kept(found.folder, f"seed-{machine}-{scene}", common)
+            files = f"configs/machines/{machine}.toml", f"configs/scenes/{scene}.toml"
+            inputs = simulator.digest_of_inputs(found.program, *files)
+            common = ["--quiet", "--no-native", "--no-calibration", "--machine", files[0], "--scene", files[1], "--size", size,
+                      "--spp", "1", "-g", "sim.mode=reference", "-g", "memory.controller=queued", *more]
+            seed = kept(found.folder, f"seed-{machine}-{scene}", inputs, common)
             for tiles in found.tiles.split(","):
                 arguments = [*common, "-g", f"chip.tiles={tiles}"]
-                whole = kept(found.folder, f"{machine}-{scene}-{tiles}", arguments)
+                whole = kept(found.folder, f"{machine}-{scene}-{tiles}", inputs, arguments)
                 if not os.path.exists(whole):
                     run(found.program, [*arguments, "--json", whole])
                 computed = os.path.join(found.folder, f"computed-{machine}-{scene}-{tiles}.json")

@@ -46,7 +46,8 @@ def report(name, given, scene, estimate):
     found, more = given
     command = [found.program, "run", "--quiet", "--no-native", "--no-calibration", "--machine", found.machine, "--scene", scene,
                *estimate, *more]
-    key = hashlib.sha256("\0".join(command[1:]).encode()).hexdigest()[:12]
+    inputs = simulator.digest_of_inputs(found.program, found.machine, scene)
+    key = hashlib.sha256("\0".join([inputs, *command[1:]]).encode()).hexdigest()[:12]
     file = os.path.join(found.folder, f"{name}-{key}.json")
     if not os.path.exists(file):
         run = subprocess.run([*command, "--json", file, "--report", file[:-5] + ".txt"], stderr=subprocess.PIPE, text=True,
@@ -68,6 +69,8 @@ def main():
     os.makedirs(found.folder, exist_ok=True)
     print(f"{'scene':16} {'runs':>4}" + "".join(f" {name + ', %':>16} {'held':>8}" for name in FIGURES) + f" {'time':>6}")
     scenes = {os.path.splitext(os.path.basename(scene))[0]: scene for scene in found.scenes.split(",")}
+    if len(scenes) != len(found.scenes.split(",")):
+        sys.exit("coverage.py: two scenes are of one name; give them one after the other")
     with concurrent.futures.ThreadPoolExecutor(found.jobs) as pool:
         runs = {}
         for name, scene in scenes.items():

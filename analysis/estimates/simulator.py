@@ -1,7 +1,11 @@
 """What scripts that set estimates beside whole runs share: their command lines, and which program they run."""
 import argparse
+import os
 import shutil
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../sweep"))
+import simulation  # noqa: E402
 
 
 def parser_of(description):
@@ -21,3 +25,11 @@ def parsed(parser):
     if shutil.which(found.program) is None:
         parser.error(f"{found.program} is no program; name razor-sim's place by --program")
     return found, more
+
+
+def digest_of_inputs(program, machine, scene):
+    """As simulation.py has it; ends the program where that cannot be told."""
+    try:
+        return simulation.digest_of_inputs(program, machine, scene)
+    except simulation.Mistake as mistake:
+        sys.exit(f"{os.path.basename(sys.argv[0])}: {mistake}")

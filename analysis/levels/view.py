@@ -34,13 +34,19 @@ def run_program(main):
 
 
 def write_rows(rows, path):
-    """As JSON, if there is a path to write to."""
+    """As JSON, whole or not at all, if there is a path to write to."""
     if not path:
         return
+    temporary = f"{path}.{os.getpid()}.tmp"
     try:
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(rows, file, indent=1)
-            file.write("\n")
+        try:
+            with open(temporary, "w", encoding="utf-8") as file:
+                json.dump(rows, file, indent=1)
+                file.write("\n")
+            os.replace(temporary, path)
+        finally:
+            if os.path.exists(temporary):
+                os.remove(temporary)
     except OSError as error:
         fail(f"{path}: {error.strerror}; give a file in a folder that is there")
 

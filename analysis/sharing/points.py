@@ -113,16 +113,11 @@ def figures_of(report):
     }
 
 
-def digest_of(program):
-    with open(program, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
 class Folder:
     """Where the figures of points are kept, one file each, written whole."""
 
     def __init__(self, path, simulator):
-        self.path, self.simulator, self.program = path, simulator, digest_of(simulator)
+        self.path, self.simulator = path, simulator
         try:
             os.makedirs(path, exist_ok=True)
         except OSError as error:
@@ -131,8 +126,10 @@ class Folder:
             raise Mistake(f"{path}: cannot be written to; give another folder")
 
     def file(self, point):
-        """Another program, or another option, is another point."""
-        key = json.dumps([self.program, point], sort_keys=True)
+        """Another program, machine or scene, or another option, is another point."""
+        inputs = simulation.digest_of_inputs(self.simulator, os.path.join(ROOT, point["machine"]),
+                                             point["options"][point["options"].index("--scene") + 1])
+        key = json.dumps([inputs, point], sort_keys=True)
         return os.path.join(self.path, "point-" + hashlib.sha256(key.encode()).hexdigest()[:24] + ".json")
 
     def find(self, point):

@@ -66,31 +66,46 @@ bool Claims::make(const std::string& name) const {
         fmt::format("{}: cannot be made ({}); check the folder", file.string(), std::strerror(errno)));
 }
 
-bool Claims::is_dead(const std::string& name) {
+std::optional<fs::file_time_type> Claims::dead_since(const std::string& name) {
     const fs::path file = file_of(name);
     std::error_code error;
     const fs::file_time_type touched = fs::last_write_time(file, error);
     if (error)
-        return true; // gone by now
+        return fs::file_time_type{}; // gone by now
     std::ifstream in(file);
     std::string host;
     pid_t process = 0;
     if (in >> host >> process && host == host_name() && ::kill(process, 0) != 0 && errno == ESRCH)
-        return true;
+        return touched;
     const Clock::time_point now = Clock::now();
     const auto [found, fresh] = others_.try_emplace(name, Seen{touched, now});
     if (!fresh && found->second.touched != touched)
         found->second = {touched, now};
-    return now - found->second.since > patience;
+    return now - found->second.since > patience ? std::optional(touched) : std::nullopt;
+}
+
+/// A dead claim, touched then. Another may have done so meanwhile and have a claim of its own: that is put
+/// back.
+void Claims::take_away(const std::string& name, fs::file_time_type touched) const {
+    const fs::path file = file_of(name);
+    fs::path aside = file;
+    aside += fmt::format(".{}.{}", host_name(), getpid());
+    std::error_code error;
+    fs::rename(file, aside, error);
+    if (error)
+        return;
+    if (fs::last_write_time(aside, error) != touched)
+        fs::create_hard_link(aside, file, error);
+    fs::remove(aside, error);
 }
 
 bool Claims::take(const Point& point) {
     bool made = make(point.name);
-    if (!made && is_dead(point.name)) {
-        std::error_code ignored;
-        fs::remove(file_of(point.name), ignored);
-        made = make(point.name);
-    }
+    if (!made)
+        if (const auto touched = dead_since(point.name)) {
+            take_away(point.name, *touched);
+            made = make(point.name);
+        }
     if (made)
         mine_[point.name] = Clock::now();
     return made;

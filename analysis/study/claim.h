@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace analysis {
@@ -40,7 +41,9 @@ private:
 
     std::filesystem::path file_of(const std::string& name) const;
     bool make(const std::string& name) const;
-    bool is_dead(const std::string& name);
+    /// When the claim was touched last, if it is dead.
+    std::optional<std::filesystem::file_time_type> dead_since(const std::string& name);
+    void take_away(const std::string& name, std::filesystem::file_time_type touched) const;
 
     std::filesystem::path folder_;
     std::string own_; // what this process's claims hold

@@ -1,6 +1,8 @@
 """What the programs of this folder share: runs of the simulator, and ends of a program in one line."""
 import argparse
 import csv
+import functools
+import hashlib
 import json
 import os
 import shutil
@@ -74,6 +76,23 @@ def run(program, machine, settings, more, folder):
         raise Mistake(f"{', '.join(settings) or machine}: {lines[-1]}")
     with open(report, encoding="utf-8") as file:
         return json.load(file)
+
+
+@functools.lru_cache(maxsize=None)
+def digest_of_inputs(program, machine, scene):
+    """Of what decides a run's figures besides its options: the program's bytes, the machine with all that it inherits, the
+    scene's file. (Models that a scene names are not looked into.)"""
+    resolved = subprocess.run([program, "print-config", "--machine", machine], capture_output=True, check=False)
+    if resolved.returncode != 0:
+        raise Mistake(resolved.stderr.decode(errors="replace").strip())
+    digest = hashlib.sha256(resolved.stdout)
+    try:
+        for path in (shutil.which(program), scene):
+            with open(path, "rb") as file:
+                digest.update(hashlib.sha256(file.read()).digest())
+    except OSError as error:
+        raise Mistake(f"{error.filename}: {error.strerror}; give a file") from None
+    return digest.hexdigest()
 
 
 def show_progress(runs, may_fail):

@@ -20,6 +20,8 @@ FAKE = f"""#!{sys.executable}
 import json, os, sys
 a = sys.argv[1:]
 value = lambda option: a[a.index(option) + 1]
+if a[0] == "print-config":
+    sys.exit(sys.stdout.write(open(value("--machine")).read()) and 0)
 settings = dict(word.split("=") for option, word in zip(a, a[1:]) if option == "-g")
 with open(os.environ["CALLS"], "a") as log:
     log.write(" ".join(a) + "\\n")
@@ -106,6 +108,10 @@ class Studies(unittest.TestCase):
         self.study("simulated.py", "--l2", "512KiB..8MiB", "--seeds", "1,2,3")
         self.assertEqual(len(self.called()), 3 * 3)
         with open(self.simulator, "a", encoding="utf-8") as file:
+            file.write("# another\n")
+        self.study("simulated.py", "--l2", "1MiB", "--seeds", "2")
+        self.assertEqual(len(self.called()), 10)
+        with open(self.scene, "a", encoding="utf-8") as file:  # the same name
             file.write("# another\n")
         self.study("simulated.py", "--l2", "1MiB", "--seeds", "2")
         self.assertEqual(len(self.called()), 10)
