@@ -8,7 +8,9 @@
 #include "razor/scene/words.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -137,6 +139,19 @@ private:
         }
     }
 
+    /// Whether all that there is lies behind a light that shines to one side, or beside its cone.
+    bool turned_away(const Light& l) const {
+        const bool rectangle = l.kind == LightKind::rectangle;
+        if (!rectangle && l.kind != LightKind::disk && (l.kind != LightKind::spot || l.cone_angle > 90))
+            return false;
+        const glm::dvec3 to = rectangle ? glm::cross(l.edge_u, l.edge_v) : l.direction;
+        const glm::dvec3 from = rectangle ? l.corner : l.position;
+        return std::all_of(geometry_.boxes.begin(), geometry_.boxes.end(), [&](const Box& box) {
+            const glm::dvec3 furthest = glm::mix(box.low, box.high, glm::greaterThan(to, glm::dvec3(0)));
+            return glm::dot(furthest - from, to) <= 0;
+        });
+    }
+
     void lights() {
         float least = std::numeric_limits<float>::max(), most = 0;
         bool any =
@@ -156,6 +171,12 @@ private:
                     "it gives no light, and costs none", "leave it out");
             if (flat || power <= 0)
                 continue;
+            if (!geometry_.boxes.empty() && turned_away(l))
+                add(Severity::warning, "light_turned_away", name,
+                    "all surfaces lie behind it, where it does not shine", "it gives no light",
+                    l.kind == LightKind::rectangle
+                        ? "exchange edge_u and edge_v: it shines to the side of cross(edge_u, edge_v)"
+                        : "turn its direction round");
             any = any || scene_.settings.light_samples > 0;
             if (l.kind == LightKind::point || l.kind == LightKind::spot || l.kind == LightKind::directional)
                 continue; // of other units

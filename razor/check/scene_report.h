@@ -38,8 +38,8 @@ struct PrecisionBudget {
 };
 std::vector<PrecisionBudget> precision_of(const Scene& scene);
 
-/// All there is to say, by kind: precision, levels, zero_area_light, dark_light, light_range, no_light,
-/// albedo_one, unused_material. The meshes must be valid.
+/// All there is to say, by kind: precision, levels, zero_area_light, dark_light, light_turned_away,
+/// light_range, no_light, albedo_one, unused_material. The meshes must be valid.
 std::vector<SceneFinding> findings_of(const Scene& scene);
 
 /// What a frame of the whole picture will take, in bytes.

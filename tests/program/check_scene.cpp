@@ -125,6 +125,15 @@ TEST_F(CheckScene, FindsLightsThatAreNone) {
                v + "\nradiance = " + radiance + "\n";
     };
     EXPECT_EQ(of_scene("zero_area_light", mesh_ + rectangle("[0, 1, 0]", "1")).size(), 0U);
+    EXPECT_EQ(of_scene("light_turned_away", mesh_ + rectangle("[0, 1, 0]", "1")).size(), 1U);
+    EXPECT_EQ(of_scene("light_turned_away", mesh_ + rectangle("[0, -1, 0]", "1")).size(), 0U);
+    for (const char* const kind : {"disk", "spot"})
+        for (const bool away : {false, true})
+            EXPECT_EQ(of_scene("light_turned_away", mesh_ + "[[light]]\nkind = \"" + kind +
+                                                        "\"\nposition = [0, 0, 3]\ndirection = [0, 0, " +
+                                                        (away ? "1]\n" : "-1]\n"))
+                          .size(),
+                      away ? 1U : 0U);
     EXPECT_EQ(of_scene("dark_light", mesh_ + rectangle("[0, 1, 0]", "0")).size(), 1U);
     EXPECT_EQ(of_scene("dark_light", mesh_ + rectangle("[0, 1, 0]", "1")).size(), 0U);
     EXPECT_EQ(
