@@ -148,7 +148,7 @@ TEST(Calendar, TakesWhatHasPassedAsFarAsItRemembers) {
             if (free.size() == 2)
                 taken.insert(free.begin(), free.end());
         }
-        calendar.take(100000 << shift);
+        calendar.take(Calendar::Slot{100000} << shift);
         EXPECT_EQ(calendar.last_taken_before((600U << shift) / 64 * 64), 0U);
         EXPECT_TRUE(calendar.take_two_before(0, 1));
     }
