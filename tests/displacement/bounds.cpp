@@ -111,8 +111,11 @@ check::Extent hold_finest(Frame& frame, int line, int& outside, int& coarse) {
     return all;
 }
 
-void expect_boxes_hold(const Scene& scene, const std::string& what) {
+/// `shaded`: what the camera sees had its normals before what is finer was made.
+void expect_boxes_hold(const Scene& scene, const std::string& what, bool shaded = false) {
     Frame frame(scene, {});
+    if (shaded)
+        frame.render(*native_targets().back(), 0);
     frame.build_all(*native_targets().back());
     int outside = 0, coarse = 0;
     for (int n = 0; n < frame.instances(); ++n) {
@@ -125,6 +128,18 @@ void expect_boxes_hold(const Scene& scene, const std::string& what) {
     }
     EXPECT_GT(coarse, 40) << what;
     EXPECT_EQ(outside, 0) << what << ", blocks of " << coarse << " do not hold what is finer";
+}
+
+TEST(Bodies, BoxesHoldWhatIsFinerWhateverWasShadedBefore) {
+    for (const Case& c : cases) {
+        const Mesh cage = c.cage();
+        if (cage.scheme == Scheme::bilinear) // flat ones have no levels
+            continue;
+        Scene scene = scene_of(cage, 600);
+        scene.settings.lod = Lod::recursive;
+        scene.settings.width = scene.settings.height = 128;
+        expect_boxes_hold(scene, c.name, true);
+    }
 }
 
 class DisplacedBodies : public testing::TestWithParam<Case> {};
