@@ -8,7 +8,7 @@
 namespace traces {
 
 inline constexpr std::string_view magic{"\x89RZT\r\n\x1a\n", 8};
-inline constexpr std::uint32_t format_version = 8, oldest_version = 1;
+inline constexpr std::uint32_t format_version = 9, oldest_version = 1;
 inline constexpr std::size_t prologue_bytes = 12;     // magic and version
 inline constexpr std::size_t chunk_header_bytes = 16; // name, checksum, length
 inline constexpr std::size_t tail_bytes = chunk_header_bytes + 8;

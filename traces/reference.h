@@ -14,7 +14,8 @@ namespace traces {
 /// `invalidate_all` those everywhere go. Of what a level of caches passes on besides: `upgrade` asks for the
 /// right to write a line that is there, `clean_back` gives a clean line to an exclusive level, `word` is of a
 /// shared word that the level below holds, `claim` tells a directory that one was written, and `recall` says
-/// what a level above had when one below asked it for a line.
+/// what a level above had when one below asked it for a line. `refused` is of what was asked for, had to be
+/// asked for again (which is another reference), but had lines moved for it already.
 enum class Kind : std::uint8_t {
     read,
     write,
@@ -30,12 +31,13 @@ enum class Kind : std::uint8_t {
     clean_back,
     word,
     claim,
-    recall
+    recall,
+    refused
 };
-inline constexpr std::array<const char*, 15> kind_names = {
-    "read",       "write",         "modify", "fetch",      "prefetch",
-    "write_back", "write_through", "flush",  "invalidate", "invalidate_all",
-    "upgrade",    "clean_back",    "word",   "claim",      "recall"};
+inline constexpr std::array<const char*, 16> kind_names = {
+    "read",          "write", "modify",     "fetch",          "prefetch", "write_back",
+    "write_through", "flush", "invalidate", "invalidate_all", "upgrade",  "clean_back",
+    "word",          "claim", "recall",     "refused"};
 
 /// How a reference belongs to the one before it in its stream: it begins an operation of the program; or is a
 /// further access of the same operation; or a further piece of the same access, of one line at one time. What

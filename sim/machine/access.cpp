@@ -33,6 +33,15 @@ void Engine::note_touch(const Hart& h, std::uint64_t address, std::uint32_t byte
     }
 }
 
+/// ... and what an L1 had no room for, though lines below have moved for it.
+void Engine::note_refused(const Hart& h, std::uint64_t address, std::uint32_t bytes, Passing::Asks asks,
+                          cycle at, traces::Part part) const {
+    if (recorder_ != nullptr && h.tile->tap->is_at(TraceLevel::core))
+        h.tile->attribution.note_always(
+            traces::Kind::refused, address, bytes, at, h.column, h.number, h.trace_site,
+            part == traces::Part::aside ? part : traces::Part::access, Passing::of(asks));
+}
+
 /// One machine access; across lines, one of each.
 inline void Engine::touch(Hart& h, std::uint64_t address, std::uint32_t bytes, bool write, cycle from,
                           Data& data) {
@@ -401,6 +410,7 @@ void Engine::prefetch(Hart& h, const void* p, Due ready) {
         note_core(h, traces::Kind::prefetch, address(p), line_bytes_, t, traces::Part::operation);
         if (recorder_ != nullptr)
             h.tile->tap->site = h.trace_site;
+        h.tile->site = {}; // prefetchers learn from accesses alone
         h.core->l1.prefetch(address(p), t, h.column);
     }
     finish_issue(h, at, 0);

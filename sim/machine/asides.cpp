@@ -28,14 +28,15 @@ void drop_copies(const Config& config, std::deque<Tile>& tiles, const Asker& who
                  cycle t, bool everywhere) {
     const unsigned levels = config.tile_levels();
     const auto in_tile = [&](Tile& tile) {
+        tile.site = {}; // of no operation, to prefetchers below
         for (Core& core : tile.cores)
             core.l1.invalidate(address, t, who.column);
         for (unsigned level = 1; level < levels; ++level)
             for (std::size_t n = 0; n < tile.caches[level].size(); ++n)
                 if (Cache& cache = tile.caches[level][n]; &cache != &who.tile.cache_of(level, who.core)) {
+                    cache.invalidate(address, t, who.column); // finds lines above, which is noted first
                     note_line({tile, n * tile.sharing[level], who.column}, level, traces::Kind::invalidate,
                               address, t);
-                    cache.invalidate(address, t, who.column);
                 }
     };
     if (!everywhere)

@@ -293,6 +293,8 @@ private:
         std::optional<TileEvents>& events = h.tile->events;
         return events ? TileProgress::of(events->take_count(), events->now(), at) : 0;
     }
+    void note_refused(const Hart& h, std::uint64_t address, std::uint32_t bytes, Passing::Asks asks, cycle at,
+                      traces::Part part) const;
     void note_core(Hart& h, traces::Kind kind, std::uint64_t address, std::uint32_t bytes, cycle at,
                    traces::Part part) const {
         if (recorder_ != nullptr && h.tile->tap->is_at(TraceLevel::core)) [[unlikely]]

@@ -11,9 +11,11 @@ namespace sim {
 template <class Keep, class Serve>
 void write_back_all(std::deque<Tile>& tiles, Beyond& beyond, cycle t, std::size_t column, const Keep& keep,
                     const Serve& serve) {
-    for (Tile& tile : tiles)
+    for (Tile& tile : tiles) {
+        tile.site = {};
         for (Core& core : tile.cores)
             core.l1.finish(t, column, keep);
+    }
     serve();
     for (unsigned level = 1; level < most_levels; ++level) {
         bool any = false;

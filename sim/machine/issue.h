@@ -250,6 +250,8 @@ inline void Engine::touch_line(Hart& h, std::uint64_t address, std::uint32_t byt
     Answer a = core.l1.access(line, write, accesses, at, h.column);
     while (a.refused)
         [[unlikely]] {
+            if (a.moved)
+                note_refused(h, address, bytes, write ? Passing::write : Passing::read, at, part);
             from = at = await_room(h, at, a.ready);
             data.granted = std::max(data.granted, at);
             if (notes_sites_) // others have had theirs meanwhile

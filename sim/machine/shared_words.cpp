@@ -66,7 +66,13 @@ void Engine::before_atomic(Hart& h, isa::timing::atomic kind, const void* p, Due
         Answer line = h.core->words.read(change);
         while (line.refused)
             [[unlikely]] {
+                if (line.moved) {
+                    note_refused(h, a, 4, Passing::change, change.at - l1_latency_, traces::Part::aside);
+                    note_word(asker(h), 1, traces::Kind::refused, change,
+                              Passing::of(change, {}, Passing::change));
+                }
                 change.at = await_room(h, change.at, line.ready);
+                h.tile->site = {}; // others have accessed something meanwhile
                 line = h.core->words.read(change);
             }
         note_core(h, traces::Kind::modify, a, 4, change.at - l1_latency_, traces::Part::aside);

@@ -9,10 +9,9 @@
 
 namespace sim {
 
-/// When an access is served (a cycle or a ticket), and what serves it. Or, refused: nothing has happened, for
+/// When an access is served (a cycle or a ticket), and what serves it. Or, refused: it has not happened, for
 /// an MSHR or buffer is not free; ask again at that cycle, or (unknown) when something was answered, or
-/// (maybe_sooner) at the first of both. Small
-/// enough for two registers.
+/// (maybe_sooner) at the first of both. Small enough for two registers.
 struct Answer {
     static constexpr cycle unknown = ~cycle{0};
     cycle ready;
@@ -20,8 +19,11 @@ struct Answer {
     bool refused = false;
     bool dirty = false;  // the line has left an exclusive cache, which had not written it back
     bool shared = false; // of a coherent machine: the line is not to be written without asking
+    bool moved = false;  // it was refused, but lines have gone to make room for what it wanted
 
-    static Answer later(cycle when) { return {when, Cause::mshrs, true}; }
+    static Answer later(cycle when, bool moved = false) {
+        return {when, Cause::mshrs, true, false, false, moved};
+    }
 };
 
 class Cache;

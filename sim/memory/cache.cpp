@@ -1,5 +1,4 @@
 #include "sim/memory/cache.h"
-#include "sim/trace/passing.h"
 
 #include <algorithm>
 #include <utility>
@@ -75,9 +74,9 @@ Answer Cache::in_flight(CacheArray::Entry entry, std::uint64_t line, Answer pres
     return {hold->until, hold->cause};
 }
 
-/// Sends a line on its way, from the buffer that it has entered at `t`. Returns 0, or when to try again.
-cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
-                        bool forced, bool stays) {
+/// Sends a line on its way, from the buffer that it has entered at `t`, unless it is refused.
+Answer Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
+                         bool forced, bool stays) {
     std::uint64_t line = array_.line(entry);
     std::uint64_t address = line << line_shift_;
     const bool dirty = array_.dirty(entry);
@@ -88,8 +87,10 @@ cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_
     written.by = this;
     written.asker = number_;
     Answer accepted = below_.write(written);
-    if (accepted.refused)
-        return accepted.ready;
+    if (accepted.refused) {
+        note_refused(Passing::write, written, accepted);
+        return accepted;
+    }
     note_passed(dirty ? traces::Kind::write_back : traces::Kind::clean_back, written);
     if (dirty) {
         ++counters_.write_backs;
@@ -99,7 +100,7 @@ cycle Cache::write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_
     }
     if (!last_)
         write_backs_.hold({line, t, accepted.ready, Cause::mshrs});
-    return 0;
+    return accepted;
 }
 
 /// A line is about to leave an inclusive cache: so do its copies above, and what they have changed is here.
@@ -142,15 +143,17 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, 
     cycle retry = 0;
     if (!last_ && !forced && (retry = mshrs_.take(t)) != t)
         return Answer::later(retry);
+    bool moved = inclusive_;
     if (inclusive_) [[unlikely]]
         recall(entry);
     if (leaves_with_news(entry)) {
         if (!last_ && !forced && (retry = write_backs_.take(t)) != t)
-            return Answer::later(retry);
+            return Answer::later(retry, moved);
         if (!sends_clean_) {
-            if (retry = write_back(entry, down, down, column, true, forced); retry != 0)
-                return Answer::later(retry);
+            if (const Answer out = write_back(entry, down, down, column, true, forced); out.refused)
+                return Answer::later(out.ready, moved || out.moved);
             array_.set_dirty(entry, false);
+            moved = true;
         }
     }
     Access wanted{line << line_shift_, std::uint32_t{1} << line_shift_, down, column};
@@ -159,8 +162,11 @@ Answer Cache::fill(std::uint64_t line, cycle t, cycle down, std::size_t column, 
     wanted.by = this;
     wanted.asker = number_;
     Answer below = below_.read(wanted);
-    if (below.refused)
+    if (below.refused) {
+        note_refused(Passing::read, wanted, below);
+        below.moved |= moved;
         return below;
+    }
     note_passed(why, wanted);
     if (sends_clean_ && array_.line(entry) != CacheArray::no_line) [[unlikely]]
         write_back(entry, down, down, column, false, true);
@@ -325,8 +331,10 @@ Answer Cache::move_up(const Access& a, CacheArray::Entry entry, std::uint64_t li
         wanted.by = a.by; // who gets it
         wanted.asker = number_;
         answer = below_.read(wanted);
-        if (answer.refused)
+        if (answer.refused) {
+            note_refused(Passing::read, wanted, answer);
             return answer;
+        }
         note_passed(traces::Kind::read, wanted);
         ++counters_.fills;
         mshrs_.hold({line, a.at, answer.ready, answer.from});
@@ -402,8 +410,8 @@ Answer Cache::allocate(const Access& a, std::uint64_t line, bool write, cycle do
         if (inclusive_)
             recall(entry);
         if (leaves_with_news(entry))
-            if (cycle retry = write_back(entry, done, done, a.column, false, a.forced); retry != 0)
-                return Answer::later(retry);
+            if (const Answer out = write_back(entry, done, done, a.column, false, a.forced); out.refused)
+                return Answer::later(out.ready, inclusive_ || out.moved);
         count_useless(entry);
         array_.fill(entry, line);
         note(kind_of_miss(a, write), a.address, a.at, a.column); // nobody below is asked
@@ -442,6 +450,13 @@ void Cache::note_passed(traces::Kind kind, const Access& a) {
     if (attribution_->notes(level_ + 1)) [[unlikely]]
         attribution_->note(level_ + 1, kind, a.address, a.bytes, a.at, a.column,
                            beyond_ ? attribution_->tile() : stream_, Passing::of(a, site_));
+}
+
+/// ... and what was not served, though lines below have moved for it.
+void Cache::note_refused(Passing::Asks asks, const Access& a, const Answer& refused) {
+    if (refused.moved && attribution_->notes(level_ + 1)) [[unlikely]]
+        attribution_->note(level_ + 1, traces::Kind::refused, a.address, a.bytes, a.at, a.column,
+                           beyond_ ? attribution_->tile() : stream_, Passing::of(a, site_, asks));
 }
 
 /// ... and what was here when those below asked.

@@ -25,6 +25,7 @@
 #include "sim/memory/miss_causes.h"
 #include "sim/memory/pool.h"
 #include "sim/memory/prefetcher.h"
+#include "sim/trace/passing.h"
 
 #include <array>
 #include <bit>
@@ -212,8 +213,8 @@ private:
     bool leaves_with_news(CacheArray::Entry e) const {
         return array_.dirty(e) || (sends_clean_ && array_.line(e) != CacheArray::no_line);
     }
-    cycle write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
-                     bool forced, bool stays = false);
+    Answer write_back(CacheArray::Entry entry, cycle t, cycle down, std::size_t column, bool followed,
+                      bool forced, bool stays = false);
     Answer later_of(Answer a, Answer b) const;
     Answer ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t line, cycle done);
     Answer give_right(const Access& a, cycle start);
@@ -242,6 +243,7 @@ private:
                            beyond_ ? attribution_->tile() : stream_, detail);
     }
     void note_passed(traces::Kind kind, const Access& a);
+    void note_refused(Passing::Asks asks, const Access& a, const Answer& refused);
     void note_held(std::uint64_t address, std::uint64_t bytes, cycle t, std::uint32_t what);
     static traces::Kind kind_of_miss(const Access& a, bool write) {
         return a.modify ? traces::Kind::modify : write ? traces::Kind::write : traces::Kind::read;

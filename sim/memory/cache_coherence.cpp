@@ -46,8 +46,10 @@ Answer Cache::ask_right(const Access& a, CacheArray::Entry entry, std::uint64_t 
     right.by = this;
     right.asker = number_;
     const Answer answer = below_.own(right);
-    if (answer.refused)
+    if (answer.refused) {
+        note_refused(Passing::own, right, answer);
         return answer;
+    }
     note_passed(traces::Kind::upgrade, right);
     ++counters_.upgrades;
     mshrs_.hold({line, a.at, answer.ready, answer.from, Pool::What::right});

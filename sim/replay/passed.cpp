@@ -40,6 +40,8 @@ Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t a
         access.by = nullptr;
         access.asker = s.core->l1.number();
         return access.modify ? s.core->words.read(access) : s.core->words.write(access);
+    case traces::Kind::refused:
+        return ask_in_vain(passing.asks(), s, access);
     case traces::Kind::recall:
         s.cache->stand_in(address, passing.has(Passing::changed), !passing.has(Passing::owned));
         break;
@@ -47,6 +49,23 @@ Answer ReplayMachine::pass(const ReplayAction& a, const Seat& s, std::uint64_t a
         pass_word(a, s, address, t);
     }
     return {t, Cause::l1};
+}
+
+/// What was refused in the run.
+Answer ReplayMachine::ask_in_vain(Passing::Asks asks, const Seat& s, Access access) {
+    switch (asks) {
+    case Passing::read:
+        return s.cache->below().read(access);
+    case Passing::write:
+        return s.cache->below().write(access);
+    case Passing::own:
+        return s.cache->below().own(access);
+    default: // a word, not through the L1
+        s.tile->site = {};
+        access.by = nullptr;
+        access.asker = s.core->l1.number();
+        return s.core->words.read(access);
+    }
 }
 
 /// It is there at cycle `t`: each of its lines.
@@ -97,6 +116,7 @@ void ReplayMachine::send_to_memory(const ReplayAction& a, const Seat& s, std::ui
 void ReplayMachine::pass_word(const ReplayAction& a, const Seat& s, std::uint64_t address, cycle t) {
     const unsigned level = Passing(a.detail).level();
     Tile& tile = *s.tile;
+    tile.site = {};
     if (level >= tile_levels_) {
         TileExit& exit = tile.exits[s.number / tile.sharing[tile_levels_ - 1]];
         exit.tell(a.kind == traces::Kind::flush   ? Request::discard

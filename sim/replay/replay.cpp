@@ -46,6 +46,7 @@ Replay::Replay(const Config& config, const traces::Description& about, const Rep
       following_(about.window == machine_.window_cycles() && !machine_.is_memory()),
       eventful_(config.sim.mode == "reference" && !machine_.is_memory()),
       tells_progress_(eventful_ && machine_.first_level() == 0 && is_of(about, config)),
+      repeats_refused_(!eventful_ && !machine_.is_memory() && is_of(about, config)),
       from_zero_(following_ || (machine_.is_memory() && about.window != 0)), clocks_(about.time == "clocks"),
       clock_ps_(wide(config.memory.clock_ps)), cycle_ps_(wide(config.chip.clock_ps)) {}
 
@@ -224,6 +225,12 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         const cycle t = arrive(block.times[i]);
         if (eventful_ && a.kind != traces::Kind::recall) [[unlikely]] // which is found by what follows
             let_events_happen(a, stream, t, acts_[i] + offset_);
+        if (a.refused) [[unlikely]] {
+            if (repeats_refused_)
+                machine_.perform(a, stream, low, std::max(a.size, 1U), 1, t);
+            ++i;
+            continue;
+        }
         std::size_t n = 1;
         while (i + n < end && goes_on_[block.classes[i + n]] == leads_[number])
             ++n;

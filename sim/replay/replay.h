@@ -129,6 +129,7 @@ private:
     bool clocked_, following_;                  // times are cycles; the run's windows are followed
     bool eventful_;                             // the machine is in the reference mode
     bool tells_progress_;                       // ... and the trace's own, of whose cores it is
+    bool repeats_refused_;                      // it is the trace's own, in the fast mode
     bool from_zero_;                            // times are the run's
     bool clocks_;                               // ... or clocks of memory, of which each is
     std::uint64_t clock_ps_, cycle_ps_;         // so many picoseconds, and a cycle

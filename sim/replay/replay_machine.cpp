@@ -162,13 +162,19 @@ void ReplayMachine::serve_all() {
     serve(Beyond::everything);
 }
 
-/// The site of the access at hand, for prefetchers; numbered by its first one in the tile.
+/// The site of the access at hand, for prefetchers; numbered by its first one in the tile that took place.
 void ReplayMachine::note_site(Tile& tile, const ReplayAction& a) {
     tile.site = {};
     if (a.part == traces::Part::aside || a.site == 0)
         return;
     SiteNumbers& numbers = sites_[tile.number];
-    tile.site.number = numbers.try_emplace(a.site, static_cast<std::uint32_t>(numbers.size())).first->second;
+    const auto next = static_cast<std::uint32_t>(numbers.size());
+    if (a.refused) {
+        const auto found = numbers.find(a.site);
+        tile.site.number = found != numbers.end() ? found->second : next;
+    } else {
+        tile.site.number = numbers.try_emplace(a.site, next).first->second;
+    }
     tile.site.first = a.part == traces::Part::operation;
 }
 
@@ -197,6 +203,7 @@ Answer ReplayMachine::perform_other(const ReplayAction& a, const Seat& s, std::u
     }
     case What::prefetch:
         ++s.core->l1.counters().busy_cycles;
+        s.tile->site = {};
         s.core->l1.prefetch(address, t, a.column);
         break;
     case What::discard:

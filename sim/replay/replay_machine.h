@@ -17,6 +17,7 @@
 #include "sim/machine/asides.h"
 #include "sim/machine/beyond.h"
 #include "sim/machine/report.h"
+#include "sim/trace/passing.h"
 #include "sim/trace/tile_progress.h"
 #include "traces/description.h"
 #include "traces/reference.h"
@@ -48,6 +49,7 @@ struct ReplayAction {
     traces::Kind kind = traces::Kind::read;
     traces::Part part = traces::Part::operation;
     bool modifies = false; // what is read is written, in the L1
+    bool refused = false;  // in the run
     std::uint16_t structure = 0;
     std::uint32_t size = 0;
     std::size_t column = 0;
@@ -142,6 +144,7 @@ private:
     Answer perform_other(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
                          cycle t);
     Answer pass(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes, cycle t);
+    static Answer ask_in_vain(Passing::Asks asks, const Seat& s, Access access);
     void settle_stand_ins();
     void give_to_memory(const ReplayAction& a, const Seat& s, std::uint64_t address, std::uint32_t bytes,
                         cycle t);

@@ -1,6 +1,7 @@
 // What classes of references do, and what they count under.
 #include "sim/replay/replay.h"
 
+#include "sim/trace/passing.h"
 #include "traces/error.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,14 @@ namespace sim {
 namespace {
 
 using What = ReplayAction::What;
+
+/// What a core asked for in vain.
+What what_of(Passing::Asks asks) {
+    return asks == Passing::read     ? What::read
+           : asks == Passing::write  ? What::write
+           : asks == Passing::change ? What::change
+                                     : What::nothing;
+}
 
 What what_of(const traces::Class& c, const ReplayOptions& options) {
     const bool aside = c.part == traces::Part::aside;
@@ -33,6 +42,8 @@ What what_of(const traces::Class& c, const ReplayOptions& options) {
         return What::invalidate;
     case traces::Kind::invalidate_all:
         return What::invalidate_all;
+    case traces::Kind::refused:
+        return c.detail == 0 ? What::nothing : what_of(Passing(c.detail).asks());
     default:
         return What::nothing;
     }
@@ -94,6 +105,7 @@ void ReplayVocabulary::learn(const std::vector<traces::Class>& table,
                             "version recorded it; record it again",
                             level_));
         a.part = c.part;
+        a.refused = c.kind == traces::Kind::refused;
         a.modifies = c.kind == traces::Kind::modify && a.what == What::read;
         a.size = std::max(c.size, 1U);
         a.structure = c.structure;

@@ -1,7 +1,6 @@
 // A trace of what cores asked for, replayed on the machine that it is of, gives all that the run's caches,
 // network, directory and memory counted, to the last one.
-#include "sim/replay/replay_report.h"
-#include "tests/sim/replay/workload.h"
+#include "tests/sim/replay/compared.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,25 +13,8 @@
 namespace sim {
 namespace {
 
-ReplayResult replay(const std::string& trace, const Config& config) {
-    traces::Reader reader(traces::memory_source(trace, "trace"));
-    Replay replay(config, reader.description(), {});
-    traces::Block block;
-    while (reader.next(block))
-        replay.add(block);
-    EXPECT_TRUE(reader.complete());
-    return replay.finish(reader.description());
-}
-
-/// The first counts that differ, in words.
-std::string differences(const std::vector<Comparison>& all) {
-    std::string out;
-    for (const Comparison& c : all)
-        if (c.replayed != c.run && out.size() < 1500)
-            out += c.part + " " + c.counter + ": " + std::to_string(c.replayed) + ", the run had " +
-                   std::to_string(c.run) + "\n";
-    return out;
-}
+using test::differences;
+using test::replay;
 
 std::string machine(const std::string& name) {
     return std::string(RAZOR_SOURCE_DIR "/configs/machines/") + name + ".toml";
@@ -300,6 +282,19 @@ INSTANTIATE_TEST_SUITE_P(
              with(two_by_two,
                   {"coherence.plain=directory", "l2.inclusion=inclusive", "coherence.directory_entries=256",
                    "sim.quantum=1000", "memory.controller=queued"})},
+        // Of several levels below the L1s, all but the last may refuse what they have made room for.
+        Case{"ThreeLevels", "tiny", {"l3.size_bytes=65536", "l3.share=tile"}},
+        Case{"FourLevels",
+             "tiny",
+             {"l2.size_bytes=8192", "l2.share=core", "l2.mshrs=2", "l3.size_bytes=32768", "l3.share=tile",
+              "l3.mshrs=2", "l4.size_bytes=131072", "l4.share=tile", "l1.mshrs=4"}},
+        Case{"InclusiveLevels",
+             "tiny",
+             {"l2.size_bytes=16384", "l2.inclusion=inclusive", "l2.write_back_buffer=1", "l2.mshrs=1",
+              "l3.size_bytes=65536", "l3.inclusion=inclusive", "l3.share=tile"}},
+        Case{"CoherentLevels", "tiny",
+             with(two_by_two, {"coherence.plain=directory", "l2.inclusion=inclusive", "l2.mshrs=1",
+                               "l3.size_bytes=65536", "l3.inclusion=inclusive", "l3.share=tile"})},
         Case{"Copernicus", "copernicus", {"chip.tiles=3"}}, Case{"Niagara", "niagara-like", {}},
         Case{"Larrabee", "larrabee-like", {"chip.tiles=4"}}, Case{"Xeon", "xeon-x5355-2s", {}},
         Case{"Zen4", "zen4-2c", {}}, Case{"GoldenCove", "golden-cove-2c", {}}),
