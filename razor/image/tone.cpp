@@ -49,13 +49,18 @@ float agx_curve(float light) {
     return glm::clamp(shown, 0.0F, 1.0F);
 }
 
-glm::vec3 agx(glm::vec3 light) {
+/// What filters make less than black is black, and so is what is no number; squares stay finite.
+glm::vec3 shown(glm::vec3 light) {
     for (int c = 0; c < 3; ++c)
-        light[c] = light[c] > 0 ? std::min(light[c], 1e9F) : 0; // also of what is no number
+        light[c] = light[c] > 0 ? std::min(light[c], 1e9F) : 0;
+    return light;
+}
+
+glm::vec3 agx(glm::vec3 light) {
     light = light * agx_kept + glm::dot(agx_mean, light);
     const glm::vec3 drawn(agx_curve(light.x), agx_curve(light.y), agx_curve(light.z));
-    const glm::vec3 shown = (drawn - glm::dot(agx_mean, drawn)) / agx_kept;
-    return glm::pow(glm::clamp(shown, 0.0F, 1.0F), glm::vec3(2.2F)); // what a display makes of it
+    const glm::vec3 seen = (drawn - glm::dot(agx_mean, drawn)) / agx_kept;
+    return glm::pow(glm::clamp(seen, 0.0F, 1.0F), glm::vec3(2.2F)); // what a display makes of it
 }
 
 } // namespace
@@ -64,9 +69,9 @@ glm::vec3 display_colour(const glm::vec3& light, const Tone& tone) {
     glm::vec3 colour = light * std::exp2(tone.exposure);
     if (tone.curve == ToneCurve::srgb)
         return colour;
+    colour = shown(colour);
     if (tone.curve == ToneCurve::agx)
         return agx(colour);
-    colour = glm::min(colour, glm::vec3(1e9F)); // squares stay finite
     return glm::clamp(out_of_curve * film_curve(into_curve * colour), 0.0F, 1.0F);
 }
 

@@ -117,6 +117,12 @@ TEST(Tone, CurvesKeepToTheirLimits) {
         }
         EXPECT_EQ(shown(glm::vec3(0.1F), curve, 2), shown(glm::vec3(0.4F), curve));
     }
+    // What filters make less than black is black.
+    for (const ToneCurve curve : {ToneCurve::aces, ToneCurve::agx})
+        for (const float below : {-1e-3F, -0.3F, -4.0F, -inf, nan}) {
+            EXPECT_EQ(shown(glm::vec3(below), curve), shown(glm::vec3(0), curve)) << below;
+            EXPECT_EQ(shown({below, 0.4F, below}, curve), shown({0, 0.4F, 0}, curve)) << below;
+        }
     // Between its ends it rises.
     const auto grey = [](int step) {
         return glm::vec3(0.18F * std::exp2(static_cast<float>(step) * 0.1F - 9.8F));
