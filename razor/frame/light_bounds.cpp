@@ -1,5 +1,7 @@
 #include "razor/frame/light_bounds.h"
 
+#include "razor/frame/unit_vector.h"
+
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -64,7 +66,7 @@ LightBounds bounds_of(const Light& l, const dvec3& origin) {
         return b;
     }
     case LightKind::disk: {
-        const dvec3 normal = glm::normalize(l.direction);
+        const dvec3 normal = unit_vector(l.direction);
         const dvec3 reach = l.radius * glm::sqrt(glm::max(dvec3(1) - normal * normal, dvec3(0)));
         b.box.add(at - reach);
         b.box.add(at + reach);
@@ -79,7 +81,7 @@ LightBounds bounds_of(const Light& l, const dvec3& origin) {
         return b;
     case LightKind::spot:
         b.box.add(at);
-        b.normals = {glm::normalize(l.direction), glm::radians(l.cone_angle - l.cone_delta)};
+        b.normals = {unit_vector(l.direction), glm::radians(l.cone_angle - l.cone_delta)};
         b.emission = glm::radians(l.cone_delta);
         return b;
     case LightKind::point:

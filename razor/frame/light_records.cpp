@@ -1,5 +1,7 @@
 #include "razor/frame/light_records.h"
 
+#include "razor/frame/unit_vector.h"
+
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -21,11 +23,6 @@ void span_plane(const dvec3& n, dvec3& u, dvec3& v) {
                                                  : dvec3(0, 0, 1);
     u = glm::normalize(glm::cross(other, n));
     v = glm::cross(n, u);
-}
-
-/// Unit also where squares of its components are too small or too large.
-dvec3 unit(const dvec3& v) {
-    return glm::normalize(v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
 }
 
 /// 1 - cos, exact also for small angles.
@@ -51,7 +48,7 @@ void fill_shape(const Light& light, const dvec3& origin, LightRecord& r, double&
         break;
     }
     case LightKind::disk: {
-        const dvec3 normal = unit(light.direction);
+        const dvec3 normal = unit_vector(light.direction);
         dvec3 u, v;
         span_plane(normal, u, v);
         domain = factor = pi * light.radius * light.radius;
@@ -76,7 +73,7 @@ void fill_shape(const Light& light, const dvec3& origin, LightRecord& r, double&
         const double end = versine(glm::radians(light.cone_angle));
         const double whole = versine(glm::radians(light.cone_angle - light.cone_delta));
         r.shape = light_point;
-        put(r.normal, unit(light.direction));
+        put(r.normal, unit_vector(light.direction));
         r.cone_end = static_cast<float>(end);
         r.cone_scale = static_cast<float>(1 / std::max(end - whole, 1e-6 * end)); // a sharp edge is nearly so
         break;
@@ -84,7 +81,7 @@ void fill_shape(const Light& light, const dvec3& origin, LightRecord& r, double&
     case LightKind::directional: {
         const double angle = glm::radians(light.angular_radius);
         r.shape = light_directional;
-        put(r.normal, -unit(light.direction));
+        put(r.normal, -unit_vector(light.direction));
         r.versine = static_cast<float>(versine(angle));
         domain = 2 * pi * versine(angle);
         // The irradiance E of a uniform cone facing it is pi L sin^2, and 2 pi (1 - cos) its solid angle.

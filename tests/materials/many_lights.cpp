@@ -132,6 +132,19 @@ double angle_between(const float (&a)[3], const float (&b)[3]) {
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
+/// Also ones whose squares are too small or too large.
+TEST(ManyLights, DirectionsHaveAnyLength) {
+    for (const Light& l : lights(40, 3))
+        for (const double length : {1e-300, 1e-180, 3.0, 1e200}) {
+            Light other = l;
+            other.direction *= length;
+            const LightBounds a = bounds_of(l, {1, 2, 3}), b = bounds_of(other, {1, 2, 3});
+            EXPECT_LT(glm::distance(a.normals.axis, b.normals.axis), 1e-12) << length;
+            EXPECT_LT(glm::distance(a.box.low, b.box.low) + glm::distance(a.box.high, b.box.high), 1e-12);
+            EXPECT_EQ(a.normals.angle, b.normals.angle);
+        }
+}
+
 TEST(ManyLights, TreesHoldAllLights) {
     for (const int count : {1, 2, 7, 300}) {
         const std::vector<Light> all = lights(count, 3);
