@@ -111,10 +111,10 @@ public:
 
     /// Empties everything a frame builds, so that it can be rendered again. Topology pages stay.
     void reset();
-    /// reset(), for the same meshes in other shapes and places (also other instances, if their number stays),
-    /// before another camera or under another light; settings stay. What is rendered then is, bit for bit,
-    /// what a new frame would. False where meshes or number of instances are others, and then, as where it
-    /// throws UserError as the constructor does, nothing may be rendered.
+    /// reset(), for the same meshes in other shapes and places (also other instances, if one after the other
+    /// is of the mesh that was there), before another camera or under another light; settings stay. What is
+    /// rendered then is, bit for bit, what a new frame would. False where meshes or instances are others, and
+    /// then, as where it throws UserError as the constructor does, nothing may be rendered.
     bool pose(const Scene& scene);
     /// The same, where only these changes, camera and lights make the scene another one than that of the last
     /// pose, or of the constructor: nothing else is looked at. After an exception or false the next pose may

@@ -432,7 +432,9 @@ void Frame::Impl::fill_view(const Scene& scene) {
 bool Frame::Impl::pose(const Scene& scene) {
     index.reset();
     SceneGeometry posed = locate_scene(scene, drawn);
-    if (posed.instances.size() != geometry.instances.size() || scene.lights.size() > most_lights)
+    const auto same_mesh = [](const auto& a, const auto& b) { return a.mesh == b.mesh; };
+    if (!std::ranges::equal(posed.instances, geometry.instances, same_mesh) ||
+        scene.lights.size() > most_lights)
         return false;
     geometry = std::move(posed);
     fill_instances(scene);

@@ -199,6 +199,21 @@ TEST(Following, SkippedAndImpossibleMomentsLeaveNothing) {
     EXPECT_FALSE(frame.pose(scene, {{}, {1}}));
 }
 
+/// As many instances, but of other meshes in other places, need other tables.
+TEST(Following, InstancesOfOtherMeshesAreAnotherFrame) {
+    Scene scene = still_scene(9, 1);
+    Frame frame(scene, {.moves = true});
+    std::vector<Placement>& all = scene.graph.groups[0].placements;
+    const auto other = std::find_if(all.begin(), all.end(), [&](const Placement& p) {
+        return p.mesh >= 0 && all[0].mesh >= 0 && p.mesh != all[0].mesh;
+    });
+    ASSERT_NE(other, all.end());
+    std::swap(all[0].mesh, other->mesh);
+    EXPECT_FALSE(frame.pose(scene));
+    std::swap(all[0].mesh, other->mesh);
+    EXPECT_TRUE(frame.pose(scene));
+}
+
 /// Of many that stand still nothing is looked at: what is touched does not depend on how many there are.
 TEST(Following, TouchesWhatMovesAlone) {
     std::vector<Touched> all;
