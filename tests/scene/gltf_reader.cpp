@@ -49,6 +49,24 @@ TEST(GltfReader, ReadsTheSameFromTextBinaryAndBesideIt) {
     }
 }
 
+/// By one to four bytes, in a file of its own or in the text; but not shorter.
+TEST(GltfReader, BuffersMayBeLongerThanTheyState) {
+    const TemporaryFolder folder;
+    const GltfWriter w = triangle();
+    for (const std::size_t more : {1U, 2U, 3U, 4U}) {
+        folder.file("long.bin", w.bytes + std::string(more, 'x'));
+        GltfWriter longer = w;
+        longer.bytes += std::string(more, 'x');
+        GltfWriter::Json text = GltfWriter::Json::parse(longer.text());
+        text["buffers"][0]["byteLength"] = w.bytes.size();
+        for (const auto& file :
+             {folder.file("a.gltf", w.text_with_buffer_file("long.bin")), folder.file("b.gltf", text.dump())})
+            EXPECT_EQ(read_gltf(file, "", 0).cage->points, triangle_points) << file << ' ' << more;
+    }
+    folder.file("short.bin", w.bytes.substr(1));
+    EXPECT_THROW(read_gltf(folder.file("c.gltf", w.text_with_buffer_file("short.bin")), "", 0), UserError);
+}
+
 // Two triangles of a square that a seam keeps apart along the diagonal at one end, normals at the other.
 TEST(GltfReader, SeamsAreJoinedAndStaySeamsOfTexture) {
     GltfWriter w;
@@ -132,6 +150,16 @@ TEST(GltfReader, StoredTypesStridesAndSparseParts) {
         {"indices", {{"bufferView", w.view<std::uint16_t>({2})}, {"componentType", 5123}}},
         {"values", {{"bufferView", w.view<float>({7, 8, 9})}}}};
     EXPECT_EQ(read(w).points, (Points{{0, 0, 0}, {1, 0, 0}, {7, 8, 9}}));
+    // Of zeros that are stored nowhere.
+    GltfWriter::Json& accessor = w.json["accessors"].back();
+    accessor.erase("bufferView");
+    accessor.erase("byteOffset");
+    accessor["sparse"]["count"] = 2;
+    accessor["sparse"]["indices"]["bufferView"] = w.view<std::uint16_t>({1, 2});
+    accessor["sparse"]["values"]["bufferView"] = w.view<float>({1, 0, 0, 7, 8, 9});
+    EXPECT_EQ(read(w).points, (Points{{0, 0, 0}, {1, 0, 0}, {7, 8, 9}}));
+    accessor["count"] = 100000000; // more than anybody means
+    EXPECT_THROW(read(w), UserError);
 }
 
 TEST(GltfReader, ImagesAndMaterialsDoNotMatter) {
@@ -156,6 +184,7 @@ TEST(GltfReader, RefusesClearly) {
     const std::pair<Change, const char*> cases[] = {
         {[](GltfWriter& w) { w.json["asset"]["version"] = "1.0"; }, "glTF version 1.0"},
         {[](GltfWriter& w) { w.json.erase("asset"); }, "states no glTF version"},
+        {[](GltfWriter& w) { w.json["asset"]["minVersion"] = "2.1"; }, "needs a reader of glTF 2.1"},
         {[](GltfWriter& w) { w.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
          "needs the extension KHR_draco_mesh_compression, which is not read; export it without compression"},
         {[](GltfWriter& w) { w.json["extensionsRequired"] = {"EXT_meshopt_compression"}; }, "without compr"},

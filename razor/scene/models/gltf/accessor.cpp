@@ -57,6 +57,9 @@ double number_at(const unsigned char* bytes, int component, bool normalized) {
 }
 
 /// Elements in a buffer, all of them inside.
+/// That a sparse accessor may begin with, which has no data that would say how many there are.
+constexpr std::size_t most_zeros = std::size_t{1} << 24U;
+
 struct Elements {
     const unsigned char* begin = nullptr;
     std::size_t stride = 0;
@@ -136,8 +139,8 @@ std::vector<double> read_numbers(const Document& document, int number, int width
             for (std::size_t c = 0; c < components; ++c)
                 numbers.push_back(number_at(elements.begin + i * elements.stride + c * size,
                                             accessor.component, accessor.normalized));
-    } else if (count != 0) {
-        numbers.resize(count * components);
+    } else if (count != 0 || (accessor.sparse && accessor.count <= most_zeros)) { // glTF 2.0, 3.6.2.3
+        numbers.resize(accessor.count * components);
     } else {
         document.fail(fmt::format("{} have no data; export it anew, without compression", what));
     }

@@ -124,10 +124,40 @@ void summarise(const nlohmann::json& text, Container& container) {
     if (text.contains("asset") && text["asset"].is_object() && text["asset"].contains("version") &&
         text["asset"]["version"].is_string())
         container.version = text["asset"]["version"].get<std::string>();
+    if (const auto asset = text.find("asset"); asset != text.end() && asset->is_object())
+        if (const auto least = asset->find("minVersion"); least != asset->end() && least->is_string())
+            container.least_version = least->get<std::string>();
     for (const nlohmann::json& name : list(text, "extensionsRequired"))
         container.required.push_back(name.is_string() ? name.get<std::string>() : name.dump());
     for (const nlohmann::json& mesh : list(text, "meshes"))
         container.primitives += list(mesh, "primitives").size();
+}
+
+/// Bytes that base64 text stands for (RFC 4648, 4).
+std::size_t decoded_size(std::string_view text) {
+    while (text.ends_with('='))
+        text.remove_suffix(1);
+    return text.size() * 3 / 4;
+}
+
+/// Buffers may be longer than they state (glTF 2.0, 3.6.1), which the parser does not know.
+void allow_longer_buffers(nlohmann::json& text, Container& container) {
+    const auto found = text.find("buffers");
+    if (found == text.end() || !found->is_array())
+        return;
+    constexpr std::string_view base64 = ";base64,";
+    for (nlohmann::json& buffer : *found) {
+        if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string() ||
+            !buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned())
+            continue;
+        const auto& uri = buffer["uri"].get_ref<const std::string&>();
+        const auto stated = buffer["byteLength"].get<std::size_t>();
+        if (!uri.starts_with("data:"))
+            container.lengths.push_back(stated);
+        else if (const std::size_t at = uri.find(base64); at != uri.npos)
+            buffer["byteLength"] =
+                std::max(stated, decoded_size(std::string_view(uri).substr(at + base64.size())));
+    }
 }
 
 /// Takes cameras and extensions out of the text.
@@ -183,6 +213,7 @@ void sift(std::string_view text, std::string_view file, Container& container) {
             fail(file, "holds no JSON object; give a glTF file");
         TypeCheck(sifted, file).run();
         summarise(sifted, container);
+        allow_longer_buffers(sifted, container);
         json apart = json::object();
         for (const std::string_view list : of_appearance)
             if (const auto found = sifted.find(list); found != sifted.end()) {

@@ -17,6 +17,8 @@ struct Container {
     std::string_view binary; // of the first buffer of a .glb, part of the bytes read
     bool is_binary = false;
     std::string version;               // of glTF, as the file states it
+    std::string least_version;         // that readers must know; empty: the same
+    std::vector<std::size_t> lengths;  // stated, of buffers in files of their own
     std::vector<std::string> required; // extensions
     std::size_t primitives = 0;        // of all meshes
 };

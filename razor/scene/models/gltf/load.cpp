@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 
 namespace razor::gltf {
 namespace {
@@ -24,9 +25,15 @@ constexpr std::array<std::string_view, 12> harmless{
     "EXT_materials_",        "MSFT_texture_",  "MSFT_packing_", "ADOBE_materials_",
 };
 
-bool is_beside(const std::string& path, void* folder) {
+/// Where buffers are, and how long they are stated to be, one after the other.
+struct Beside {
+    std::string folder;
+    std::span<const std::size_t> lengths;
+};
+
+bool is_beside(const std::string& path, void* beside) {
     std::error_code error;
-    return path.starts_with(*static_cast<const std::string*>(folder) + "/") &&
+    return path.starts_with(static_cast<const Beside*>(beside)->folder + "/") &&
            std::filesystem::is_regular_file(path, error);
 }
 
@@ -34,9 +41,15 @@ std::string same_path(const std::string& path, void*) {
     return path;
 }
 
-bool read_bytes(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
+bool read_bytes(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
+                void* beside) {
+    auto& lengths = static_cast<Beside*>(beside)->lengths;
     try {
-        const std::string text = read_text_file(path, "a buffer of a glTF file");
+        std::string text = read_text_file(path, "a buffer of a glTF file");
+        if (!lengths.empty()) {
+            text.resize(std::min(text.size(), lengths.front())); // the parser wants no more than is stated
+            lengths = lengths.subspan(1);
+        }
         bytes->assign(text.begin(), text.end());
         return true;
     } catch (const UserError& mistake) {
@@ -66,6 +79,9 @@ void check(const Container& container, const Document& document) {
         document.fail(container.version.empty() ? "states no glTF version; export it as glTF 2.0"
                                                 : fmt::format("is of glTF version {}; export it as glTF 2.0",
                                                               printable(container.version)));
+    if (!container.least_version.empty() && container.least_version != "2.0")
+        document.fail(fmt::format("needs a reader of glTF {}; export it as glTF 2.0",
+                                  printable(container.least_version)));
     for (const std::string& name : container.required) {
         const auto begins = [&](std::string_view prefix) { return name.starts_with(prefix); };
         if (std::none_of(harmless.begin(), harmless.end(), begins))
@@ -79,9 +95,10 @@ void check(const Container& container, const Document& document) {
 
 tinygltf::Model parse(const Container& container, const std::filesystem::path& path,
                       const Document& document) {
-    std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+    Beside beside{path.has_parent_path() ? path.parent_path().string() : ".", container.lengths};
+    const std::string& folder = beside.folder;
     tinygltf::TinyGLTF parser;
-    parser.SetFsCallbacks({is_beside, same_path, read_bytes, write_nothing, &folder});
+    parser.SetFsCallbacks({is_beside, same_path, read_bytes, write_nothing, &beside});
     parser.SetImageLoader(ignore_image, nullptr);
     tinygltf::Model model;
     std::string error, warning;
