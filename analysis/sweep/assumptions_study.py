@@ -11,16 +11,15 @@
     chip.tiles = 1
     [full]                                                 # takes the place of these where --full is given
 """
-import functools
 import hashlib
 import html
 import io
 import json
 import os
-import subprocess
 import tomllib
 
 import plot
+import simulation
 from simulation import Mistake
 
 # Settings of the frame, and the options of razor-sim run that make them.
@@ -88,15 +87,6 @@ def arguments(path, study):
     return own, more
 
 
-def said(command):
-    return subprocess.run(command, capture_output=True, check=False).stdout
-
-
-@functools.cache
-def version(program):
-    return said([program, "--version"])
-
-
 class Kept:
     """Results of runs in a folder, each in a file named by all that it depends on: what is there is not run again."""
 
@@ -124,15 +114,9 @@ class Kept:
 
     @staticmethod
     def name(program, machine, settings, more):
-        digest = hashlib.sha256()
-        overrides = [word for setting in settings for word in ("-g", setting)]
-        digest.update(version(program))
-        digest.update(said([program, "print-config", "--machine", machine, *overrides]))
-        digest.update("\0".join(more).encode())
-        for path in (more[i + 1] for i, word in enumerate(more) if word == "--scene"):
-            with open(path, "rb") as file:
-                digest.update(file.read())
-        return digest.hexdigest()[:32]
+        scenes = tuple(more[i + 1] for i, word in enumerate(more) if word == "--scene")
+        inputs = simulation.digest_of_inputs(program, machine, *scenes)
+        return hashlib.sha256(json.dumps([inputs, settings, more]).encode()).hexdigest()[:32]
 
 
 def write_page(path, title, lines, csv, top):

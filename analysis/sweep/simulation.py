@@ -79,15 +79,15 @@ def run(program, machine, settings, more, folder):
 
 
 @functools.lru_cache(maxsize=None)
-def digest_of_inputs(program, machine, scene):
+def digest_of_inputs(program, machine, *scenes):
     """Of what decides a run's figures besides its options: the program's bytes, the machine with all that it inherits, the
-    scene's file. (Models that a scene names are not looked into.)"""
+    scenes' files. (Models that a scene names are not looked into.)"""
     resolved = subprocess.run([program, "print-config", "--machine", machine], capture_output=True, check=False)
     if resolved.returncode != 0:
         raise Mistake(resolved.stderr.decode(errors="replace").strip())
     digest = hashlib.sha256(resolved.stdout)
     try:
-        for path in (shutil.which(program), scene):
+        for path in (shutil.which(program), *scenes):
             with open(path, "rb") as file:
                 digest.update(hashlib.sha256(file.read()).digest())
     except OSError as error:

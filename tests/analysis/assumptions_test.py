@@ -107,9 +107,13 @@ class Assumptions(unittest.TestCase):
         self.write("m.toml", "x = 2\n")
         self.study()
         self.assertEqual(len(self.text("begun").splitlines()), 2 * runs + 2)
+        # Another program of the same name and version is another.
+        self.write("sim", SIMULATOR + "# built anew\n")
+        self.study()
+        self.assertEqual(len(self.text("begun").splitlines()), 3 * runs + 2)
         # The full size.
         self.study("--full")
-        last = self.text("begun").splitlines()[2 * runs + 2:]
+        last = self.text("begun").splitlines()[3 * runs + 2:]
         self.assertEqual(len(last), 2 * 5 + 2 * 6)
         self.assertTrue(all("--size 16x16" in line for line in last))
 
