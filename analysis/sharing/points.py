@@ -42,7 +42,7 @@ def bytes_of(text):
 
 
 def sizes_of(text):
-    """'256KiB..8MiB' (doubling) or a list with commas."""
+    """'256KiB..8MiB' (doubling) or a list with commas; each once, the smallest first."""
     if ".." in text:
         first, last = (bytes_of(part) for part in text.split("..", 1))
         out = [first]
@@ -51,7 +51,7 @@ def sizes_of(text):
         if last < first:
             raise Mistake(f"'{text}' ends before it begins; write for example 256KiB..8MiB")
         return out
-    return [bytes_of(part) for part in text.split(",")]
+    return sorted({bytes_of(part) for part in text.split(",")})
 
 
 def name_of(size):
@@ -65,6 +65,9 @@ def numbers_of(option, text, least=0):
         out = []
     if not out or min(out) < least:
         raise Mistake(f"{option} '{text}': give whole numbers from {least}, with commas")
+    twice = [n for i, n in enumerate(out) if n in out[:i]]
+    if twice:
+        raise Mistake(f"{option} '{text}': {twice[0]} is given twice; give each number once")
     return out
 
 

@@ -142,7 +142,9 @@ class Studies(unittest.TestCase):
 
     def test_mistakes(self):
         for program, options, words in (("simulated.py", ("--l2", "3kb"), "no size of a cache"), ("simulated.py", ("--l2", "2MiB..1MiB"), "ends before"),
-                                        ("simulated.py", ("--seeds", "a"), "--seeds 'a'"), ("simulated.py", ("--crop", "64"), "WIDTHxHEIGHT"),
+                                        ("simulated.py", ("--seeds", "a"), "--seeds 'a'"),
+                                        ("simulated.py", ("--seeds", "1,2,1"), "1 is given twice; give each number once"),
+                                        ("simulated.py", ("--crop", "64"), "WIDTHxHEIGHT"),
                                         ("simulated.py", ("--crop", "2048x16"), "is no part of"), ("simulated.py", ("--jobs", "0"), "--jobs 0"),
                                         ("simulated.py", ("--output", "a.pdf"), ".svg or .png"), ("simulated.py", ("--lod", "x"), "--help"),
                                         ("discard.py", ("--memory", "4"), "no size of a cache"), ("discard.py", ("--json", "/no/where"), "folder")):
@@ -150,6 +152,13 @@ class Studies(unittest.TestCase):
             self.assertEqual(len(lines), 1, lines)
             self.assertIn(words, lines[0])
             self.assertEqual(self.called(), [])
+
+    def test_sizes_are_in_order(self):
+        self.assertEqual(points.sizes_of("4MiB,512KiB,1024KiB,1MiB"), [512 << 10, 1 << 20, 4 << 20])
+        self.assertEqual(points.sizes_of("256KiB..1MiB"), [256 << 10, 512 << 10, 1 << 20])
+        said = {self.study("simulated.py", "--l2", sizes, "--seeds", "1,2,3").stdout for sizes in ("512KiB,2MiB,4MiB", "4MiB,512KiB,2MiB,512KiB")}
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("trees of nobody become cheaper than one for all", said.pop())
 
     def test_crossings(self):
         def runs(*values):
