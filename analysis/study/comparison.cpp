@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -120,7 +121,7 @@ Curve curve_of(const std::vector<CollectedPoint>& points, const std::vector<std:
             line = lines.insert(line, {name, {}});
         line->second.push_back({*x, y});
     }
-    double low = 0, high = 0;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
     for (auto& [name, marks] : lines) {
         std::stable_sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
         LineChart::Series& series = out.chart.series.emplace_back();
@@ -128,7 +129,7 @@ Curve curve_of(const std::vector<CollectedPoint>& points, const std::vector<std:
         for (const Mark& mark : marks) {
             series.points.emplace_back(mark.x, mark.y.median);
             series.errors.push_back(std::max(mark.y.most - mark.y.median, mark.y.median - mark.y.least));
-            low = high > 0 ? std::min(low, mark.x) : mark.x;
+            low = std::min(low, mark.x);
             high = std::max(high, mark.x);
         }
     }

@@ -22,8 +22,8 @@ std::optional<std::pair<Value, Value>> extremes(std::span<const Response> points
             continue;
         }
         const auto number = number_of(value), low = number_of(out->first), high = number_of(out->second);
-        if (!number || !low || !high)
-            out->second = value;
+        if (!number || !low || !high) // of words, the first met and the last one that is another
+            out->second = value != out->first ? value : out->second;
         else if (*number < *low)
             out->first = value;
         else if (*number > *high)

@@ -163,6 +163,43 @@ TEST_F(StudyRatios, MoreMayBeBetter) {
               std::string::npos);
 }
 
+// Of words the first and the last that is another, though points come back to the first.
+TEST(StudySensitivity, WordsMayComeBackToTheFirst) {
+    std::vector<Settings> settings;
+    for (const auto& [lod, samples] :
+         std::vector<std::pair<const char*, std::int64_t>>{{"x", 1}, {"y", 1}, {"z", 1}, {"z", 2}, {"x", 2}})
+        settings.push_back({{"lod", std::string(lod)}, {"samples", samples}});
+    std::vector<Response> responses;
+    for (std::size_t i = 0; i < settings.size(); ++i)
+        responses.push_back({&settings[i], spread_of(std::vector{static_cast<double>(i + 1)})});
+    const std::vector<Sensitivity> found = sensitivities(responses, {"lod"});
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(plain_text(found[0].from) + plain_text(found[0].to), "xz");
+    EXPECT_EQ(found[0].ratio.count, 2U);
+    EXPECT_DOUBLE_EQ(found[0].ratio.most, 3);
+    EXPECT_DOUBLE_EQ(found[0].ratio.least, 0.8);
+}
+
+// A value that has no logarithm leaves the axis as it is, wherever among the points it comes.
+TEST(StudyCurve, IsLogarithmicOnlyWhereAllValuesArePositive) {
+    const auto curve = [](const std::vector<double>& values) {
+        std::vector<CollectedPoint> points;
+        for (const double x : values) {
+            CollectedPoint& point = points.emplace_back();
+            point.point.settings["x"] = x;
+            point.result.emplace();
+            point.result->values["y"] = {1};
+        }
+        return curve_of(points, {"x"}, {"x", "y"}, "y").chart;
+    };
+    EXPECT_TRUE(curve({8, 1, 2}).x.logarithmic);
+    EXPECT_FALSE(curve({3, 1, 2}).x.logarithmic);
+    EXPECT_FALSE(curve({0, 1, 8}).x.logarithmic);
+    EXPECT_FALSE(curve({8, 0, 1}).x.logarithmic);
+    EXPECT_FALSE(curve({-4, 0, 1, 8}).x.logarithmic);
+    EXPECT_FALSE(curve({}).x.logarithmic);
+}
+
 // Bars begin at 1 and end at the median, to the side of what it is.
 TEST(RatioChart, BarsReachFromOneToTheMedian) {
     const RatioChart chart{"cycles", {{"less", 0.5, 0.4, 0.6, false}, {"more", 2, 1.5, 2.5, true}}};
