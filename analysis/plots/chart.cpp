@@ -29,11 +29,6 @@ private:
     double low_, span_, from_, to_;
 };
 
-/// Texts cut to what fits beside a chart.
-std::string cut(const std::string& text, std::size_t most) {
-    return text.size() <= most ? text : text.substr(0, most - 3) + "...";
-}
-
 void legend(Svg& svg, const std::vector<std::string>& names, double x, double y) {
     for (std::size_t i = 0; i < names.size(); ++i) {
         svg.rectangle(x, y + static_cast<double>(i) * 17, 11, 11, colour(i));

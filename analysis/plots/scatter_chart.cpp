@@ -73,7 +73,7 @@ std::vector<std::string> legend_lines(std::string_view name) {
     while (name.size() > most) {
         const std::size_t comma = name.rfind(", ", most - 1);
         if (comma == std::string_view::npos) {
-            lines.push_back(std::string(name.substr(0, most - 3)) + "...");
+            lines.push_back(cut(name, most));
             return lines;
         }
         lines.emplace_back(name.substr(0, comma + 1));

@@ -56,6 +56,15 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
+std::string cut(std::string_view text, std::size_t most) {
+    if (text.size() <= most)
+        return std::string(text);
+    std::size_t end = most - 3;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) // goes on with a character
+        --end;
+    return std::string(text.substr(0, end)) + "...";
+}
+
 void Svg::line(double x1, double y1, double x2, double y2, std::string_view colour, double width) {
     shapes_.push_back({Shape::line, {{x1, y1}, {x2, y2}}, std::string(colour), width});
     body_ +=

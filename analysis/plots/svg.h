@@ -2,6 +2,7 @@
 // equal bytes, and stand in a page as they are or in a file alone.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,8 @@ namespace analysis {
 
 /// `& < > "` as entities; bytes that are no text (control characters) as question marks.
 std::string escaped(std::string_view text);
+/// A text of at most so many bytes: longer ones end in three dots, behind a whole character of UTF-8.
+std::string cut(std::string_view text, std::size_t most);
 /// A file of an SVG element.
 std::string svg_file(const std::string& element);
 

@@ -77,6 +77,8 @@ TEST(Scatter, NamesTicksOfAnyAxisAndAllOfEachSeries) {
     EXPECT_NE(svg.find(">1.6e+07</text>"), std::string::npos);
     EXPECT_NE(svg.find(">sim.mode fast,</text>"), std::string::npos);
     EXPECT_NE(svg.find(">memory.controller queued</text>"), std::string::npos);
+    chart.series[0].name = std::string(26, 'a') + "\u00e9 without a comma"; // cut before the character
+    EXPECT_NE(chart.drawing().str().find('>' + std::string(26, 'a') + "...</text>"), std::string::npos);
 }
 
 TEST_F(StudyCollection, PlotsAreLogarithmicAndShowTheFront) {

@@ -189,6 +189,30 @@ TEST(Chart, PutsValuesWhereTheirAxesSay) {
     EXPECT_NE(svg.find("70,27.33 370,160.67 670,294"), std::string::npos) << svg;
 }
 
+/// Names that are too long end behind a whole character, whatever number of bytes it has.
+TEST(Chart, CutsNamesBetweenCharacters) {
+    for (const std::size_t before : {20U, 21U, 22U, 23U, 24U}) {
+        const std::string name = std::string(before, 'a') + "\u4e2d\u00e9\U0001f600 and more than fits";
+        LineChart lines;
+        lines.series.push_back({name, {{0, 1}}, {}, false});
+        BarChart bars;
+        bars.bars.push_back({std::string(4, 'b') + name, {1}});
+        bars.parts = {name, "other"};
+        for (const std::string& svg : {lines.svg(), bars.svg()}) {
+            const std::size_t end = svg.find("...</text>");
+            ASSERT_NE(end, std::string::npos);
+            std::size_t at = svg.rfind('>', end) + 1;
+            for (std::size_t left = 0; at <= end; ++at) { // of the bytes of a character
+                const unsigned c = static_cast<unsigned char>(svg[at]);
+                ASSERT_EQ((c & 0xC0U) == 0x80U, left > 0) << svg;
+                left = left > 0 ? left - 1 : c >= 0xF0U ? 3 : c >= 0xE0U ? 2 : c >= 0xC0U ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_EQ(cut("caf\u00e9s!!", 8), "caf\u00e9s!!"); // eight bytes
+    EXPECT_EQ(cut("caf\u00e9s!!", 7), "caf...");
+}
+
 /// As many lines as there are names and columns, as many bars as rows, and where numbers say.
 TEST(TableChart, DrawsWhatTheTableSays) {
     Table table{{"structure", "bytes", "misses", "ratio"}, {}};
