@@ -222,6 +222,11 @@ TEST(TraceFormats, ReadsWhatOtherToolsWrite) {
         {"csv",
          "kind,address,note,size\nwrite,0x40,\"a, \"\"b\"\"\",8\nfetch,80,,2\n",
          {{0, 0x40, 0, {.size = 8, .kind = Kind::write}}, {1, 0x80, 0, {.size = 2, .kind = Kind::fetch}}}},
+        {"csv",
+         "\xef\xbb\xbf"
+         "address,kind\n40,write\n",
+         {{0, 0x40, 0, {.kind = Kind::write}}}},
+        {"csv", "\xef\xbb\xbf\"address\"\n40\n", {{0, 0x40, 0, {}}}},
         {"dramsim3",
          "0x12340 READ 5\n0x40 WRITE 17\n",
          {{5, 0x12340, 0, {}}, {17, 0x40, 0, {.kind = Kind::write}}}},

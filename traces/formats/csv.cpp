@@ -17,6 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 10> columns = {"stream",    "kind",  "address", "size", "site",
                                                       "structure", "phase", "work",    "part", "detail"};
 constexpr std::array<std::string_view, parts> part_names = {"operation", "access", "piece", "aside"};
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf"; // of UTF-8, which some programs begin files with
 constexpr std::array<std::string_view, 5> units = {"cycles", "clocks", "instructions", "seconds", "order"};
 enum Column : std::size_t {
     stream,
@@ -57,6 +58,8 @@ public:
 
 private:
     void parse(std::string_view line) override {
+        if (order_.empty() && line.starts_with(byte_order_mark))
+            line.remove_prefix(byte_order_mark.size());
         if (line.empty())
             return;
         split(line);
