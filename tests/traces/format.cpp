@@ -275,6 +275,16 @@ TEST(TraceFormat, CompressionIsSeenByContent) {
             std::string back(300000, '\0');
             back.resize(memory_source(member + member, "twice")->read(back.data(), back.size()));
             EXPECT_EQ(back, text + text) << suffix;
+            if (suffix == std::string_view(".gz")) { // filled up with zeros, as tapes are
+                const std::string zeros(70001, '\0');
+                back.assign(300000, '\0');
+                back.resize(memory_source(member + zeros, "padded")->read(back.data(), back.size()));
+                EXPECT_EQ(back, text);
+                for (const std::string& more : {zeros + member, zeros + 'x', "x" + zeros}) {
+                    back.assign(300000, '\0');
+                    EXPECT_THROW(memory_source(member + more, "more")->read(back.data(), back.size()), Error);
+                }
+            }
             got = read_all(stored.substr(0, stored.size() / 2));
             EXPECT_NE(got.error.find("end too early"), std::string::npos) << suffix << got.error;
             stored[stored.size() / 2] = static_cast<char>(stored[stored.size() / 2] ^ 0x55);

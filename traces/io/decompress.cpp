@@ -75,9 +75,13 @@ public:
 
 private:
     void step(std::uint8_t* to, std::size_t& made, std::size_t most) override {
-        if (whole_) { // another member may follow
+        if (whole_) { // another member may follow, or zeros that fill up a block of a tape up to the end
+            for (; in_ != in_end_ && *in_ == 0; ++in_)
+                padded_ = true;
             if (in_ == in_end_)
                 return;
+            if (padded_)
+                damaged("something follows zeros behind its end");
             inflateReset(&z_);
             whole_ = false;
         }
@@ -96,6 +100,7 @@ private:
     }
 
     z_stream z_{};
+    bool padded_ = false; // zeros were met behind a member
 };
 
 class Xz final : public Decompressor {
