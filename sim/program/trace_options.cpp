@@ -2,11 +2,18 @@
 
 #include "razor/program/arguments.h"
 #include "razor/scene/error.h"
+#include "razor/scene/text_file.h"
 #include "traces/formats/format.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <tuple>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -18,6 +25,29 @@ TraceSettings::Span span(const char* option, const std::string& text) {
         return {};
     const auto [first, last] = razor::parse_span(option, text, any_number);
     return {static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last)};
+}
+
+/// "20000:30000", cycles of which the second is left out.
+std::pair<std::uint64_t, std::uint64_t> window(const std::string& text) {
+    const auto cycle = [&](std::string_view part) {
+        std::int64_t out = -1;
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
+        if (error != std::errc() || end != part.data() + part.size() || out < 0)
+            throw razor::UserError(fmt::format(
+                "--trace-window '{}' is not possible; give BEGIN:END, cycles from 0 to {}, for example 0:9",
+                razor::printable(text), std::numeric_limits<std::int64_t>::max()));
+        return static_cast<std::uint64_t>(out);
+    };
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    const std::string_view all = text;
+    const std::pair out(cycle(all.substr(0, colon)), cycle(all.substr(std::min(colon + 1, all.size()))));
+    if (out.first > out.second)
+        throw razor::UserError(
+            fmt::format("--trace-window {}: ends before it begins; give BEGIN:END, in this order", text));
+    if (out.first == out.second)
+        throw razor::UserError(
+            fmt::format("--trace-window {}: holds no cycle; END is left out, give a later one", text));
+    return out;
 }
 
 } // namespace
@@ -78,14 +108,8 @@ TraceSettings TraceOptions::settings() const {
     s.phases = phases_;
     s.tiles = span("--trace-tiles", tiles_);
     s.cores = span("--trace-cores", cores_);
-    if (!window_.empty()) {
-        const auto [begin, end] = razor::parse_span("--trace-window", window_, any_number, ":");
-        if (begin == end)
-            throw razor::UserError(
-                fmt::format("--trace-window {}: holds no cycle; the end is left out", window_));
-        s.begin = static_cast<std::uint64_t>(begin);
-        s.end = static_cast<std::uint64_t>(end);
-    }
+    if (!window_.empty())
+        std::tie(s.begin, s.end) = window(window_);
     if (!sample_.empty())
         s.sample = razor::parse_number("--trace-sample", sample_, {1e-6, 1});
     return s;

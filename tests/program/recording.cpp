@@ -212,6 +212,9 @@ TEST_F(Recording, FiltersGiveWhatIsLeftOfTheWhole) {
              return traces::hash_of_line(std::stoull(r.substr(r.find(' '))) / 64) < 0.25;
          }},
     };
+    succeed(more +
+            "--trace part.rzt --trace-window 0:9223372036854775807"); // of more cycles than 32 bits hold
+    EXPECT_TRUE(references("part.rzt") == all);
     for (const Case& c : cases) {
         SCOPED_TRACE(c.options);
         succeed(more + "--trace part.rzt " + c.options);
@@ -236,7 +239,11 @@ TEST_F(Recording, MistakesLeaveNoFile) {
              {"--trace t.rzt --trace-cores 0..4", "the machine has 4"},
              {"--trace t.rzt --trace-cores 0..1 --trace-level l2", "use --trace-tiles"},
              {"--trace t.rzt --trace-window 5:5", "holds no cycle"},
-             {"--trace t.rzt --trace-window 5", "FIRST:LAST"},
+             {"--trace t.rzt --trace-window 5", "'5' is not possible; give BEGIN:END"},
+             {"--trace t.rzt --trace-window 5:x", "'5:x' is not possible; give BEGIN:END"},
+             {"--trace t.rzt --trace-window -1:5", "give BEGIN:END"},
+             {"--trace t.rzt --trace-window 6:5", "ends before it begins; give BEGIN:END"},
+             {"--trace t.rzt --trace-window 0:9223372036854775808", "from 0 to 9223372036854775807"},
              {"--trace t.rzt --trace-sample 2", "--trace-sample"},
              {"--trace no/t.rzt", "no folder"},
              {"--trace .", "is a directory"}}) {
