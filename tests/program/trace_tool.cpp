@@ -393,6 +393,8 @@ TEST_F(TraceTool, RefusesQuestionsThatHaveNoAnswer) {
              {"curve", "TRACE"},
              {"curve b.din", "b.din"},
              {"curve a.din --line 48", "no power of two"},
+             {"curve a.din --line 4611686018427387904", "--line 4611686018427387904: lines have at most"},
+             {"curve a.din --line 2TiB --rate 0.5", "--line 2TiB: lines have at most"},
              {"curve a.din --sizes 1KB", "no size"},
              {"curve a.din --sizes 4KiB..1KiB", "ends before it begins"},
              {"curve a.din --sizes 100", "give multiples"},

@@ -18,6 +18,9 @@
 namespace traces {
 namespace {
 
+constexpr std::uint64_t most_line_bytes = std::uint64_t{1}
+                                          << 30U; // of the largest pages that processors have
+
 /// The number of `text` among `names`.
 template <class Names>
 std::size_t number_of(const char* option, const std::string& text, const Names& names) {
@@ -187,9 +190,12 @@ void AnalysisOptions::prepare(const std::vector<std::string>& outputs, std::vect
     }
     if (std::find(by_.begin(), by_.end(), analysis::By::tile) != by_.end())
         require_tiles();
-    if (!line_.empty())
+    if (!line_.empty()) {
         line_bytes_ = parse_size("--line", line_);
-    else if (description_.line_bytes != 0)
+        if (line_bytes_ > most_line_bytes)
+            throw Error(fmt::format("--line {}: lines have at most {} bytes here; give a shorter one", line_,
+                                    most_line_bytes));
+    } else if (description_.line_bytes != 0)
         line_bytes_ = description_.line_bytes;
     if (!std::has_single_bit(line_bytes_))
         throw Error(fmt::format("--line {}: no power of two", line_));

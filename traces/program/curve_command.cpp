@@ -38,6 +38,12 @@ std::vector<std::uint64_t> parse_ways(const std::string& text) {
     return out;
 }
 
+/// Of caches if none are given: doubling from one that holds a line.
+std::string usual_sizes(std::uint64_t line_bytes, std::uint64_t most) {
+    return fmt::format("{}..{}", std::max<std::uint64_t>(1024, line_bytes), std::max(most, line_bytes));
+}
+
+constexpr std::uint64_t usual_most = std::uint64_t{1} << 40U, usual_most_of_sets = std::uint64_t{1} << 24U;
 constexpr std::uint64_t least_sample = 256, most_sample = std::uint64_t{1} << 32; // lines
 
 class CurveCommand final : public AnalysisCommand {
@@ -98,10 +104,9 @@ Table CurveCommand::exact() {
     const std::uint64_t line_bytes = options_.line_bytes();
     const std::vector<std::uint64_t> all_ways = parse_ways(ways_);
     const bool chosen = !sizes_.empty();
-    const std::vector<std::uint64_t> sizes =
-        parse_sizes("--sizes", chosen ? sizes_
-                                      : fmt::format("{}..{}", std::max<std::uint64_t>(1024, line_bytes),
-                                                    all_ways.empty() ? "1TiB" : "16MiB"));
+    const std::vector<std::uint64_t> sizes = parse_sizes(
+        "--sizes",
+        chosen ? sizes_ : usual_sizes(line_bytes, all_ways.empty() ? usual_most : usual_most_of_sets));
     const std::vector<std::uint64_t> lines = lines_of("--sizes", sizes, line_bytes);
     for (const std::uint64_t ways : all_ways)
         if (std::none_of(lines.begin(), lines.end(), [&](std::uint64_t n) { return n % ways == 0; }))
@@ -176,8 +181,8 @@ Table CurveCommand::exact() {
 Table CurveCommand::sampled(double rate, std::uint64_t most) {
     const std::uint64_t line_bytes = options_.line_bytes();
     const bool chosen = !sizes_.empty();
-    const std::vector<std::uint64_t> sizes = parse_sizes(
-        "--sizes", chosen ? sizes_ : fmt::format("{}..1TiB", std::max<std::uint64_t>(1024, line_bytes)));
+    const std::vector<std::uint64_t> sizes =
+        parse_sizes("--sizes", chosen ? sizes_ : usual_sizes(line_bytes, usual_most));
     const double of = options_.description().sample;
     analysis::SampledCurve curve(lines_of("--sizes", sizes, line_bytes), rate * of, of, most);
     const analysis::Shards& shards = curve.lines();
