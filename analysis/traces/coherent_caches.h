@@ -32,9 +32,9 @@ struct Copy {
     std::uint64_t foreign = 0; // while it is away: parts written elsewhere since it was lost
     bool there = false;
     bool fresh = true;                // it comes for the first time
-    bool dropped = false;             // it was lost because it was written elsewhere, and has not come since
+    bool dropped = false;             // it was lost by a write elsewhere, and without it would still be there
     bool marked = false, met = false; // an observer's own
-    std::uint32_t newer = LineMap::none, older = LineMap::none; // in its set
+    std::uint32_t newer = LineMap::none, older = LineMap::none; // in its set, while it is there or dropped
     std::uint32_t next = LineMap::none;                         // copy of the line
 };
 
@@ -66,8 +66,10 @@ public:
         Copy& copy = copies_[at];
         Set& set = set_of(cache, touch.line);
         if (!copy.there) {
+            if (copy.dropped)
+                unlink(set, at);
             if (set.held == shape_.ways)
-                take_out(line_of_[set.oldest], set.oldest);
+                evict(set.oldest);
             copy.there = true;
             copy.group = touch.group;
             copy.touches = copy.used = 0;
@@ -75,10 +77,13 @@ public:
             ++line.caches;
             observer_.filled(line, copy, touch);
             copy.fresh = copy.dropped = false;
+            ++set.held;
             link(set, at);
+            forget_dropped(set);
         } else if (set.newest != at) {
             unlink(set, at);
             link(set, at);
+            forget_dropped(set);
         }
         const std::uint64_t parts = parts_of(touch);
         copy.used |= parts;
@@ -89,7 +94,7 @@ public:
                 if (other != at) {
                     copies_[other].foreign |= parts;
                     if (copies_[other].there) {
-                        copies_[other].dropped = true;
+                        copies_[other].dropped = true; // it keeps its place in the order
                         take_out(number, other);
                     }
                 }
@@ -98,7 +103,7 @@ public:
     void finish() {
         for (std::uint32_t at = 0; at < copies_.size(); ++at)
             if (copies_[at].there)
-                take_out(line_of_[at], at);
+                evict(at);
     }
     /// Of a line, in a cache; null: it never had it.
     const Copy* find(std::uint64_t line, std::uint32_t cache) const {
@@ -118,8 +123,8 @@ public:
 
 private:
     struct Set {
-        std::uint64_t held = 0;
-        std::uint32_t newest = LineMap::none, oldest = LineMap::none; // copies
+        std::uint64_t held = 0;                                       // copies that are there
+        std::uint32_t newest = LineMap::none, oldest = LineMap::none; // of these and of dropped ones
     };
     Set& set_of(std::uint32_t cache, std::uint64_t line) {
         return sets_[static_cast<std::size_t>(cache * shape_.sets + line % shape_.sets)];
@@ -150,12 +155,23 @@ private:
         }
         return at;
     }
+    void evict(std::uint32_t at) {
+        unlink(set_of(copies_[at].cache, lines_[line_of_[at]].line), at);
+        take_out(line_of_[at], at);
+    }
     void take_out(std::uint32_t number, std::uint32_t at) {
         Copy& copy = copies_[at];
-        unlink(set_of(copy.cache, lines_[number].line), at);
+        --set_of(copy.cache, lines_[number].line).held;
         copy.there = false;
         --lines_[number].caches;
         observer_.left(lines_[number], copy);
+    }
+    /// Once a set is full of copies that are newer than one that was dropped, that one would be gone as well.
+    void forget_dropped(Set& set) {
+        while (set.held == shape_.ways && copies_[set.oldest].dropped) {
+            copies_[set.oldest].dropped = false;
+            unlink(set, set.oldest);
+        }
     }
     void link(Set& set, std::uint32_t at) {
         Copy& copy = copies_[at];
@@ -163,13 +179,11 @@ private:
         copy.older = set.newest;
         (set.newest == LineMap::none ? set.oldest : copies_[set.newest].newer) = at;
         set.newest = at;
-        ++set.held;
     }
     void unlink(Set& set, std::uint32_t at) {
         const Copy& copy = copies_[at];
         (copy.newer == LineMap::none ? set.newest : copies_[copy.newer].older) = copy.older;
         (copy.older == LineMap::none ? set.oldest : copies_[copy.older].newer) = copy.newer;
-        --set.held;
     }
 
     CacheShape shape_;

@@ -24,8 +24,8 @@ struct Case {
     std::uint64_t sets, ways, lines;
     std::uint32_t threads, threads_of_cache;
 };
-constexpr Case cases[] = {
-    {4, 2, 40, 3, 1}, {1, 16, 60, 4, 2}, {8, 4, 300, 5, 1}, {16, 1, 50, 2, 2}, {3, 3, 25, 6, 3}};
+constexpr Case cases[] = {{4, 2, 40, 3, 1},  {1, 16, 60, 4, 2}, {8, 4, 300, 5, 1},
+                          {16, 1, 50, 2, 2}, {3, 3, 25, 6, 3},  {2, 16, 60, 3, 1}};
 constexpr std::size_t touches_of_case = 3000;
 constexpr std::uint64_t line_bytes = 64;
 
@@ -51,6 +51,25 @@ bool overlaps(const Touch& a, const Touch& b) {
     return a.low <= b.high && b.low <= a.high;
 }
 
+/// Whether a cache would have a line just before a touch if no other cache ever wrote to that line.
+bool would_have(const std::vector<Touch>& touches, std::uint64_t sets, std::uint64_t ways,
+                std::uint32_t threads_of_cache, std::uint32_t cache, std::uint64_t line, std::uint64_t at) {
+    std::vector<std::uint64_t> set; // the line's, oldest first
+    for (std::uint64_t i = 0; i < at; ++i) {
+        const Touch& t = touches[i];
+        if (t.line % sets != line % sets)
+            continue;
+        const bool own = t.stream / threads_of_cache == cache;
+        if (own || (t.writes && t.line != line))
+            std::erase(set, t.line);
+        if (own && set.size() == ways)
+            set.erase(set.begin());
+        if (own)
+            set.push_back(t.line);
+    }
+    return std::find(set.begin(), set.end(), line) != set.end();
+}
+
 /// The causes by their definitions, from all stays and all touches.
 std::vector<MissCauses::Group> plain_causes(const std::vector<Touch>& touches, const Case& c) {
     const std::vector<Stay> real = plain_stays(touches, c.sets, c.ways, c.threads_of_cache);
@@ -60,11 +79,14 @@ std::vector<MissCauses::Group> plain_causes(const std::vector<Touch>& touches, c
         ++out[t.group].references;
     for (const Stay& s : real) {
         MissCauses::Group& g = out[touches[s.begin].group];
-        const Stay *before = last_stay(real, s.cache, s.line, s.begin),
-                   *beside = last_stay(full, s.cache, s.line, s.begin);
+        const Stay* before = last_stay(real, s.cache, s.line, s.begin);
+        const bool beside = stay_at(full, s.cache, s.line, s.begin) != nullptr;
+        const auto would = [&](std::uint64_t sets, std::uint64_t ways) {
+            return would_have(touches, sets, ways, c.threads_of_cache, s.cache, s.line, s.begin);
+        };
         if (before == nullptr) {
             ++g.compulsory;
-        } else if (before->dropped || (beside->dropped && beside->end < s.begin)) {
+        } else if (would(c.sets, c.ways) || (!beside && would(1, c.sets * c.ways))) {
             bool truly = false; // something written elsewhere since it was lost is touched while it stays
             for (std::uint64_t w = before->end; w < s.begin; ++w)
                 for (std::uint64_t u = s.begin; u < s.end; ++u)
@@ -75,7 +97,7 @@ std::vector<MissCauses::Group> plain_causes(const std::vector<Touch>& touches, c
                              overlaps(touches[w], touches[u]));
             ++(truly ? g.true_sharing : g.false_sharing);
         } else {
-            ++(stay_at(full, s.cache, s.line, s.begin) != nullptr ? g.conflict : g.capacity);
+            ++(beside ? g.conflict : g.capacity);
         }
     }
     return out;
@@ -116,8 +138,10 @@ TEST(MissCauses, AreThoseOfTheDefinitions) {
     EXPECT_GT(std::min({met.capacity, met.conflict, met.true_sharing, met.false_sharing}), 100U);
 }
 
-/// As many misses as the simulator's classifier finds for each cache, of the same causes.
+/// As many misses as the simulator's classifier finds for each cache, of the same causes, but that it calls
+/// those of lines that a write dropped coherence however long ago that was.
 TEST(MissCauses, AreThoseOfTheSimulator) {
+    std::uint64_t sharing = 0, coherence = 0;
     for (const Case& c : cases) {
         const auto touches = random_touches(20000, c.lines, c.threads, line_bytes, 77);
         auto causes = analysed<MissCauses>(touches, c);
@@ -155,9 +179,30 @@ TEST(MissCauses, AreThoseOfTheSimulator) {
             all.true_sharing += g.true_sharing + g.false_sharing;
         }
         EXPECT_EQ(all.compulsory, expected[static_cast<std::size_t>(sim::MissCause::compulsory)]);
-        EXPECT_EQ(all.capacity, expected[static_cast<std::size_t>(sim::MissCause::capacity)]);
-        EXPECT_EQ(all.conflict, expected[static_cast<std::size_t>(sim::MissCause::conflict)]);
-        EXPECT_EQ(all.true_sharing, expected[static_cast<std::size_t>(sim::MissCause::coherence)]);
+        EXPECT_GE(all.capacity, expected[static_cast<std::size_t>(sim::MissCause::capacity)]);
+        EXPECT_GE(all.conflict, expected[static_cast<std::size_t>(sim::MissCause::conflict)]);
+        EXPECT_LE(all.true_sharing, expected[static_cast<std::size_t>(sim::MissCause::coherence)]);
+        EXPECT_EQ(all.misses(), std::accumulate(expected.begin(), expected.end(), std::uint64_t{0}));
+        sharing += all.true_sharing;
+        coherence += expected[static_cast<std::size_t>(sim::MissCause::coherence)];
+    }
+    EXPECT_LT(sharing, coherence);
+}
+
+/// What a write elsewhere took is not missed for it once the cache would have lost it anyway.
+TEST(MissCauses, ForgetSharingWhenTheLineWouldBeGone) {
+    for (const std::uint64_t others : {3U, 4U, 5000U}) {
+        MissCauses causes({1, 4, line_bytes});
+        causes.touch({1, 0, 7, 0, 0, 0, false}, 0);
+        causes.touch({1, 0, 7, 1, 1, 0, true}, 1);
+        for (std::uint64_t other = 0; other < others; ++other)
+            causes.touch({100 + other, 0, 7, 0, 0, 0, false}, 0);
+        causes.touch({1, 0, 7, 2, 0, 0, false}, 0);
+        causes.finish();
+        const MissCauses::Group& again = causes.groups()[2];
+        EXPECT_EQ(again.misses(), 1U);
+        EXPECT_EQ(again.true_sharing, others < 4 ? 1U : 0U) << others;
+        EXPECT_EQ(again.capacity, others < 4 ? 0U : 1U) << others;
     }
 }
 
