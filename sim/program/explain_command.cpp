@@ -4,6 +4,7 @@
 #include "razor/scene/nearest.h"
 #include "razor/scene/text_file.h"
 #include "sim/machine/explain.h"
+#include "sim/program/frame_report.h"
 #include "sim/program/sharing_report.h"
 #include "sim/program/study_program.h"
 
@@ -37,10 +38,6 @@ const Explanation other_explanations[] = {
     {"estimate.threads_waiting", "", "likewise, waiting for what others build"},
     {"estimate.once_cycles", "cycles", "in closed form: of work that is done once, by all workers together"},
     {"estimate.built_instructions", "", "in closed form: of the instructions, those of builds"},
-    {"renderer.counters.rays", "", "that were traced"},
-    {"renderer.built.grid_bytes", "bytes", "of grids that were built"},
-    {"renderer.built.node_bytes", "bytes", "of nodes of kd-trees that were built"},
-    {"renderer.built.list_bytes", "bytes", "of lists of triangles in their leaves"},
     {"host.model_seconds", "s", "of the host, for the closed form alone"},
     {"host.count_seconds", "s", "of the host, to count the frame's work natively"},
     {"host.seed_processor_seconds", "s", "of processor time, that the simulated tile took when it was made"},
@@ -62,6 +59,7 @@ const Explanation other_explanations[] = {
 std::vector<Explanation> all_explanations() {
     std::vector<Explanation> out = explanations();
     out.insert(out.end(), sharing_explanations().begin(), sharing_explanations().end());
+    out.insert(out.end(), frame_explanations().begin(), frame_explanations().end());
     out.insert(out.end(), std::begin(other_explanations), std::end(other_explanations));
     for (const analysis::Figure& figure : machine_study_program().figures)
         if (std::none_of(out.begin(), out.end(), [&](const Explanation& e) { return e.path == figure.name; }))

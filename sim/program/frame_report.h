@@ -3,6 +3,7 @@
 
 #include "razor/frame/frame.h"
 #include "razor/scene/scene.h"
+#include "sim/machine/explain.h"
 #include "sim/machine/report.h"
 
 #include <nlohmann/json.hpp>
@@ -29,6 +30,8 @@ struct Counted {
 nlohmann::ordered_json renderer_json(const razor::FrameStatistics& statistics,
                                      const razor::CountersByKind& counted, const razor::Duplicates& twice,
                                      const std::vector<int>& tree_of_worker);
+/// Of every figure of that object, and of all others that a run says beside the machine's.
+const std::vector<Explanation>& frame_explanations();
 /// What was rendered and what it took, above the machine's own report.
 std::string frame_text(const razor::Settings& settings, int workers, const Counted& counted,
                        const razor::FrameStatistics& statistics, const razor::BudgetStatistics& budget,

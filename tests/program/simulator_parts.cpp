@@ -9,6 +9,32 @@
 namespace razor {
 namespace {
 
+// Of the machine, the frame, the command and the host; and of the frame nothing else is explained.
+TEST_F(Simulator, ExplainsEveryFigureOfARun) {
+    folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
+    const std::string start = "run --quiet --scene s.toml --size 16x8 --spp 1 --machine ";
+    const std::string calibrated = quoted_argument(RAZOR_SOURCE_DIR "/configs/machines/zen4-2c-avx2.toml");
+    std::set<std::string> used;
+    for (const std::string& run :
+         {tiny, tiny + " --memory 1MiB --share 2 --sharing -o a.exr --costs", calibrated + " --no-native",
+          tiny + " --no-native --estimate sample:0.5", tiny + " --fidelity auto --error 0.5"}) {
+        const Outcome result = simulator(start + run + " --json a.json");
+        ASSERT_EQ(result.code, 0) << result.err;
+        SCOPED_TRACE(run);
+        expect_explained(nlohmann::json::parse(text("a.json")), &used);
+    }
+    std::istringstream lines(simulator("explain renderer").out);
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line); ++count) {
+        const std::string path = line.substr(0, line.find_first_of(": "));
+        EXPECT_TRUE(used.contains(path) || path.starts_with("machine.")) << path << " is in no report";
+    }
+    EXPECT_GT(count, 80U);
+    for (const char* name : {"node_visits", "renderer.counters_by_kind.light.rays", "tree_of_worker",
+                             "code_bytes.sse4.traverse", "machine_provenance.l1.ways.from"})
+        EXPECT_EQ(simulator(std::string("explain ") + name).code, 0) << name;
+}
+
 // A time series whose sums are the report's, on any number of host threads; whole or not there.
 TEST_F(Simulator, WritesATimeSeries) {
     folder_.file("s.toml", "[[mesh]]\nshape = \"urchin\"\n");
