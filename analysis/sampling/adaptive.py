@@ -64,9 +64,9 @@ def errors(picture, reference, quiet):
 
 
 def seconds_for(error, key, uniform):
-    """Of uniform samples, by lines through what was measured, in logarithms of seconds and error."""
-    points = sorted((math.log(u[key]), math.log(u["seconds"])) for u in uniform)
-    if len(points) < 2:
+    """Of uniform samples, by lines through what was measured, in logarithms of seconds and error. None where no error has one."""
+    points = sorted((math.log(u[key]), math.log(u["seconds"])) for u in uniform if u[key] > 0)
+    if len(points) < 2 or not error > 0:
         return None
     at = math.log(error)
     low = next((i for i in range(len(points) - 1) if at <= points[i + 1][0]), len(points) - 2)
