@@ -186,12 +186,14 @@ inline cycle Replay::cycle_of(std::uint64_t time) const {
     return since / cycle_ps_ * clock_ps_ + since % cycle_ps_ * clock_ps_ / cycle_ps_;
 }
 
-/// The cycle of the next reference, whose window is open.
-inline cycle Replay::arrive(std::uint64_t time) {
+/// The cycle of the next reference, whose window is open. Words that threads share pass by the L1, whose
+/// latency may lie before all that may still come.
+inline cycle Replay::arrive(std::uint64_t time, const ReplayAction& a) {
     const cycle t = (clocked_ ? cycle_of(time) : result_.references) + offset_;
     if (t >= machine_.window_end()) [[unlikely]]
         pass_window(t, time);
-    return std::max(t, machine_.earliest());
+    const cycle earliest = machine_.earliest();
+    return std::max(t, a.what == ReplayAction::What::change ? machine_.begin_of_word(earliest) : earliest);
 }
 
 inline void Replay::perform(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
@@ -222,7 +224,7 @@ void Replay::run(const traces::Block& block, std::uint32_t stream, std::size_t b
         const std::uint32_t number = block.classes[i];
         const ReplayAction& a = actions_[number];
         const std::uint64_t low = compacts ? compact_(block.addresses[i]) : block.addresses[i];
-        const cycle t = arrive(block.times[i]);
+        const cycle t = arrive(block.times[i], a);
         if (eventful_ && a.kind != traces::Kind::recall) [[unlikely]] // which is found by what follows
             let_events_happen(a, stream, t, acts_[i] + offset_);
         if (a.refused) [[unlikely]] {

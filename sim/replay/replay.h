@@ -112,7 +112,7 @@ private:
     Answer wait_for_room(const ReplayAction& a, std::uint32_t stream, std::uint64_t address,
                          std::uint32_t bytes, std::uint32_t accesses, cycle& t);
     cycle cycle_of(std::uint64_t time) const;
-    cycle arrive(std::uint64_t time);
+    cycle arrive(std::uint64_t time, const ReplayAction& a);
     void pass_window(cycle t, std::uint64_t time);
     void come_to(cycle t);
     void tell(const ReplayAction& a, std::uint32_t stream, std::uint64_t address, std::uint32_t bytes,

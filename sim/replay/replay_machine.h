@@ -106,6 +106,8 @@ public:
     std::size_t tile_of(std::uint32_t stream) const { return seats_[stream].tile->number; }
     /// From when on a reference of this cycle may have been under way: a cache's came that much before.
     cycle begin_of(cycle t) const { return t - std::min(t, passing_latency_); }
+    /// ... of a core's word, which comes to the L2 at this cycle.
+    cycle begin_of_word(cycle t) const { return t - std::min(t, l1_latency_); }
     /// Of the reference mode: those of a stream's tile as far as cycle `t`, before what a thread does then.
     void let_events_happen(std::uint32_t stream, cycle t) {
         finish_events(*seats_[stream].tile, std::min(t + 1, window_end_));
