@@ -90,6 +90,13 @@ double Sampler::ratio(std::size_t first, std::size_t last, const SampledCosts& c
     return all > 0 ? spent / all : 1;
 }
 
+double Estimate::unseen_of_l1(std::uint64_t threads_of_core, std::uint64_t window) {
+    if (threads_of_core == 1)
+        return unseen;
+    constexpr double most_of_window_8 = 0.07;
+    return most_of_window_8 * std::max(1.0, std::log2(static_cast<double>(window)) / 3);
+}
+
 double Estimate::count_error(double standard_error) const {
     const boost::math::normal normal;
     return standard_error * boost::math::quantile(normal, 0.5 + confidence / 2);

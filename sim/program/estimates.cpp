@@ -62,10 +62,11 @@ std::vector<EstimatedFigure> sampled_figures(const Report& r, const Estimate& e)
                                                                              {"l3_misses", "misses of L3s"},
                                                                              {"l4_misses", "misses of L4s"},
                                                                              {"l5_misses", "misses of L5s"}}};
+    const double unseen_of_l1 = Estimate::unseen_of_l1(static_cast<std::uint64_t>(r.config.chip.threads),
+                                                       static_cast<std::uint64_t>(r.config.core.window));
     for (unsigned level = 0; level < r.config.cache_levels(); ++level)
-        out.push_back(
-            {misses[level][0], misses[level][1],
-             of(r.cache_total(level).misses, level == 0 ? Estimate::unseen_of_l1 : Estimate::unseen)});
+        out.push_back({misses[level][0], misses[level][1],
+                       of(r.cache_total(level).misses, level == 0 ? unseen_of_l1 : Estimate::unseen)});
     return out;
 }
 

@@ -297,6 +297,16 @@ TEST(Sampling, IntervalsHoldTheTruth) {
     EXPECT_LT(many, 0.7 * few);
 }
 
+/// As much too many as were found on configs/machines/tiny.toml (README.md), by how far cores look ahead.
+TEST(Sampling, MissesOfL1sMayBeFartherOffWhereThreadsShareACore) {
+    Estimate e;
+    e.confidence = 0.95;
+    EXPECT_EQ(Estimate::unseen_of_l1(1, 512), Estimate::unseen);
+    for (const auto& [window, found] : {std::pair{1U, 0.056}, {8U, 0.116}, {32U, 0.162}, {200U, 0.338}})
+        EXPECT_GT(e.count_error(Estimate::unseen_of_l1(2, window)), found) << window;
+    EXPECT_LT(e.count_error(Estimate::unseen_of_l1(2, 8)), 0.15);
+}
+
 TEST(Sampling, SaysWhichMachinesItDoesNotKnow) {
     EXPECT_EQ(Machine(shipped("tiny.toml")).not_sampled(), "");
     EXPECT_EQ(Machine(shipped("copernicus.toml")).not_sampled(), "");

@@ -42,8 +42,9 @@ inline void work(const WorkMemory& m, int worker, int count) {
             set_phase(i / 64 % 2);
             set_kind(i / 128 % 2);
         }
-        const std::uint64_t lanes =
-            (std::uint64_t{random()} << 32U | random()) & (~std::uint64_t{0} >> (64 - ISA_WIDTH));
+        // One draw a statement: compilers evaluate operands in orders of their own.
+        const std::uint64_t high = random(), low = random();
+        const std::uint64_t lanes = (high << 32U | low) & (~std::uint64_t{0} >> (64 - ISA_WIDTH));
         for (std::int32_t& k : index)
             k = static_cast<std::int32_t>(random() % (i % 2 == 0 ? 512 : 16384));
         switch (random() % 16) {
@@ -64,9 +65,11 @@ inline void work(const WorkMemory& m, int worker, int count) {
             s = load_vector(site_of(4), at(own, 60000), ~std::uint64_t{0} >> (64 - ISA_WIDTH), stamp{},
                             stamp{});
             break;
-        case 5:
-            s = load_vector(site_of(5), own + random() % 512 * 64, lanes & random(), stamp{}, stamp{1, 1, 1});
+        case 5: {
+            const std::uint64_t some = lanes & random();
+            s = load_vector(site_of(5), own + random() % 512 * 64, some, stamp{}, stamp{1, 1, 1});
             break;
+        }
         case 6:
             store_vector(site_of(6), own + random() % 512 * 64, i % 2 == 0 ? lanes : 0, stamp{}, s, stamp{});
             break;
@@ -79,10 +82,11 @@ inline void work(const WorkMemory& m, int worker, int count) {
         case 9:
             prefetch(site_of(9), at(m.shared, 1U << 20U), stamp{});
             break;
-        case 10:
-            discard(site_of(10), own + random() % 400 * 100, static_cast<std::uint32_t>(100 + random() % 400),
-                    stamp{});
+        case 10: {
+            const auto bytes = static_cast<std::uint32_t>(100 + random() % 400);
+            discard(site_of(10), own + random() % 400 * 100, bytes, stamp{});
             break;
+        }
         case 11:
         case 12: { // a counter
             auto* word = reinterpret_cast<std::int32_t*>(m.words) + random() % 64;
