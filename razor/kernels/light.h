@@ -1,10 +1,11 @@
 // The light that hits receive and reflect, by shadow rays. Packets of them hold a sample of each hit, of a
-// quarter of the light, where the light is large beside the hits; else of width/4 neighbouring hits 4
+// quarter of the light, where the light is large beside the hits; else of width/4 hits near each other 4
 // samples.
 #pragma once
 
 #include "razor/kernels/cutout.h"
 #include "razor/kernels/glossy.h"
+#include "razor/kernels/near_hits.h"
 #include "razor/kernels/quarters.h"
 
 namespace razor::ISA_TARGET {
@@ -114,8 +115,10 @@ template <Features F, bool Mapped, class Towards, class Response>
     sint hits_per_packet = sint(isa::width) >> per_hit_log2;
     for (int k = 0; k < lobes; ++k)
         store_vector(lobe_sums<Response>(c, k), vfloat(0.0F));
-    vint order = compress(lane_index(), s.hit);
     sint hits = count(s.hit);
+    sbool shared = hits > hits_per_packet;
+    shared = shared & !dealt;
+    vint order = branch(shared) ? near_order(s.position, s.hit) : compress(lane_index(), s.hit);
     vint member = lane_index() & vint(per_hit - 1);
     vint rank = lane_index() >> vint(per_hit_log2);
     for (sint from = 0; branch(from < hits); from += hits_per_packet) {
