@@ -112,6 +112,22 @@ int complain(const CLI::App& app, std::string_view message, int code) {
     return code;
 }
 
+/// Throws UserError where an option of the subcommand that was given has - in the place of a file or a
+/// folder.
+void refuse_dashes(const CLI::App& app) {
+    for (const CLI::App* const command : app.get_subcommands())
+        for (const CLI::Option* const option : command->get_options()) {
+            const std::string type = option->get_type_name();
+            const bool folder = type.starts_with("FOLDER");
+            if (!folder && !type.starts_with("FILE"))
+                continue;
+            for (const std::string& value : option->results())
+                if (value == "-")
+                    throw UserError(fmt::format("{}: - stands for no {} here; give its name",
+                                                option->get_name(), folder ? "folder" : "file"));
+        }
+}
+
 } // namespace
 
 std::string_view version() {
@@ -261,6 +277,7 @@ int run_program(CLI::App& app, int argc, const char* const* argv, const std::fun
     try {
         if (!parse(app, argc, argv))
             return 0;
+        refuse_dashes(app);
         const int done = action();
         finish_output();
         return done;

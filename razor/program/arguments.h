@@ -43,8 +43,8 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
 int parse_share(std::string_view text);
 
 /// Parses the command line, then runs `action`, whose result is the exit code. --help and --version end with
-/// 0. A mistake of the user prints one line "PROGRAM: ..." to the error stream and ends with 2, anything
-/// unforeseen likewise with 1.
+/// 0. No file is called "-". A mistake of the user prints one line "PROGRAM: ..." to the error stream and
+/// ends with 2, anything unforeseen likewise with 1.
 int run_program(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& action);
 
 } // namespace razor

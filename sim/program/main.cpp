@@ -8,7 +8,6 @@
 #include "sim/program/describe_command.h"
 #include "sim/program/dram_table.h"
 #include "sim/program/explain_command.h"
-#include "sim/program/option_values.h"
 #include "sim/program/run_command.h"
 #include "sim/program/study_command.h"
 #include "sim/program/sweep_command.h"
@@ -55,7 +54,6 @@ int main(int argc, char** argv) {
     sweep.add_to(app);
     return razor::run_program(app, argc, argv, [&] {
         try {
-            sim::refuse_dashes(app);
             return print.parsed()               ? print_config(machine)
                    : describe.parsed()          ? describe.run()
                    : explain.parsed()           ? explain.run()

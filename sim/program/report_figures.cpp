@@ -22,6 +22,8 @@ constexpr Pointed pointed[] = {{"cycles", "/cycles"},
                                {"l1_misses", "/l1/misses"},
                                {"l2_misses", "/l2/misses"},
                                {"l3_misses", "/l3/misses"},
+                               {"l4_misses", "/l4/misses"},
+                               {"l5_misses", "/l5/misses"},
                                {"energy_joules", "/energy/joules"},
                                {"watts", "/energy/watts"}};
 
@@ -72,9 +74,15 @@ const std::vector<analysis::Figure>& report_figures() {
         {"l2_miss_rate", "misses of L2s, of all accesses"},
         {"l3_misses", "misses of the third level"},
         {"l3_miss_rate", "misses of the third level, of all accesses"},
+        {"l4_misses", "misses of the fourth level"},
+        {"l4_miss_rate", "misses of the fourth level, of all accesses"},
+        {"l5_misses", "misses of the fifth level"},
+        {"l5_miss_rate", "misses of the fifth level, of all accesses"},
         {"l1_utilisation", "bandwidth of L1s, of the peak"},
         {"l2_utilisation", "bandwidth of L2s, of the peak"},
         {"l3_utilisation", "bandwidth of the third level, of the peak"},
+        {"l4_utilisation", "bandwidth of the fourth level, of the peak"},
+        {"l5_utilisation", "bandwidth of the fifth level, of the peak"},
         {"memory_utilisation", "bandwidth of DRAM, of the peak"},
         {"binding_share", "time for which the busiest resource works, of the run"},
         {"energy_joules", "energy, J"},
@@ -93,7 +101,7 @@ void add_figures(analysis::Samples& values, const json& report) {
         rate(number_at(report, "/renderer/counters/rays"), number_at(report, "/seconds")));
     values["dram_bytes"].push_back(memory_line_bytes(report) * (number_at(report, "/memory/reads") +
                                                                 number_at(report, "/memory/writes")));
-    for (const char* level : {"l1", "l2", "l3"}) {
+    for (const char* level : {"l1", "l2", "l3", "l4", "l5"}) {
         const std::string at = fmt::format("/{}/", level);
         if (has(report, at + "misses"))
             values[fmt::format("{}_miss_rate", level)].push_back(

@@ -148,6 +148,7 @@ TEST_F(Razor, RefusesBadInput) {
         {"good.obj good.toml", "good.toml"},
         {"good.obj --stats none/s.json", "none"},
         {"good.obj --stats .", "is a directory"},
+        {"good.obj --stats -", "--stats: - stands for no file here; give its name"},
         {"good.obj -o x.jpg", "end the name in .exr or .png"},
         {"good.obj -o none/x.png", "no folder none"},
         {"good.obj -o folder.obj", "end the name in .exr or .png"},

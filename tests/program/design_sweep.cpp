@@ -134,6 +134,19 @@ TEST_F(DesignSweep, PlansRunsAndCollects) {
     EXPECT_EQ(results("t"), before);
 }
 
+// Every level that a machine may have has its figures.
+TEST_F(DesignSweep, KnowsFiveLevels) {
+    edited("five.toml", "[\"4 KiB\", \"128 KiB\"]\ncore.lanes = [4, 8]",
+           "[\"4 KiB\"]\nl3.size_bytes = [\"16 KiB\"]\nl4.size_bytes = [\"32 KiB\"]\n"
+           "l5.size_bytes = [\"64 KiB\"]");
+    const Outcome five = sweep("five.toml -o s");
+    ASSERT_EQ(five.code, 0) << five.err << five.out;
+    const nlohmann::json figures = collected("s")["points"][0]["figures"];
+    for (const char* level : {"l1", "l2", "l3", "l4", "l5"})
+        for (const char* figure : {"_misses", "_miss_rate", "_utilisation"})
+            EXPECT_GT(figures[level + std::string(figure)]["median"], 0) << level << figure;
+}
+
 TEST_F(DesignSweep, RanksNothingWithinNoise) {
     // Power moves no cycle: designs are equal by cycles, and by energy they are not.
     edited("power.toml", "core.lanes = [4, 8]", "energy.core_mw = [20, 500]");
