@@ -33,9 +33,11 @@ public:
     Answer read(const Access& a) override {
         if (at_once()) [[unlikely]]
             return cache_.read(a);
-        return {enter(a, Kind::read), cache_.cause(), false, false, true};
+        return {.ready = enter(a, Kind::read), .from = cache_.cause(), .shared = true};
     }
-    Answer own(const Access& a) override { return {enter(a, Kind::own), cache_.cause(), false, false, true}; }
+    Answer own(const Access& a) override {
+        return {.ready = enter(a, Kind::own), .from = cache_.cause(), .shared = true};
+    }
     Answer write(const Access& a) override {
         if (at_once()) [[unlikely]]
             return cache_.write(a);

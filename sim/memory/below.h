@@ -22,7 +22,7 @@ struct Answer {
     bool moved = false;  // it was refused, but lines have gone to make room for what it wanted
 
     static Answer later(cycle when, bool moved = false) {
-        return {when, Cause::mshrs, true, false, false, moved};
+        return {.ready = when, .from = Cause::mshrs, .refused = true, .moved = moved};
     }
 };
 

@@ -42,7 +42,7 @@ public:
         r.ticket = tickets_.open();
         r.exclusive = a.exclusive;
         leave(r);
-        return {r.ticket, Cause::memory, false, false, !a.exclusive};
+        return {.ready = r.ticket, .from = Cause::memory, .shared = !a.exclusive};
     }
     Answer own(const Access& a) override {
         Request r = request(a);
@@ -51,7 +51,7 @@ public:
         r.kind = Request::upgrade;
         r.exclusive = true;
         leave(r);
-        return {r.ticket, Cause::coherence, false, false, true};
+        return {.ready = r.ticket, .from = Cause::coherence, .shared = true};
     }
     Answer write(const Access& a) override {
         if (to_memory_)
