@@ -203,6 +203,7 @@ private:
     Answer in_flight(CacheArray::Entry entry, std::uint64_t line, Answer present);
     Answer fill(std::uint64_t line, cycle t, cycle down, std::size_t column, bool forced, bool to_write,
                 traces::Kind why);
+    std::uint64_t begin_of(std::uint64_t address) const { return address >> line_shift_ << line_shift_; }
     void recall(CacheArray::Entry leaving);
     bool back_invalidate(std::uint64_t address, std::uint64_t bytes);
     template <class Visit> void each_line(Visit visit) const { // and of those above

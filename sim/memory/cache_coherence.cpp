@@ -121,17 +121,18 @@ bool Cache::above_hold(std::uint64_t address, const Cache* but) const {
 void Cache::settle_right(std::uint64_t address, std::uint64_t bytes, bool shared) {
     if (!shared)
         return grant(address, bytes);
-    for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
+    const std::uint64_t size = line_bytes();
+    for (std::uint64_t at = begin_of(address); at < address + bytes; at += size) {
         for (Cache* c : above_)
-            c->settle_right(at, std::min(bytes, std::uint64_t{1} << line_shift_), true);
+            c->settle_right(at, size, true);
         if (const CacheArray::Entry entry = array_.find(at >> line_shift_); entry != CacheArray::none)
             array_.set_shared(entry, true);
     }
 }
 
 void Cache::grant(std::uint64_t address, std::uint64_t bytes) {
-    const std::uint64_t size = std::uint64_t{1} << line_shift_;
-    for (std::uint64_t at = address; at < address + bytes; at += size) {
+    const std::uint64_t size = line_bytes();
+    for (std::uint64_t at = begin_of(address); at < address + bytes; at += size) {
         const CacheArray::Entry entry = array_.find(at >> line_shift_);
         if (entry == CacheArray::none)
             continue;
@@ -150,12 +151,13 @@ void Cache::grant(std::uint64_t address, std::uint64_t bytes) {
 
 bool Cache::lose(std::uint64_t address, std::uint64_t bytes) {
     bool dirty = false;
-    for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
+    const std::uint64_t size = line_bytes();
+    for (std::uint64_t at = begin_of(address); at < address + bytes; at += size) {
         if (below_.is_asked(at, *this))
             continue;
-        dirty |= coming_ != nullptr && coming_->recall(at, std::uint64_t{1} << line_shift_);
-        for (Cache* c : above_)
-            dirty |= c->lose(at, std::min(bytes, std::uint64_t{1} << line_shift_));
+        dirty |= coming_ != nullptr && coming_->recall(at, size);
+        for (Cache* c : above_) // all of a line goes, whatever part of it is written
+            dirty |= c->lose(at, size);
         const CacheArray::Entry entry = array_.find(at >> line_shift_);
         if (causes_)
             causes_->invalidate(at >> line_shift_, entry != CacheArray::none);
@@ -173,12 +175,13 @@ bool Cache::lose(std::uint64_t address, std::uint64_t bytes) {
 
 bool Cache::share(std::uint64_t address, std::uint64_t bytes, cycle t, std::size_t column) {
     bool dirty = false;
-    for (std::uint64_t at = address; at < address + bytes; at += std::uint64_t{1} << line_shift_) {
+    const std::uint64_t size = line_bytes();
+    for (std::uint64_t at = begin_of(address); at < address + bytes; at += size) {
         if (below_.is_asked(at, *this))
             continue;
-        bool changed = coming_ != nullptr && coming_->clean(at, std::uint64_t{1} << line_shift_);
+        bool changed = coming_ != nullptr && coming_->clean(at, size);
         for (Cache* c : above_)
-            changed |= c->share(at, std::min(bytes, std::uint64_t{1} << line_shift_), t, column);
+            changed |= c->share(at, size, t, column);
         const CacheArray::Entry entry = array_.find(at >> line_shift_);
         if (entry == CacheArray::none)
             continue;

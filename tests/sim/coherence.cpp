@@ -98,6 +98,30 @@ TEST(Coherence, InnerLevelsGiveLinesUpToo) {
     EXPECT_EQ(r.coherence.forwards_dirty, 1U);
 }
 
+// A write that passes by the caches of its pair is of a part of the other pair's line, which goes whole: with
+// all that lies above it, the part that was not written too.
+TEST(Coherence, LinesGoWholeWhateverPartIsWritten) {
+    Config c = simple();
+    c.chip.cores = 4;
+    c.l2.share = "2";
+    c.l2.line_bytes = 2 * c.l1.line_bytes;
+    c.l3 = c.l2;
+    c.l3.size_bytes = 64 * kib;
+    c.l3.share = "tile";
+    c.l1.write_miss = c.l2.write_miss = "around";
+    const std::vector<Step> steps{{0, 0, 0, false}, {0, 1, 1, false}, {0, 0, 1, false}, {0, 2, 1, true},
+                                  {0, 0, 0, false}, {0, 1, 1, false}, {0, 3, 1, false}};
+    for (const Config& machine : {coherent(c), in_order_of_time(coherent(c))}) {
+        SCOPED_TRACE(machine.sim.mode);
+        const Report r = act(machine, steps);
+        EXPECT_EQ(r.l2[0].invalidations, 1U);
+        EXPECT_EQ(r.l1[0].invalidations, 2U);
+        EXPECT_EQ(r.l1[1].invalidations, 1U);
+        EXPECT_EQ(r.l1[0].misses, 3U);
+        EXPECT_EQ(r.l1[1].misses, 2U);
+    }
+}
+
 // A line that left without a word is asked of who had it in vain, one that was written back is not.
 TEST(Coherence, WhatLeavesDirtyIsKnown) {
     for (const bool write : {false, true}) {
