@@ -1,5 +1,7 @@
 // razor-trace: files and pipes, exit codes, one line for each mistake, and nothing half-written.
 #include "tests/program/run.h"
+#include "traces/block_builder.h"
+#include "traces/writer.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -348,6 +350,46 @@ TEST_F(TraceTool, AnEstimateFromNothingIsNone) {
         EXPECT_TRUE(rows.at(0).at(column).is_null()) << column;
     EXPECT_EQ(rows.at(0).at("sample of"), "none");
     EXPECT_NEAR(rows.at(1).at("ratio").get<double>(), 1, 0.2);
+}
+
+/// Distances and misses of a sample are not those of all lines; counts are told to be the sample's.
+TEST_F(TraceTool, TellsOfASampleWhatItCan) {
+    for (const double sample : {0.25, 1.0}) {
+        std::string bytes;
+        traces::Description description;
+        description.line_bytes = 64;
+        description.sample = sample;
+        traces::Writer writer(traces::memory_sink(bytes), description);
+        traces::BlockBuilder builder;
+        for (std::uint64_t time = 0; time < 100; ++time) {
+            traces::Reference r{time, time % 10 * 64, 0, {}};
+            r.what.size = 4;
+            builder.add(r);
+        }
+        traces::Block block;
+        builder.take(block);
+        writer.write(block);
+        writer.finish();
+        folder_.file("s.rzt", bytes);
+        for (const char* arguments :
+             {"reuse s.rzt", "objects s.rzt --sizes 1KiB", "windows s.rzt --window 10 --sizes 1KiB",
+              "causes s.rzt --sizes 1KiB", "use s.rzt --sizes 1KiB", "strides s.rzt"}) {
+            const Outcome result = tool(arguments);
+            EXPECT_EQ(result.code, sample < 1 ? 2 : 0) << arguments;
+            EXPECT_EQ(result.error_lines(), sample < 1 ? 1 : 0) << result.err;
+            EXPECT_EQ(result.err.find("s.rzt: is a sample of 0.25 of all lines") != std::string::npos,
+                      sample < 1)
+                << result.err;
+        }
+        for (const char* arguments :
+             {"lines s.rzt", "lines s.rzt --by structure", "footprint s.rzt", "footprint s.rzt --threads",
+              "windows s.rzt --window 10", "picture s.rzt -o s.svg"}) {
+            const Outcome result = tool(arguments);
+            EXPECT_EQ(result.code, 0) << result.err;
+            EXPECT_EQ(result.out.find("a sample of 0.25 of all lines") != std::string::npos, sample < 1)
+                << result.out;
+        }
+    }
 }
 
 /// Whatever ends the program: where the file system can have files without names, nothing is left.

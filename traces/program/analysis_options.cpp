@@ -226,11 +226,14 @@ void AnalysisOptions::require_tiles() const {
                                 file_));
 }
 
-void AnalysisOptions::refuse_sample() const {
+void AnalysisOptions::refuse_sample(std::string_view mend) const {
     if (description_.sample < 1)
-        throw Error(fmt::format("{}: is a sample of {:g} of all lines, of which this cannot be told; record "
-                                "all lines",
-                                file_, description_.sample));
+        throw Error(fmt::format("{}: is a sample of {:g} of all lines, of which this cannot be told; {}",
+                                file_, description_.sample, mend));
+}
+
+std::string AnalysisOptions::of_sample() const {
+    return description_.sample < 1 ? fmt::format(", a sample of {:g} of all lines", description_.sample) : "";
 }
 
 analysis::Touches AnalysisOptions::touches() const {

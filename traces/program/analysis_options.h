@@ -76,8 +76,11 @@ public:
     const std::string& note() const { return note_; }
     /// After prepare(), where tiles of the picture are asked for. Throws Error.
     void require_tiles() const;
-    /// After prepare(), where a sample of lines tells nothing. Throws Error.
-    void refuse_sample() const;
+    /// After prepare(), where a sample of lines tells nothing. Throws Error, which ends with `mend`.
+    void refuse_sample(std::string_view mend = "record all lines") const;
+    /// For headings of what holds for a sample too, counts being the sample's: ", a sample of 0.1 of all
+    /// lines", or nothing.
+    std::string of_sample() const;
     /// Prints the table, or writes it as asked, with `files` besides; what the trace lacks is said.
     /// `draw`: makes the chart of --svg, an element.
     void give(std::string_view command, const analysis::Table& table, const std::string& heading,

@@ -40,7 +40,7 @@ public:
                     {s.threads, s.lines, s.lines * line, s.touches, s.written, s.lines * s.threads});
         }
         options_.give("footprint", table,
-                      fmt::format("lines of {} bytes{}", line,
+                      fmt::format("lines of {} bytes{}{}", line, options_.of_sample(),
                                   options_.grouped() && !threads_
                                       ? fmt::format(", by {} of who touched them first", options_.by())
                                       : ""));

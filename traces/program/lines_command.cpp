@@ -40,7 +40,7 @@ public:
             }
         }
         options_.give("lines", table,
-                      fmt::format("lines of {} bytes{}", options_.line_bytes(),
+                      fmt::format("lines of {} bytes{}{}", options_.line_bytes(), options_.of_sample(),
                                   options_.grouped()
                                       ? fmt::format(", by {} of who touched them first", options_.by())
                                       : ""));

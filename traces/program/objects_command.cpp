@@ -17,6 +17,7 @@ public:
     }
     void run() override {
         options_.prepare();
+        options_.refuse_sample();
         const std::vector<std::uint64_t> sizes = parse_sizes("--sizes", sizes_);
         std::vector<analysis::ObjectLru> caches(sizes.begin(), sizes.end());
         std::vector<std::uint64_t> misses(sizes.size(), 0);

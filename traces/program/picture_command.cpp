@@ -47,9 +47,10 @@ public:
         options_.give(
             "picture", table,
             fmt::format("{} x {} pixels; {} columns of {} of the trace's time ({}) from {}, pages of "
-                        "{} bytes",
+                        "{} bytes{}",
                         picture.pixels.width, picture.pixels.height, counts.columns(), counts.column_length(),
-                        options_.description().time, counts.begin(), counts.page_bytes()),
+                        options_.description().time, counts.begin(), counts.page_bytes(),
+                        options_.of_sample()),
             nullptr,
             {{file_, suffix == ".png" ? analysis::png_bytes(picture.pixels)
                                       : analysis::svg_file(analysis::with_legend(

@@ -16,6 +16,7 @@ public:
         : AnalysisCommand("reuse", "how many other lines are touched between two touches of one", "all") {}
     void run() override {
         options_.prepare();
+        options_.refuse_sample();
         std::vector<std::uint64_t> powers;
         for (unsigned shift = 0; shift < 40; ++shift)
             powers.push_back(std::uint64_t{1} << shift);

@@ -17,6 +17,8 @@ public:
     WindowsCommand() : AnalysisCommand("windows", "what is touched, new and missed over time", nullptr) {}
     void run() override {
         options_.prepare();
+        if (!sizes_.empty())
+            options_.refuse_sample("leave out --sizes, or record all lines");
         const std::uint64_t length = parse_window("--window", length_);
         const std::vector<std::uint64_t> sizes =
             sizes_.empty() ? std::vector<std::uint64_t>() : parse_sizes("--sizes", sizes_);
@@ -39,8 +41,8 @@ public:
             table.rows.back().insert(table.rows.back().end(), w.misses.begin(), w.misses.end());
         }
         options_.give("windows", table,
-                      fmt::format("windows of {} of the trace's time ({}), lines of {} bytes", length,
-                                  options_.description().time, options_.line_bytes()),
+                      fmt::format("windows of {} of the trace's time ({}), lines of {} bytes{}", length,
+                                  options_.description().time, options_.line_bytes(), options_.of_sample()),
                       [&] {
                           std::vector<std::string> shown = {"lines", "new lines"};
                           for (const std::uint64_t size : sizes)
