@@ -44,6 +44,7 @@ void Touches::classify(const traces::Block& block) {
             continue;
         counted.writes = c.kind == Kind::write || c.kind == Kind::modify || c.kind == Kind::write_back ||
                          c.kind == Kind::write_through;
+        counted.size = c.size;
         counted.more = std::max(c.size, 1U) - 1;
         Key key;
         for (const By by : grouping_.by)

@@ -41,6 +41,7 @@ struct Access {
     std::uint64_t time;
     bool writes;            // or modifies, or writes back or through
     std::uint32_t tile = 0; // traces::Reference::tile
+    std::uint32_t size = 0; // as the trace has it; 0: unknown
 };
 
 /// What it touches of a line.
@@ -75,7 +76,7 @@ public:
             const std::uint64_t more = std::min(c.more, ~std::uint64_t{0} - address);
             const auto segment = static_cast<std::size_t>(&s - block.segments.data());
             visit(Access{address, more, static_key_ ? c.group : group_of(segment, s.stream, c, time, tile),
-                         s.stream, time, c.writes, tile});
+                         s.stream, time, c.writes, tile, c.size});
         });
     }
     /// visit(Touch) for each line of each reference.
@@ -109,6 +110,7 @@ private:
         bool counts = false, writes = false;
         std::uint32_t group = 0;    // if the class says it all
         std::uint32_t combined = 0; // else what the class says of it: a number in combined_
+        std::uint32_t size = 0;
         std::uint64_t more = 0;
     };
     struct Recent { // group of a stream and of what classes say

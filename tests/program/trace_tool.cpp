@@ -352,6 +352,33 @@ TEST_F(TraceTool, AnEstimateFromNothingIsNone) {
     EXPECT_NEAR(rows.at(1).at("ratio").get<double>(), 1, 0.2);
 }
 
+TEST_F(TraceTool, CountsObjectsOfSomeKindsAndBursts) {
+    folder_.file("a.csv", "kind,address,size\nread,0x100,8\nwrite,0x100,8\nread,0x200,8\nread,0x100,8\n"
+                          "write_back,0x100,8\nread,0x180,0\n");
+    const auto json = [&](const std::string& arguments) {
+        const Outcome result = tool(arguments + " --json -");
+        EXPECT_EQ(result.code, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    };
+    const nlohmann::json objects = json("objects a.csv --sizes 8B");
+    EXPECT_EQ(objects.at("rows").at(0).at("references"), 5) << "that are demanded";
+    EXPECT_EQ(objects.at("rows").at(0).at("misses"), 4);
+    EXPECT_FALSE(objects.contains("line_bytes"));
+    const nlohmann::json reads = json("objects a.csv --sizes 8B --kinds read");
+    EXPECT_EQ(reads.at("rows").at(0).at("references"), 4);
+    EXPECT_EQ(reads.at("rows").at(0).at("misses"), 4);
+    for (const char* command : {"objects a.csv --sizes 8B", "rows a.csv", "picture a.csv -o a.png"}) {
+        const Outcome result = tool(std::string(command) + " --line 128");
+        EXPECT_EQ(result.code, 2) << command;
+        EXPECT_EQ(result.error_lines(), 1) << result.err;
+        EXPECT_NE(result.err.find("--line"), std::string::npos) << result.err;
+    }
+    if (tool("--help").out.find("\n  rows") != std::string::npos) { // builds with the machine
+        EXPECT_EQ(json("rows a.csv -g memory.bus_bytes=8 -g memory.burst_length=4").at("line_bytes"), 32);
+        EXPECT_EQ(json("rows a.csv -g memory.bus_bytes=8 -g memory.burst_length=8").at("line_bytes"), 64);
+    }
+}
+
 /// Distances and misses of a sample are not those of all lines; counts are told to be the sample's.
 TEST_F(TraceTool, TellsOfASampleWhatItCan) {
     for (const double sample : {0.25, 1.0}) {

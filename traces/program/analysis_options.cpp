@@ -129,8 +129,10 @@ std::vector<std::uint64_t> lines_of(std::string_view option, const std::vector<s
 void AnalysisOptions::add_to(CLI::App& app, const char* by, bool draws) {
     app.add_option("TRACE", file_, "a trace of any format, or -")->required();
     app.add_option("--from", from_, "its format; without it, as it begins or is named")->type_name("FORMAT");
-    app.add_option("--line", line_, "bytes of a line, a power of two; without it, those of the trace, or 64")
-        ->type_name("SIZE");
+    if (lines_)
+        app.add_option("--line", line_,
+                       "bytes of a line, a power of two; without it, those of the trace, or 64")
+            ->type_name("SIZE");
     std::string kinds;
     for (std::size_t k = 0; k < kind_names.size(); ++k)
         if (kinds_in_[k])
@@ -237,12 +239,8 @@ std::string AnalysisOptions::of_sample() const {
 }
 
 analysis::Touches AnalysisOptions::touches() const {
-    return touches(line_bytes_);
-}
-
-analysis::Touches AnalysisOptions::touches(std::uint64_t line_bytes) const {
     return {
-        static_cast<unsigned>(std::countr_zero(line_bytes)), kinds_in_, {by_, window_length_, only_tile_}};
+        static_cast<unsigned>(std::countr_zero(line_bytes_)), kinds_in_, {by_, window_length_, only_tile_}};
 }
 
 std::string AnalysisOptions::by() const {
@@ -286,11 +284,12 @@ void AnalysisOptions::give(std::string_view command, const analysis::Table& tabl
                                    {"trace", file_},
                                    {"program", description_.program},
                                    {"level", description_.level},
-                                   {"sample", description_.sample},
-                                   {"line_bytes", line_bytes_},
-                                   {"complete", note_.empty()},
-                                   {"note", note_},
-                                   {"summary", heading}};
+                                   {"sample", description_.sample}};
+        if (lines_)
+            out["line_bytes"] = line_bytes_;
+        out["complete"] = note_.empty();
+        out["note"] = note_;
+        out["summary"] = heading;
         out["rows"] = nlohmann::ordered_json::parse(table.json());
         files.push_back(
             {json_, out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"});

@@ -48,6 +48,8 @@ public:
     void always_by_tile() { by_names_ = "tile"; }
     /// Other kinds than Touches::demand count without --kinds.
     void count_without_option(const analysis::Touches::Kinds& kinds) { kinds_in_ = kinds; }
+    /// What is told is not of lines: there is no --line, and no `line_bytes` in --json.
+    void without_lines() { lines_ = false; }
     /// Visits all blocks. Throws Error, Interrupted.
     void each_block(const std::function<void(const Block&)>& visit);
 
@@ -55,8 +57,11 @@ public:
     const Description& description() const { return description_; }
     analysis::Touches touches() const;
     std::uint64_t line_bytes() const { return line_bytes_; }
-    /// The same by bursts of another memory than the trace's lines.
-    analysis::Touches touches(std::uint64_t line_bytes) const;
+    /// After prepare(): lines are something else than the trace's, a power of two of bytes.
+    void take_lines_of(std::uint64_t bytes) {
+        lines_ = true;
+        line_bytes_ = bytes;
+    }
     bool grouped() const { return !by_.empty(); }
     std::size_t by_columns() const { return by_.size(); }
     /// "structure", or "structure and phase".
@@ -94,6 +99,7 @@ private:
     std::vector<analysis::By> by_; // without `all`
     std::uint64_t window_length_ = 1;
     std::uint32_t only_tile_ = 0; // of the picture; 0: all
+    bool lines_ = true;
     std::uint64_t line_bytes_ = 64;
     std::unique_ptr<Input> input_;
     Description description_;

@@ -7,13 +7,14 @@
 namespace traces {
 namespace {
 
+using analysis::Access;
 using analysis::Table;
-using analysis::Touch;
 
 class ObjectsCommand final : public AnalysisCommand {
 public:
     ObjectsCommand()
         : AnalysisCommand("objects", "misses of LRU caches of objects of any size, by their bytes", nullptr) {
+        options_.without_lines();
     }
     void run() override {
         options_.prepare();
@@ -22,11 +23,12 @@ public:
         std::vector<analysis::ObjectLru> caches(sizes.begin(), sizes.end());
         std::vector<std::uint64_t> misses(sizes.size(), 0);
         std::uint64_t references = 0;
+        analysis::Touches touches = options_.touches();
         options_.each_block([&](const Block& block) {
-            each_in_time(block, [&](const Segment&, std::size_t i) {
+            touches.each_access(block, [&](const Access& a) {
                 ++references;
                 for (std::size_t c = 0; c < caches.size(); ++c)
-                    misses[c] += caches[c].touch(block.addresses[i], block.what(i).size) ? 0 : 1;
+                    misses[c] += caches[c].touch(a.address, a.size) ? 0 : 1;
             });
         });
         Table table;

@@ -16,7 +16,9 @@ class PictureCommand final : public AnalysisCommand {
 public:
     PictureCommand()
         : AnalysisCommand("picture", "draw addresses over time, a band for each data structure",
-                          "structure") {}
+                          "structure") {
+        options_.without_lines();
+    }
     void run() override {
         const std::size_t dot = file_.rfind('.');
         const std::string suffix = dot == std::string::npos ? "" : file_.substr(dot);

@@ -23,6 +23,7 @@ public:
         : AnalysisCommand("rows",
                           "hits and conflicts of a memory's open rows, and how many banks are used at once",
                           "structure") {
+        options_.without_lines(); // but bursts
         // What memory sees: lines of all kinds.
         options_.count_without_option({true, true, true, true, true, true, true, false});
     }
@@ -32,8 +33,9 @@ public:
         options_.refuse_sample();
         const sim::MemoryConfig& memory = machine.config.memory;
         const auto burst = static_cast<std::uint64_t>(memory.bus_bytes * memory.burst_length);
+        options_.take_lines_of(burst);
         analysis::DramRows rows(memory, static_cast<std::size_t>(reach_));
-        analysis::Touches touches = options_.touches(burst);
+        analysis::Touches touches = options_.touches();
         options_.each_block([&](const Block& block) {
             touches.each(block, [&](const Touch& t) { rows.touch(t.line * burst, t.group); });
         });
