@@ -77,8 +77,14 @@ std::vector<double> ticks(double low, double high, bool logarithmic, Unit unit, 
     for (const double factor : {2.0, 2.5, 2.0})
         if (unit != Unit::bytes && step < least)
             step *= factor;
-    for (double at = std::ceil(low / step); at * step <= high * (1 + 1e-12); at += 1)
-        out.push_back(at * step);
+    const double first = std::ceil(low / step);
+    for (std::size_t i = 0; i <= 2 * most; ++i) {
+        const double at = (first + static_cast<double>(i)) * step; // far from 0 maybe the same as before
+        if (!(at <= high + 1e-6 * step))
+            break;
+        if (out.empty() || at > out.back())
+            out.push_back(at);
+    }
     return out;
 }
 

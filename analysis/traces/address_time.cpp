@@ -1,5 +1,9 @@
 #include "analysis/traces/address_time.h"
 
+#include "traces/error.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace analysis {
@@ -19,6 +23,17 @@ void AddressTime::merge_columns() {
             counts[i / 2] = i % 2 == 0 ? counts[i] : sum(counts[i / 2], counts[i]);
         counts.resize((counts.size() + 1) / 2);
     }
+}
+
+void AddressTime::check_groups() const {
+    std::size_t groups = 0;
+    for (auto at = rows_.begin(); at != rows_.end(); ++groups)
+        at = rows_.upper_bound({at->first.first, ~std::uint64_t{0}});
+    if (groups > most_rows_)
+        throw traces::Error(
+            fmt::format("--by: tells more than {} groups of references apart, which no picture "
+                        "has room for; group more coarsely",
+                        most_rows_));
 }
 
 void AddressTime::merge_pages() {

@@ -20,6 +20,7 @@ public:
     explicit AddressTime(std::size_t most_columns = 2048, std::size_t most_rows = 4096)
         : most_columns_(most_columns), most_rows_(most_rows) {}
 
+    /// Throws traces::Error where there are more groups than rows.
     void add(const Access& access) {
         if (!begun_) {
             begun_ = true;
@@ -58,6 +59,7 @@ private:
             return *last_;
         std::vector<std::uint32_t>* row = &rows_[{group, page}];
         while (rows_.size() > most_rows_ && page_shift_ < 63) {
+            check_groups();
             merge_pages();
             page >>= 1U;
             row = &rows_[{group, page}];
@@ -66,6 +68,7 @@ private:
         last_ = row;
         return *row;
     }
+    void check_groups() const;
     void merge_columns();
     void merge_pages();
 

@@ -6,12 +6,15 @@
 #include "analysis/plots/png.h"
 #include "analysis/plots/table_chart.h"
 #include "analysis/traces/address_picture.h"
+#include "traces/error.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <random>
 #include <tuple>
@@ -69,6 +72,20 @@ TEST(AddressTime, HasTheCountsOfAPlainTable) {
                 }
         EXPECT_EQ(got, expected);
         EXPECT_EQ(sum, references.all.size());
+    }
+}
+
+/// Pages of a group can become one, groups cannot.
+TEST(AddressTime, SaysThatGroupsAreTooMany) {
+    AddressTime counts(16, 64);
+    for (std::uint32_t n = 0; n < 6400; ++n)
+        counts.add({n * 4096, 0, n % 64, 0, n, false});
+    EXPECT_LE(counts.rows().size(), 64U);
+    try {
+        counts.add({0, 0, 64, 0, 6400, false});
+        FAIL();
+    } catch (const traces::Error& e) {
+        EXPECT_NE(std::string(e.what()).find("more than 64 groups"), std::string::npos) << e.what();
     }
 }
 
@@ -246,6 +263,16 @@ TEST(Chart, HasTicksInItsRange) {
             for (const double t : at)
                 EXPECT_TRUE(t >= low - 1e-9 && t <= high * (1 + 1e-9)) << t;
         }
+    // Nanoseconds since 1970, whose neighbours are 256 apart.
+    for (const double length : {256.0, 1000.0, 1e6, 1e12}) {
+        const double low = 1.7e18, high = low + length;
+        const std::vector<double> at = ticks(low, high, false, Unit::plain, 9);
+        EXPECT_GE(at.size(), 1U) << length;
+        EXPECT_LE(at.size(), 11U) << length;
+        EXPECT_TRUE(std::is_sorted(at.begin(), at.end(), std::less_equal<>())) << "none twice";
+        for (const double t : at)
+            EXPECT_TRUE(t >= low * (1 - 1e-15) && t <= high * (1 + 1e-9)) << t;
+    }
     EXPECT_EQ(ticks(64, 1024, true, Unit::bytes, 9), (std::vector<double>{64, 128, 256, 512, 1024}));
     EXPECT_EQ(short_text(65536, Unit::bytes), "64 KiB");
     EXPECT_EQ(short_text(1.5e6, Unit::plain), "1.5 M");
