@@ -3,6 +3,8 @@
 #include "razor/image/output_file.h"
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"
+#include "razor/scene/textures/exr_header.h"
+#include "razor/scene/textures/picture_size.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfCompression.h>
@@ -12,6 +14,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
@@ -80,6 +83,21 @@ Imf::Header header_of(const Film& film) {
     return header;
 }
 
+/// Before anything is allocated of the size that a file states. Throws UserError, or what OpenEXR does.
+void check_size(const std::filesystem::path& path, const std::string& name) {
+    Imf::StdIFStream stream(path.c_str());
+    const ExrHeader header = read_exr_header(stream);
+    const std::int64_t width = header.width(), height = header.height();
+    if (width > 65536 || height > 65536)
+        throw UserError(
+            fmt::format("{}: {} x {} pixels are too many; give a smaller picture", name, width, height));
+    const std::uint64_t bytes = std::filesystem::file_size(path);
+    if (width > 0 && height > 0 && !can_hold(bytes, width, height))
+        throw UserError(fmt::format("{}: {} x {} pixels cannot be in {} bytes: it is damaged or cut short; "
+                                    "give another picture",
+                                    name, width, height, bytes));
+}
+
 /// What the header says of window and camera.
 void describe(const Imf::Header& header, Film& film) {
     const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
@@ -128,16 +146,12 @@ Film read_exr(const std::filesystem::path& path, ImageAttributes* attributes) {
         throw UserError(fmt::format("{}: no such file; give an OpenEXR picture", name));
     }
     try {
+        check_size(path, name);
         Imf::InputFile exr(path.c_str(), 0);
         const Imf::Header& header = exr.header();
         const auto window = header.dataWindow();
-        const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-        const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-        if (width > 65536 || height > 65536) {
-            throw UserError(
-                fmt::format("{}: {} x {} pixels are too many; give a smaller picture", name, width, height));
-        }
-        Film film(static_cast<int>(width), static_cast<int>(height));
+        const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+        Film film(width, height);
         describe(header, film);
         Imf::FrameBuffer pixels;
         for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -252,6 +253,41 @@ TEST(TableChart, DrawsWhatTheTableSays) {
     EXPECT_EQ(count(bars, "<title>"), 4U);
     EXPECT_NE(bars.find("<title>grids, 2 KiB, misses: 2</title>"), std::string::npos);
     EXPECT_THROW(bars_of(table, 1, {"hits"}, {}), std::logic_error);
+}
+
+/// A header alone, of more pixels than so few bytes can hold: nothing of that size is allocated.
+TEST(ImageFile, HoldsWhatItsBytesCan) {
+    std::string bytes("\x76\x2f\x31\x01\x02\0\0\0", 8);
+    const auto add = [&](const char* name, const char* type, const std::vector<std::int32_t>& words,
+                         const std::string& before = "") {
+        const auto size = static_cast<std::int32_t>(before.size() + 4 * words.size());
+        bytes.append(name).append(1, '\0').append(type).append(1, '\0');
+        bytes.append(reinterpret_cast<const char*>(&size), 4).append(before);
+        for (const std::int32_t word : words)
+            bytes.append(reinterpret_cast<const char*>(&word), 4);
+    };
+    using namespace std::string_literals;
+    const std::int32_t one = std::bit_cast<std::int32_t>(1.0F);
+    add("channels", "chlist", {}, "R\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0"s);
+    add("compression", "compression", {}, "\3"s);
+    add("dataWindow", "box2i", {0, 0, 39999, 39999});
+    add("displayWindow", "box2i", {0, 0, 39999, 39999});
+    add("lineOrder", "lineOrder", {}, "\0"s);
+    add("pixelAspectRatio", "float", {one});
+    add("screenWindowCenter", "v2f", {0, 0});
+    add("screenWindowWidth", "float", {one});
+    bytes.append(40000, '\0'); // the end of the header, and offsets of its lines
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("razor_large_" + std::to_string(getpid()) + ".exr");
+    std::ofstream(file, std::ios::binary) << bytes;
+    try {
+        read_image(file);
+        ADD_FAILURE();
+    } catch (const ImageError& e) {
+        EXPECT_NE(std::string(e.what()).find("40000 x 40000 pixels cannot be in"), std::string::npos)
+            << e.what();
+    }
+    std::filesystem::remove(file);
 }
 
 TEST(Chart, HasTicksInItsRange) {

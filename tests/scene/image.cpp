@@ -146,6 +146,19 @@ TEST(Exr, RefusesWhatIsNone) {
         EXPECT_NE(message.find("not a readable OpenEXR picture"), std::string::npos) << size << message;
         EXPECT_EQ(message.find('\n'), std::string::npos);
     }
+    // More pixels than so few bytes can hold, of which nothing is allocated.
+    write_exr(folder / "b.exr", noise(8, 8));
+    std::ifstream small(folder / "b.exr", std::ios::binary);
+    std::string large((std::istreambuf_iterator<char>(small)), {});
+    const std::size_t window = large.find("dataWindow") + sizeof "dataWindow" + sizeof "box2i" + 4;
+    const std::int32_t corner = 19999;
+    std::memcpy(&large[window + 8], &corner, 4);
+    std::memcpy(&large[window + 12], &corner, 4);
+    const std::string message = message_of([&, file = folder.file("large.exr", large)] { read_exr(file); });
+    EXPECT_NE(
+        message.find(fmt::format("large.exr: 20000 x 20000 pixels cannot be in {} bytes", large.size())),
+        std::string::npos)
+        << message;
     EXPECT_THROW(read_exr(folder / "none.exr"), UserError);
     EXPECT_THROW(read_exr(folder.path()), UserError);
 }

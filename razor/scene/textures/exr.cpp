@@ -1,15 +1,13 @@
 #include "razor/scene/error.h"
 #include "razor/scene/text_file.h"
+#include "razor/scene/textures/exr_header.h"
 #include "razor/scene/textures/picture.h"
 #include "razor/scene/textures/pyramid_builder.h"
 #include "razor/scene/textures/shared_exponent.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
-#include <OpenEXR/ImfVersion.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -69,19 +67,11 @@ std::vector<const char*> names_of_channels(const Imf::ChannelList& channels, std
 TexturePyramid read(std::string_view bytes, const std::string& name, Texels kind) {
     InputStream header_stream(bytes, name), stream(bytes, name);
     { // what is said of the size, before OpenEXR allocates anything of it
-        char start[8]{};
-        header_stream.read(start, sizeof start); // magic number and version, of the same byte order as all
-        int version = 0;
-        for (int i = 3; i >= 0; --i)
-            version = version << 8 | static_cast<unsigned char>(start[4 + i]);
-        if (Imf::isMultiPart(version) || Imf::isNonImage(version))
+        const ExrHeader header = read_exr_header(header_stream);
+        if (Imf::isMultiPart(header.version) || Imf::isNonImage(header.version))
             throw UserError(fmt::format("{}: has several parts or deep pixels; give a flat OpenEXR picture",
                                         printable(name, 1000)));
-        Imf::Header header;
-        header.readFrom(header_stream, version);
-        const auto window = header.dataWindow();
-        check_picture_size(name, std::int64_t{window.max.x} - window.min.x + 1,
-                           std::int64_t{window.max.y} - window.min.y + 1, bytes.size());
+        check_picture_size(name, header.width(), header.height(), bytes.size());
     }
     Imf::InputFile exr(stream, 0);
     const auto window = exr.header().dataWindow();

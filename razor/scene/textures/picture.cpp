@@ -3,6 +3,7 @@
 #include "razor/scene/error.h"
 #include "razor/scene/models/model_file.h"
 #include "razor/scene/text_file.h"
+#include "razor/scene/textures/picture_size.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,6 @@ namespace {
 
 constexpr std::string_view png_magic = "\x89PNG\r\n\x1a\n", jpeg_magic = "\xff\xd8\xff",
                            exr_magic = "\x76\x2f\x31\x01";
-/// A bit a texel, and the 1032 bytes for one of which deflate is capable.
-constexpr std::int64_t most_texels_a_byte = 8 * 1032;
 
 /// Formats that textures are often in, by how they begin.
 constexpr std::pair<std::string_view, std::string_view> not_read[] = {
@@ -42,7 +41,7 @@ void check_picture_size(std::string_view name, std::int64_t width, std::int64_t 
         fail(fmt::format("are too many; give at most {0} x {0}", most_picture_side));
     if (width * height > most_texels)
         fail(fmt::format("are too many; give at most {} in all", most_texels));
-    if (width * height / most_texels_a_byte > static_cast<std::int64_t>(bytes))
+    if (!can_hold(bytes, width, height))
         fail(fmt::format("cannot be in {} bytes: it is damaged or cut short; give another picture", bytes));
 }
 
