@@ -282,6 +282,7 @@ MeshDescription read_mesh(TomlTable table, std::span<const Material> materials,
         table.fail(table.key_in(error.what(), {"clip", "clip_file"}, table.has("file") ? "file" : "shape"),
                    error.what());
     }
+    check_cycle(table, mesh.playback);
     if (replaced) {
         check_materials(*replaced, mesh);
     }

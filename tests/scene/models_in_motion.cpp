@@ -71,6 +71,10 @@ TEST_F(ModelsInMotion, Md3FramesArePlayed) {
     EXPECT_EQ(build_scene(still).meshes[0].points, model.frames[1]);
     for (const SceneDescription* d : {&s, &part, &still})
         expect_prints(*d);
+    EXPECT_NE(message("file = \"imp.MD3\"\nframe_rate = 2\ninterpolation = \"smooth\"\ncycle = 1\n")
+                  .find("frames 0 to 3, 2 a second, of which the last is at 1.5 s of a cycle of 1 s"),
+              std::string::npos)
+        << "of points and tags alike";
     EXPECT_NE(message("file = \"imp.MD3\"\nframes = [2, 4]\n")
                   .find("imp.MD3: has no frame 4; give frames from 0 to 3"),
               std::string::npos);

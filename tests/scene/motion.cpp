@@ -128,6 +128,10 @@ TEST_F(ObjFrames, MistakesAreNamed) {
         {"frames = [6, 3]\n", "s.toml:3:10: frames from 6 to 3"},
         {"frame_rate = 0\n", "frame_rate"},
         {"interpolation = \"cubic\"\n", "step, linear, smooth"},
+        {"frame_rate = 2\ncycle = 1.25\n",
+         "s.toml:4:9: frames 3 to 6, 2 a second, of which the last is at 1.5 s "
+         "of a cycle of 1.25 s; make the cycle longer"},
+        {"frame_rate = 2\ninterpolation = \"smooth\"\ncycle = 0.5\n", "s.toml:5:9: frames 3 to 6"},
         {"start = 1\nmoment = 2\n", "start and moment"},
         {"clip = \"run\"\n", "clip"},
         {"[[mesh.deform]]\namount = 1\n", "a deformation without a kind"},
@@ -148,6 +152,8 @@ TEST_F(ObjFrames, MistakesAreNamed) {
         }
         EXPECT_NE(cause.find("s.toml:3:"), std::string::npos) << cause << key;
     }
+    EXPECT_EQ(message("frame_rate = 2\ncycle = 1.5\n"), "");
+    EXPECT_EQ(message("frame_rate = 2\nframes = [4, 5]\ncycle = 0.5\n"), "");
     EXPECT_THROW(describe(folder_ / "none_%d.obj", {}), UserError);
 }
 

@@ -121,6 +121,17 @@ void read_playback(TomlTable& table, MeshDescription& mesh, const std::filesyste
     read_seconds(table, p);
 }
 
+void check_cycle(const TomlTable& table, const Playback& p) {
+    if (!p.frames || p.timing.cycle == 0)
+        return;
+    const double last = (p.frames->second - p.frames->first) / p.frame_rate;
+    if (last > p.timing.cycle)
+        table.fail("cycle",
+                   fmt::format("frames {} to {}, {} a second, of which the last is at {} s of a cycle "
+                               "of {} s; make the cycle longer, or play fewer frames",
+                               p.frames->first, p.frames->second, p.frame_rate, last, p.timing.cycle));
+}
+
 void read_clip_playback(TomlTable& table, Playback& playback) {
     playback.clip = table.text("clip", "");
     playback.timing.cycle = table.number("cycle", 0, time_range);

@@ -13,6 +13,10 @@ namespace razor {
 void read_playback(TomlTable& table, MeshDescription& mesh, const std::filesystem::path& folder,
                    double frame_rate);
 
+/// Once the cage is read, which says how many frames there are: they come again after the last of them, as
+/// keys do. Throws UserError naming the place.
+void check_cycle(const TomlTable& table, const Playback& playback);
+
 /// Those keys that say how a clip of a glTF file is played.
 void read_clip_playback(TomlTable& table, Playback& playback);
 std::string clip_playback_to_toml(const Playback& playback);
