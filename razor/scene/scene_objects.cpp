@@ -195,6 +195,23 @@ private:
         } catch (const UserError& error) {
             table.fail("instances", error.what());
         }
+        if (table.has("scheme")) {
+            check_scheme(table, scheme, *object.table);
+        }
+    }
+
+    /// Tables place the first mesh of each file, as it is.
+    void check_scheme(const TomlTable& object, Scheme stated, const InstanceTable& placed) const {
+        for (const std::string& file : placed.files) {
+            const auto mesh = std::find_if(scene_.meshes.begin(), scene_.meshes.end(),
+                                           [&](const MeshDescription& m) { return m.file == file; });
+            if (mesh != scene_.meshes.end() && mesh->scheme != stated) {
+                object.fail("scheme",
+                            fmt::format("{} is there already, as a mesh with scheme = \"{}\", which the "
+                                        "table places; state the same here, or none",
+                                        printable(file, 1000), word_of(scheme_words, mesh->scheme)));
+            }
+        }
     }
 
     void check(TomlTable& root, const std::vector<TomlTable>& groups) {

@@ -148,6 +148,31 @@ TEST(Objects, ReadNoFileTwice) {
     EXPECT_EQ(flat.instances[1].mesh, 0);
 }
 
+TEST(Objects, OfOneFileHaveOneScheme) {
+    const TemporaryFolder folder;
+    folder.file("tri.obj", triangle);
+    folder.file("t.instances", "tri.obj 1 2 90\n");
+    const std::string smooth = "[[object]]\ninstances = \"t.instances\"\n",
+                      faces = smooth + "scheme = \"bilinear\"\n", mesh = "[[mesh]]\nfile = \"tri.obj\"\n";
+    for (const std::string& text : {smooth + smooth, faces + faces, faces + smooth, mesh + smooth,
+                                    mesh + "scheme = \"bilinear\"\n" + faces}) {
+        EXPECT_EQ(parse(text, folder.path()).meshes.size(), 1U) << text;
+    }
+    for (const auto& [text, place] :
+         {std::pair(smooth + faces, "s.toml:5:10: "), std::pair(mesh + faces, "s.toml:5:10: ")}) {
+        std::string message;
+        try {
+            parse(text, folder.path());
+        } catch (const UserError& error) {
+            message = error.what();
+        }
+        EXPECT_TRUE(message.starts_with(place)) << message;
+        EXPECT_NE(message.find("tri.obj is there already, as a mesh with scheme = \"catmark\""),
+                  std::string::npos)
+            << message;
+    }
+}
+
 TEST(Objects, StaySmallFarAway) {
     const std::string text =
         "[[mesh]]\nname = \"b\"\nshape = \"box\"\n[[group]]\nname = \"g\"\n[[group.object]]\nmesh = "
