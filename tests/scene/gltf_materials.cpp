@@ -107,6 +107,19 @@ TEST(GltfMaterials, EveryFieldIsRead) {
         material({{"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}}).two_sided)
         << "what is gone through is left through its other side";
     EXPECT_EQ(material({{"extensions", {{"KHR_materials_ior", {{"ior", 9}}}}}}).ior, 3);
+    EXPECT_EQ(material({{"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}}).ior, 1);
+    // 0 is a boundless one, of which specularColorFactor says what is reflected: 0.04 are those of 1.5.
+    EXPECT_EQ(material({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}).ior, 3);
+    EXPECT_NEAR(material({{"extensions",
+                           {{"KHR_materials_ior", {{"ior", 0}}},
+                            {"KHR_materials_specular", {{"specularColorFactor", {0.02, 0.04, 0.01}}}}}}})
+                    .ior,
+                1.5, 1e-6);
+    EXPECT_EQ(material({{"extensions",
+                         {{"KHR_materials_ior", {{"ior", 0}}},
+                          {"KHR_materials_specular", {{"specularColorFactor", {0, 0, 0}}}}}}})
+                  .ior,
+              1);
     EXPECT_EQ(
         material({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}})
             .transmission,

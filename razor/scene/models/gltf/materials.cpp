@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -70,7 +71,7 @@ private:
         m.metallic = pbr.number("metallicFactor", 1, weight);
         m.roughness = pbr.number("roughnessFactor", 1, weight);
         m.specular = f.extension("KHR_materials_specular").number("specularFactor", 1, weight);
-        m.ior = f.extension("KHR_materials_ior").number("ior", 1.5F, ior_range);
+        m.ior = index_of_refraction(f);
         m.transmission = f.extension("KHR_materials_transmission").number("transmissionFactor", 0, weight);
         const Fields coat = f.extension("KHR_materials_clearcoat");
         m.coat = coat.number("clearcoatFactor", 0, weight);
@@ -93,6 +94,24 @@ private:
         m.two_sided = f.flag("doubleSided") || m.transmission > 0;
         note_passed_over(f, m);
         return m;
+    }
+
+    /// 0 stands for a boundless one: the share that is reflected from the front is then specularColorFactor
+    /// alone. What reflects as much as its largest colour does has another index.
+    float index_of_refraction(const Fields& f) const {
+        constexpr double any = std::numeric_limits<double>::max();
+        const Fields extension = f.extension("KHR_materials_ior");
+        if (extension.real("ior", 1.5, {-any, any}) != 0)
+            return extension.number("ior", 1.5F, ior_range);
+        const auto colour =
+            f.extension("KHR_materials_specular").vector("specularColorFactor", glm::dvec3(1), unit_range);
+        const double part = std::max({colour.x, colour.y, colour.z}), root = std::sqrt(part);
+        const double ior = root < 1 ? (1 + root) / (1 - root) : any;
+        if (ior > ior_range.most)
+            document_.note(fmt::format("{}: ior of 0, which reflects {:.4g} of what comes from the front, is "
+                                       "taken as {}, the nearest that there is",
+                                       f.what(), part, ior_range.most));
+        return static_cast<float>(std::min(ior, ior_range.most));
     }
 
     /// Textures of extensions: of these only the factors are read.
