@@ -3,6 +3,7 @@
 #include "razor/scene/animation/pose.h"
 #include "razor/scene/crop.h"
 #include "razor/scene/error.h"
+#include "razor/scene/filter_fields.h"
 #include "razor/scene/light_fields.h"
 #include "razor/scene/material_fields.h"
 #include "razor/scene/ranges.h"
@@ -49,6 +50,9 @@ void check_settings(std::string_view scene, const Settings& s) {
     check(scene, "settings.edge_pixels", s.edge_pixels, edge_pixels_range);
     check(scene, "settings.filter.radius", s.filter.radius.x, filter_radius_range);
     check(scene, "settings.filter.radius", s.filter.radius.y, filter_radius_range);
+    visit_filter_parameters(s.filter, [&](std::string_view name, double value, Range range) {
+        check(scene, fmt::format("settings.filter.{}", name), value, range);
+    });
     if (std::none_of(lod_words.begin(), lod_words.end(),
                      [&](const auto& word) { return word.second == s.lod; }))
         throw UserError(fmt::format("{}: settings.lod is none that scene files can state; `coarser` is at "
