@@ -68,6 +68,7 @@ struct Renderer::State {
     std::unique_ptr<MovingScene> moving{};
     std::unique_ptr<NativeRenderer> native{};
     std::optional<RenderResult> result{};
+    std::optional<PassFigures> told{}; // of the pass that is told of just now
 
     /// Brings what is posed to what is asked for. Where this throws, the next call does it all.
     void pose() {
@@ -122,9 +123,22 @@ void Renderer::go_to_frame(int frame) {
 
 const Film& Renderer::render(const RenderCalls& calls) {
     State& s = *state_;
+    const PassOptions& passes = s.options.passes;
+    if (passes.seconds > 0 && passes.samples == 0 && passes.target_error == 0 &&
+        s.scene.settings().noise_threshold == 0)
+        throw UserError(
+            "Options::pass_seconds of a picture without passes; set pass_samples, target_error or "
+            "the scene's noise_threshold, or leave it out");
     s.result.reset();
     s.pose();
-    s.result = s.native->render(calls);
+    RenderCalls all = calls;
+    if (const Passed& passed = calls.passed ? calls.passed : passes.passed)
+        all.passed = [&](const Film& film, const PassFigures& figures) {
+            s.told = figures;
+            passed(film, figures);
+            s.told.reset();
+        };
+    s.result = s.native->render(all);
     return s.result->film;
 }
 
@@ -153,7 +167,7 @@ ImageAttributes Renderer::attributes(const PassFigures& passes) const {
 }
 void Renderer::write(const std::filesystem::path& file, const Film& film, const Tone& tone) const {
     check_output(file);
-    write_image(file, film, attributes(statistics().passes), tone);
+    write_image(file, film, attributes(state_->told ? *state_->told : statistics().passes), tone);
 }
 
 std::vector<std::string> Renderer::instances() const {

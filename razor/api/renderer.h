@@ -42,7 +42,7 @@ struct Options {
     std::string layers{};
     /// Samples are taken in passes of so many; 0: in one go. For a time: see PassOptions::seconds.
     int pass_samples = 0;
-    double pass_seconds = 0;
+    double pass_seconds = 0; // of pictures without passes render() refuses it
     /// Not 0: samples are taken in passes until the picture's relative error, by noise alone, is estimated to
     /// be no more (razor/native/target_sampling.h), or pass_seconds are over. Levels of detail are the
     /// scene's.
@@ -107,6 +107,8 @@ public:
     /// What the numbers of the layer pick.instance name: "group/object", the way down to each.
     std::vector<std::string> instances() const;
 
+    // Of the last picture, once render() has returned it; earlier they throw std::logic_error. Of a pass that
+    // is told, what `passed` is given is all there is.
     Statistics statistics() const;
     /// What `razor render --stats` writes of it: every figure by name.
     std::string statistics_json() const;

@@ -8,6 +8,7 @@
 
 #include <glm/common.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <fstream>
 #include <map>
@@ -67,6 +68,8 @@ TEST(Renders, TellOfPasses) {
     Scene scene = Scene::parse(small_scene);
     make_fast(scene);
     Renderer renderer(scene, {.threads = 1, .pass_samples = 2});
+    const TemporaryFolder folder;
+    EXPECT_THROW(renderer.write(folder / "none.exr", Film(1, 1)), std::logic_error) << "no picture was begun";
     int told = 0;
     Film last;
     const auto passed = [&](const Film& film, const PassFigures& figures) {
@@ -74,12 +77,35 @@ TEST(Renders, TellOfPasses) {
         last = film;
         EXPECT_EQ(renderer.attributes(figures).back(),
                   (std::pair<std::string, std::string>("razor.samples", std::to_string(2 * told))));
+        renderer.write(folder / "a.exr", film);
+        ImageAttributes attributes;
+        expect_same_bits(read_exr(folder / "a.exr", &attributes), film, "file");
+        EXPECT_TRUE(std::ranges::is_permutation(attributes, renderer.attributes(figures)));
+        renderer.write(folder / "a.png", film);
+        EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
+        EXPECT_EQ(renderer.instances().size(), 6U);
+        EXPECT_THROW(renderer.statistics(), std::logic_error) << "of no picture yet";
+        EXPECT_THROW(renderer.statistics_json(), std::logic_error);
     };
     const Film& film = renderer.render({.passed = passed});
     EXPECT_EQ(told, 2);
+    renderer.write(folder / "last.exr", film);
     EXPECT_EQ(renderer.statistics().passes.samples, 4);
     expect_same_bits(film, last, "last pass");
     EXPECT_THROW(Renderer(scene, {.layers = "pick", .pass_samples = 2}), UserError);
+}
+
+TEST(Renders, HaveNoTimeForPassesThatAreNotTaken) {
+    Scene scene = Scene::parse(small_scene);
+    make_fast(scene);
+    Renderer renderer(scene, {.threads = 1, .pass_seconds = 100});
+    EXPECT_THROW(renderer.render(), UserError);
+    Settings settings = scene.settings();
+    settings.samples = 32;
+    settings.noise_threshold = 10;
+    renderer.scene().set_settings(settings);
+    EXPECT_GT(renderer.render().width, 0);
+    EXPECT_GT(renderer.statistics().passes.samples, 0);
 }
 
 TEST(Renders, TakeSamplesForAnError) {
