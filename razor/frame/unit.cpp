@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace razor {
 namespace {
@@ -34,6 +35,12 @@ void scale(Placement& placement, double factor) {
     if (placement.local.matrix)
         placement.local.matrix->translation *= factor;
     placement.spacing *= factor;
+}
+
+/// The square alone may be no float where the product is one.
+glm::vec3 times_square(const glm::vec3& intensity, double factor) {
+    constexpr double most = std::numeric_limits<float>::max();
+    return {glm::min(glm::dvec3(intensity) * factor * factor, most)};
 }
 
 } // namespace
@@ -99,7 +106,7 @@ Scene scaled(Scene scene, double factor) {
         light.position *= factor;
         light.radius *= factor;
         if (light.kind == LightKind::point || light.kind == LightKind::spot) // W / sr, over distances squared
-            light.radiance *= static_cast<float>(factor * factor);
+            light.radiance = times_square(light.radiance, factor);
     }
     for (Material& material : scene.materials) {
         material.bump *= static_cast<float>(factor);

@@ -168,6 +168,22 @@ TEST(Units, AreKeptInTheMiddleAndChosenOutside) {
     EXPECT_EQ(frame_unit(cube), std::ldexp(1.0, std::ilogb(1e25) - 50));
 }
 
+/// Watts a steradian go with the square of lengths, which alone may be no float.
+TEST(Units, OfIntensitiesAreSquares) {
+    for (const LightKind kind : {LightKind::point, LightKind::spot}) {
+        Scene scene = scene_of(cube_cage(), 4);
+        scene.lights.assign(1, Light{});
+        scene.lights[0].kind = kind;
+        scene.lights[0].radiance = {std::ldexp(0.75F, -60), 0, 3};
+        const double factor = std::ldexp(1.0, 70);
+        const glm::vec3 large = scaled(scene, factor).lights[0].radiance;
+        EXPECT_EQ(large.x, std::ldexp(0.75F, 80));
+        EXPECT_EQ(large.y, 0);
+        EXPECT_TRUE(std::isfinite(large.z)) << "the largest that there is";
+        EXPECT_EQ(scaled(scaled(scene, factor), 1 / factor).lights[0].radiance.x, scene.lights[0].radiance.x);
+    }
+}
+
 TEST(Units, OfDicedMeshesAreTheScenes) {
     const Scene scene = instances_of(stretched(urchin_cage()), 30);
     const auto diced = [](const Scene& s) {
