@@ -2,6 +2,8 @@
 
 #include <boost/context/protected_fixedsize_stack.hpp>
 
+#include <atomic>
+
 #if defined(__SANITIZE_ADDRESS__)
 #define SIM_ADDRESS_SANITIZER 1
 #elif defined(__has_feature)
@@ -42,7 +44,7 @@ void landed([[maybe_unused]] void* fake_stack, [[maybe_unused]] const void** sta
 
 Fibre::Fibre(std::size_t stack_bytes, std::function<void()> body, Fibre& home) : home_(home) {
     // Stacks lie at multiples of large powers of two: all would use the same few sets of the host's caches.
-    static std::size_t count = 0;
+    static std::atomic<std::size_t> count{0};
     const std::size_t colour = count++ * 37 % 1024 * 64;
     boost::context::protected_fixedsize_stack allocator(stack_bytes + 65536);
     boost::context::stack_context memory = allocator.allocate();
