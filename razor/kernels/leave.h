@@ -41,7 +41,8 @@ inline pointer<float> make_field(const Context& c, const Surface& s, sfloat grow
     store(f + left_most, base);
     sint number = load(field(c.self, &WorkerRecord::next_field));
     store(as<std::int32_t>(f) + left_number, number);
-    store(field(c.self, &WorkerRecord::next_field), number + 1);
+    sint later = max(number + 1, camera_number + 1); // after the largest the first that is no other's
+    store(field(c.self, &WorkerRecord::next_field), later);
     return f;
 }
 

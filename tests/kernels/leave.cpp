@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -79,6 +80,23 @@ void check(const Packet& p) {
     }
 }
 
+LeaveArguments arguments(FrameHeader& frame, WorkerRecord& self, std::vector<float>& scratch, Packet& p) {
+    LeaveArguments a;
+    a.frame = &frame;
+    a.self = &self;
+    a.packets = scratch.data();
+    a.position = p.position.data();
+    a.target = p.target.data();
+    a.wanted = p.wanted.data();
+    a.hit = p.hit.data();
+    a.origin = p.origin.data();
+    a.radius = p.radius.data();
+    a.base = p.base.data();
+    a.growth = p.growth.data();
+    a.number = p.number.data();
+    return a;
+}
+
 void share_fields(const Target& target) {
     std::mt19937 random(11);
     std::vector<float> scratch(packet_floats);
@@ -94,20 +112,8 @@ void share_fields(const Target& target) {
                 // Growths wander by less than what a field lacks, and by more.
                 const double wander = 1 + 0.5 * std::sin(0.1 * step);
                 Packet p = make_packet(random, size * (step % 2), size, growth * wander);
-                LeaveArguments a;
-                a.frame = &frame;
-                a.self = &self;
-                a.packets = scratch.data();
+                LeaveArguments a = arguments(frame, self, scratch, p);
                 a.forget = std::exchange(forget, false);
-                a.position = p.position.data();
-                a.target = p.target.data();
-                a.wanted = p.wanted.data();
-                a.hit = p.hit.data();
-                a.origin = p.origin.data();
-                a.radius = p.radius.data();
-                a.base = p.base.data();
-                a.growth = p.growth.data();
-                a.number = p.number.data();
                 target.run(a);
                 SCOPED_TRACE(testing::Message() << size << ", " << growth << ", packet " << step);
                 check(p);
@@ -127,6 +133,31 @@ void share_fields(const Target& target) {
     // Some go with what a packet before theirs made, others do not.
     EXPECT_GT(shared, 10000);
     EXPECT_GT(fresh, 10000);
+}
+
+/// After the largest number comes the first again: neither the camera's nor one that says that there is none.
+TEST(Leave, FieldsHaveNumbersOfTheirOwn) {
+    for (const Target& target : leave_of_targets()) {
+        SCOPED_TRACE(target.name);
+        std::mt19937 random(12);
+        std::vector<float> scratch(packet_floats);
+        FrameHeader frame{};
+        WorkerRecord self{};
+        self.next_field = std::numeric_limits<std::int32_t>::max() - 1;
+        std::set<std::int32_t> numbers;
+        for (int step = 0; step < 8; ++step) {
+            Packet p = make_packet(random, 1000 * step, 1, 0.01);
+            LeaveArguments a = arguments(frame, self, scratch, p);
+            a.forget = step == 0;
+            target.run(a);
+            for (std::size_t i = 0; i < rays; ++i)
+                if (p.hit[i] != 0)
+                    numbers.insert(p.number[i]);
+        }
+        EXPECT_GT(*numbers.begin(), camera_number);
+        EXPECT_EQ(*numbers.begin(), 1);
+        EXPECT_EQ(*numbers.rbegin(), std::numeric_limits<std::int32_t>::max());
+    }
 }
 
 TEST(Leave, FieldsAreSharedByThoseWhomTheySuit) {
