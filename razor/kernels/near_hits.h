@@ -46,7 +46,8 @@ inline vint sort_lanes(vint key) {
     }
     constexpr float below_one = 1 - 1.0F / 1024;
     sfloat scale = sfloat(below_one) / select(widest > 0.0F, widest, sfloat(1.0F));
-    vfloat share = (at - vfloat(begin)) * vfloat(scale);
+    vfloat share = at - vfloat(begin);
+    share = share * vfloat(scale);
     share = min(max(share, 0.0F), below_one);
     // Bits of numbers from 1 to 2 ascend as these do; the last ones make room for the lane.
     constexpr int lane_bits = isa::width - 1;
