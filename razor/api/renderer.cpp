@@ -134,9 +134,13 @@ const Film& Renderer::render(const RenderCalls& calls) {
     RenderCalls all = calls;
     if (const Passed& passed = calls.passed ? calls.passed : passes.passed)
         all.passed = [&](const Film& film, const PassFigures& figures) {
+            struct Telling { // ends also where `passed` throws
+                std::optional<PassFigures>& told;
+                ~Telling() { told.reset(); }
+            };
             s.told = figures;
+            const Telling telling{s.told};
             passed(film, figures);
-            s.told.reset();
         };
     s.result = s.native->render(all);
     return s.result->film;
