@@ -138,7 +138,7 @@ TEST_F(DesignSweep, PlansRunsAndCollects) {
 TEST_F(DesignSweep, KnowsFiveLevels) {
     edited("five.toml", "[\"4 KiB\", \"128 KiB\"]\ncore.lanes = [4, 8]",
            "[\"4 KiB\"]\nl3.size_bytes = [\"16 KiB\"]\nl4.size_bytes = [\"32 KiB\"]\n"
-           "l5.size_bytes = [\"64 KiB\"]");
+           "l5.size_bytes = [\"64 KiB\"]\nl3.share = [\"tile\"]\nl4.share = [\"tile\"]");
     const Outcome five = sweep("five.toml -o s");
     ASSERT_EQ(five.code, 0) << five.err << five.out;
     const nlohmann::json figures = collected("s")["points"][0]["figures"];
