@@ -4,7 +4,10 @@
 #include "razor/frame/light_records.h"
 #include "razor/frame/light_tree.h"
 #include "razor/frame/scratch.h"
+#include "razor/scene/error.h"
 #include "razor/scene/textures/shared_exponent.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -20,6 +23,26 @@ glm::vec3 mean_of_map(const Scene& scene, const TextureMap& map) {
     if (texture.pattern)
         return glm::vec3((texture.pattern->low + texture.pattern->high) / 2.0F); // about
     return unpack_shared_exponent(texture.pyramid->levels.back().texels.front());
+}
+
+/// Why rays to lights would go where it is not, or nothing.
+std::string not_sampled(const Scene& scene, const Material& m) {
+    if (is_displaced(m))
+        return "is displaced, and rays to lights go to where its surface was before";
+    if (m.alpha_cutoff == 0 || m.albedo_map.texture < 0)
+        return "";
+    const Texture& texture = scene.textures[static_cast<std::size_t>(m.albedo_map.texture)];
+    return texture.pattern || texture.pyramid->levels[0].opacity.empty()
+               ? ""
+               : "has holes (alpha_cutoff), from which rays to lights would come back bright";
+}
+
+bool is_used(const std::vector<Mesh>& meshes, const std::vector<Instance>& instances, int material) {
+    return std::any_of(instances.begin(), instances.end(), [&](const Instance& i) {
+        const std::vector<int>& faces = meshes[static_cast<std::size_t>(i.mesh)].face_materials;
+        return i.material >= 0 ? i.material == material
+                               : std::find(faces.begin(), faces.end(), material) != faces.end();
+    });
 }
 
 /// Rays of neighbouring hits to one light are traced together, those to lights that each hit has chosen cost
@@ -102,6 +125,12 @@ void Frame::Impl::place_emitters(const Scene& scene) {
         if (!material.light)
             continue;
         emitted[m] = material.emission * mean_of_map(scene, material.emission_map);
+        if (const std::string why = not_sampled(scene, material);
+            !why.empty() && emitted[m] != glm::dvec3(0) &&
+            is_used(meshes, geometry.instances, static_cast<int>(m)))
+            throw UserError(fmt::format("{}: material '{}' is a light and {}; leave `light` out, so that "
+                                        "bounces find it (diffuse_bounces)",
+                                        scene.name, material.name, why));
         mapped = mapped || material.emission_map.texture >= 0;
     }
     const glm::dvec3 dark(0);

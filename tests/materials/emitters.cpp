@@ -9,7 +9,9 @@
 #include "razor/frame/frame.h"
 #include "razor/native/render.h"
 #include "razor/scene/description.h"
+#include "razor/scene/error.h"
 #include "razor/scene/scene_file.h"
+#include "razor/scene/textures/shared_exponent.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -17,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -195,6 +198,53 @@ std::vector<float> picture_of(Frame& frame, const KernelTable& kernels) {
     run_workers(frame, kernels);
     const FrameHeader& h = frame.header();
     return {h.film.get(), h.film.get() + static_cast<std::ptrdiff_t>(h.width) * h.height * film_planes};
+}
+
+/// The message with which a scene is refused; empty: it is not.
+std::string refusal(const Scene& scene) {
+    try {
+        const Frame frame(scene, {});
+    } catch (const UserError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// Rays go to triangles of the limit surface: not to where heights move it, nor beside holes.
+TEST(Emitters, AreWhereTheirTrianglesAre) {
+    Mesh cube = cube_cage();
+    cube.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (std::size_t i = 0; i < cube.face_vertices.size(); ++i)
+        cube.face_texcoords.push_back(static_cast<int>(i % 4));
+    Scene s = glowing(cube, Lod::object);
+    s.materials[0].light = true;
+    s.textures.resize(2);
+    s.textures[0].name = "bumps";
+    s.textures[0].pattern.emplace().space = PatternSpace::texture;
+    const auto picture = std::make_shared<TexturePyramid>(); // of one texel
+    picture->levels.push_back({1, 1, std::vector<std::uint32_t>(16, pack_shared_exponent(glm::vec3(1))), {}});
+    s.textures[1].name = "holes";
+    s.textures[1].pyramid = picture;
+    EXPECT_EQ(refusal(s), "");
+    Scene moved = s;
+    moved.materials[0].displacement_map.texture = 0;
+    EXPECT_NE(refusal(moved).find("material 'lamp' is a light and is displaced"), std::string::npos)
+        << refusal(moved);
+    Scene cut = s;
+    cut.materials[0].albedo_map.texture = 1;
+    cut.materials[0].alpha_cutoff = 0.5F;
+    EXPECT_EQ(refusal(cut), "") << "a picture that is opaque";
+    picture->levels[0].opacity = picture->levels[0].texels;
+    EXPECT_NE(refusal(cut).find("'lamp' is a light and has holes"), std::string::npos) << refusal(cut);
+    cut.materials[0].alpha_cutoff = 0;
+    EXPECT_EQ(refusal(cut), "");
+    // What bounces alone find, what is dark, and what nothing is made of.
+    Scene bounced = moved, dark = moved, unused = moved;
+    bounced.materials[0].light = false;
+    dark.materials[0].emission = {0, 0, 0};
+    unused.meshes[0].material = 1;
+    for (const Scene& fine : {bounced, dark, unused})
+        EXPECT_EQ(refusal(fine), "");
 }
 
 // A curved lamp whose map follows texture coordinates, close to what it lights: what is kept of its blended
