@@ -260,6 +260,16 @@ TEST(ClosedForm, SeedsSayWhatTheyKnow) {
     other = one;
     other.core.lanes *= 2;
     EXPECT_EQ(unknown_to_seed(one, other), "core.lanes");
+    // Of messages, those that a seed counted know another network, and one that takes no time.
+    other = one;
+    other.network.topology = "mesh";
+    EXPECT_EQ(unknown_to_seed(one, other), "network.topology");
+    EXPECT_EQ(unknown_to_seed(other, one), "");
+    Config ring = other;
+    ring.network.topology = "ring";
+    EXPECT_EQ(unknown_to_seed(other, ring), "");
+    ring.network.request_bytes *= 2;
+    EXPECT_EQ(unknown_to_seed(other, ring), "network.request_bytes");
 
     Seed s = plain_seed(2.5);
     s.banks[2] = 0.25;
