@@ -113,6 +113,10 @@ private:
         object.attachment = read_attachment(table);
         object.copies = table.whole_vector("array", object.copies, copies_range);
         object.spacing = table.vector("spacing", object.spacing, coordinate_range);
+        if (table.has("spacing") && !table.has("array"))
+            table.fail("spacing",
+                       "spacing of one object; write array = [x, y, z], how many there are, or leave "
+                       "it out");
         object.level_offset = table.whole("level_offset", object.level_offset, level_offset_range);
         object.rate = table.number("rate", object.rate, rate_range);
         if (table.has("material")) {

@@ -124,7 +124,8 @@ void DramTable::add_to(CLI::App& app) {
     dram.add_option("--in-flight", in_flight_, "reads under way at once, at most, for each channel")
         ->type_name("N");
     dram.add_option("--mebibytes", bytes_, "of memory that is used")->type_name("N");
-    dram.add_option("--stride", stride_, "bytes from one request to the next of a strided stream")
+    dram.add_option("--stride", stride_,
+                    "bytes from one request to the next of a strided stream; without it, 4096")
         ->type_name("N");
     dram.add_option("--seed", seed_, "of random addresses and times")->type_name("N");
     dram.add_option("--json", json_, "write the results for programs")->type_name("FILE.json");
@@ -143,7 +144,7 @@ int DramTable::run() const {
     load.in_flight = whole("--in-flight", in_flight_, 1, 100000) * static_cast<std::uint64_t>(m.channels);
     load.seed = whole("--seed", seed_, 0, 2e9);
     const std::uint64_t bytes = whole("--mebibytes", bytes_, 1, 1e6) << 20;
-    const std::uint64_t stride = whole("--stride", stride_, 1, 2e9);
+    const std::uint64_t stride = stride_.empty() ? 4096 : whole("--stride", stride_, 1, 2e9);
     std::vector<double> loads;
     for (const std::string& text : loads_)
         loads.push_back(razor::parse_number("--load", text, {1e-6, 1}));
@@ -156,6 +157,8 @@ int DramTable::run() const {
             streams.emplace_back(k.name);
     for (const std::string& s : streams)
         make_dram_stream(s, config, bytes, stride, 0);
+    if (!stride_.empty() && std::find(streams.begin(), streams.end(), "strided") == streams.end())
+        throw razor::UserError("--stride is of a strided stream; give --stream strided too, or leave it out");
     if (!json_.empty())
         razor::check_writable(json_);
 

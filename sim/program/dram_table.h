@@ -17,7 +17,7 @@ public:
 
 private:
     std::string machine_, preset_, json_, controller_ = "both", requests_ = "100000", in_flight_ = "64",
-                                          bytes_ = "1024", stride_ = "4096", seed_ = "1";
+                                          bytes_ = "1024", stride_, seed_ = "1";
     std::vector<std::string> settings_, streams_, loads_;
 };
 

@@ -417,6 +417,7 @@ TEST_F(Simulator, TriesMemories) {
                                         {"--in-flight 0", "--in-flight '0'"},
                                         {"--mebibytes 0", "--mebibytes '0'"},
                                         {"--stride -4", "--stride '-4'"},
+                                        {"--stream random --stride 128", "--stride is of a strided stream"},
                                         {"--seed x", "--seed 'x'"},
                                         {"--controller other", "--controller 'other'"},
                                         {"--machine none.toml", "none.toml: cannot be read"},

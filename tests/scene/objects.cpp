@@ -273,6 +273,7 @@ TEST(Objects, MistakesNamePlaceCauseAndMend) {
         {object + "array = [2, 1, 0]\n", "object.array = 0 is out of range"},
         {object + "array = [2, 1, 1.5]\n", "object.array is a number; write a whole number"},
         {object + "array = [2, 1, 1]\n", "s.toml:6:9: an array of 2 along x without spacing there"},
+        {object + "spacing = [1, 0, 0]\n", "s.toml:6:11: spacing of one object; write array"},
         {object + "array = [2, 3, 1]\nspacing = [1, 0, 0]\n", "an array of 3 along y without spacing there"},
         {object + "array = [1000000, 1000000, 1]\nspacing = [1, 1, 1]\n",
          "s.toml:4:1: the scene graph has more than 4194304 instances"},
