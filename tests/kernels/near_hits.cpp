@@ -123,8 +123,8 @@ TEST(NearHits, SharePacketsWhateverPixelsTheyAreOf) {
     const Counters across = slats(false).frame.by_kind.kind[kind_light];
     const Counters down = slats(true).frame.by_kind.kind[kind_light];
     EXPECT_EQ(across.rays, down.rays);
-    ASSERT_GT(down.box_tests, 500u);
-    const auto ratio = [](std::uint64_t a, std::uint64_t b) {
+    ASSERT_GT(down.box_tests, 500);
+    const auto ratio = [](std::int64_t a, std::int64_t b) {
         return static_cast<double>(a) / static_cast<double>(b);
     };
     // 2.36 and 1.09 where pixels side by side go together.
