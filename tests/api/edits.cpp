@@ -284,43 +284,29 @@ TEST(Edits, ThatAreWrongAreRefused) {
     material.albedo_map.texture = 1;
     EXPECT_EQ(wrong([&] { scene.set_material(material); }),
               "small: material 'stone': albedo_map is texture number 1, of 1; -1 is none");
-    for (const auto& [what, change] : std::vector<
-             std::pair<const char*, std::function<void(Settings&)>>>{{"width",
-                                                                      [](Settings& s) { s.width = 0; }},
-                                                                     {"samples",
-                                                                      [](Settings& s) { s.samples = 0; }},
-                                                                     {"crop",
-                                                                      [](Settings&
-                                                                             s) { s.crop = {40, 0, 16, 16}; }},
-                                                                     {"settings.filter.sigma is 0; it must "
-                                                                      "lie between 0.01 and 32",
-                                                                      [](Settings& s) {
-                                                                          s.filter = preset_filter(
-                                                                              FilterKind::gaussian);
-                                                                          s.filter.sigma = 0;
-                                                                      }},
-                                                                     {"settings.filter.b is 2; it must lie "
-                                                                      "between 0 and 1",
-                                                                      [](Settings& s) {
-                                                                          s.filter = preset_filter(
-                                                                              FilterKind::mitchell);
-                                                                          s.filter.b = 2;
-                                                                      }},
-                                                                     {"settings.filter.c is nan",
-                                                                      [](Settings& s) {
-                                                                          s.filter = preset_filter(
-                                                                              FilterKind::mitchell);
-                                                                          s.filter.c = std::nan("");
-                                                                      }},
-                                                                     {"settings.filter.tau is 0",
-                                                                      [](Settings& s) {
-                                                                          s.filter = preset_filter(
-                                                                              FilterKind::lanczos);
-                                                                          s.filter.tau = 0;
-                                                                      }},
-                                                                     {"lod", [](Settings& s) {
-                                                                          s.lod = {Lod::recursive, 3};
-                                                                      }}}) {
+    using Change = std::function<void(Settings&)>;
+    const auto filter = [](FilterKind kind, double Filter::*parameter, double value) -> Change {
+        return [=](Settings& s) {
+            s.filter = preset_filter(kind);
+            s.filter.*parameter = value;
+        };
+    };
+    const std::vector<std::pair<const char*, Change>> changes{
+        {"width", [](Settings& s) { s.width = 0; }},
+        {"samples", [](Settings& s) { s.samples = 0; }},
+        {"crop",
+         [](Settings& s) {
+             s.crop = {40, 0, 16, 16};
+         }},
+        {"settings.filter.sigma is 0; it must lie between 0.01 and 32",
+         filter(FilterKind::gaussian, &Filter::sigma, 0)},
+        {"settings.filter.b is 2; it must lie between 0 and 1", filter(FilterKind::mitchell, &Filter::b, 2)},
+        {"settings.filter.c is nan", filter(FilterKind::mitchell, &Filter::c, std::nan(""))},
+        {"settings.filter.tau is 0", filter(FilterKind::lanczos, &Filter::tau, 0)},
+        {"lod", [](Settings& s) {
+             s.lod = {Lod::recursive, 3};
+         }}};
+    for (const auto& [what, change] : changes) {
         Settings settings = scene.settings();
         change(settings);
         EXPECT_NE(wrong([&] { scene.set_settings(settings); }).find(what), std::string::npos) << what;
